@@ -1,0 +1,130 @@
+//! What went wrong, in which file, at which place.
+//!
+//! A reader fails with one [`ParseError`]; what it could work around is handed to a
+//! [`Warnings`] collector with the same kind of place, so that nothing is dropped silently.
+
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+/// A place in a file: a line and column of text, or a byte offset of binary data.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum At {
+    /// Line and column, both counted from 1.
+    Line {
+        /// Line, from 1.
+        line: usize,
+        /// Column in bytes, from 1.
+        column: usize,
+    },
+    /// Byte offset from the start of the file.
+    Byte(u64),
+    /// The file as a whole.
+    File,
+}
+
+/// An error of a reader: file, place, keyword and what is wrong.
+///
+/// Shown as `path:line:column: KEYWORD: message` for text and
+/// `path@0x1f40: KEYWORD: message` for binary files.
+#[derive(Debug, thiserror::Error)]
+pub struct ParseError {
+    /// The file that could not be read.
+    pub path: PathBuf,
+    /// The place in that file.
+    pub at: At,
+    /// The keyword being read, empty where none is known yet.
+    pub keyword: String,
+    /// What is wrong and, where there is something to do about it, what to do.
+    pub message: String,
+    /// Files that included this one, innermost first, with the line of the INCLUDE.
+    pub included_from: Vec<(PathBuf, usize)>,
+    /// The cause given by the operating system, if any.
+    #[source]
+    pub source: Option<std::io::Error>,
+}
+
+impl ParseError {
+    /// An error at `at` of `path` while reading `keyword` (may be empty).
+    pub fn new(path: &Path, at: At, keyword: &str, message: impl Into<String>) -> Self {
+        Self {
+            path: path.to_owned(),
+            at,
+            keyword: keyword.trim().to_owned(),
+            message: message.into(),
+            included_from: Vec::new(),
+            source: None,
+        }
+    }
+
+    /// An error of the operating system about the whole file.
+    pub fn io(path: &Path, what: &str, source: std::io::Error) -> Self {
+        let mut error = Self::new(path, At::File, "", format!("{what}: {source}"));
+        error.source = Some(source);
+        error
+    }
+}
+
+impl fmt::Display for ParseError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write_place(f, &self.path, self.at)?;
+        if !self.keyword.is_empty() {
+            write!(f, "{}: ", self.keyword)?;
+        }
+        f.write_str(&self.message)?;
+        for (path, line) in &self.included_from {
+            write!(f, " (included from {}:{line})", path.display())?;
+        }
+        Ok(())
+    }
+}
+
+fn write_place(f: &mut fmt::Formatter<'_>, path: &Path, at: At) -> fmt::Result {
+    match at {
+        At::Line { line, column } => write!(f, "{}:{line}:{column}: ", path.display()),
+        At::Byte(offset) => write!(f, "{}@{offset:#x}: ", path.display()),
+        At::File => write!(f, "{}: ", path.display()),
+    }
+}
+
+/// Something odd that did not stop a reader, with its place.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Warning {
+    /// The file.
+    pub path: PathBuf,
+    /// The place in it.
+    pub at: At,
+    /// One sentence: what is odd and what was done about it.
+    pub message: String,
+}
+
+impl fmt::Display for Warning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write_place(f, &self.path, self.at)?;
+        f.write_str(&self.message)
+    }
+}
+
+/// Collects the [`Warning`]s of one or several readers, in the order they were met.
+#[derive(Debug, Default, Clone)]
+pub struct Warnings(Vec<Warning>);
+
+impl Warnings {
+    /// Adds a warning.
+    pub fn push(&mut self, path: &Path, at: At, message: impl Into<String>) {
+        self.0.push(Warning {
+            path: path.to_owned(),
+            at,
+            message: message.into(),
+        });
+    }
+
+    /// All warnings so far.
+    pub fn iter(&self) -> impl Iterator<Item = &Warning> {
+        self.0.iter()
+    }
+
+    /// True when nothing odd was met.
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+}

@@ -1,0 +1,293 @@
+//! A case: one grid, its properties and time steps. Values come through [`Source`], on demand.
+
+use crate::model::derived::Derived;
+use crate::model::{CellField, Grid};
+
+/// Where a property's values come from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Kind {
+    /// One set of values.
+    Static,
+    /// Values for each time step.
+    Dynamic,
+    /// Computed by this program.
+    Derived,
+}
+
+/// A property that can be shown.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Property {
+    /// Keyword or name.
+    pub name: String,
+    /// Static, dynamic or derived.
+    pub kind: Kind,
+    /// Unit; empty where there is none.
+    pub unit: String,
+    /// Number of steps that have it; 0 for a static one.
+    pub steps: usize,
+}
+
+/// A report step.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Step {
+    /// The simulator's report number.
+    pub report: u32,
+    /// `YYYY-MM-DD`; empty where the file has none.
+    pub date: String,
+    /// Days since the start of the simulation.
+    pub days: f64,
+}
+
+/// A named fault and the number of faces its file gives it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct NamedFault {
+    /// Name.
+    pub name: String,
+    /// Cell faces.
+    pub faces: usize,
+}
+
+/// A local grid refinement, which is known of but not shown.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct LocalGrid {
+    /// Name.
+    pub name: String,
+    /// Cells along i, j and k.
+    pub dims: [usize; 3],
+    /// Active cells.
+    pub active: usize,
+}
+
+/// What the files say of the case beside grid and values.
+#[derive(Debug, Clone, Default)]
+pub struct About {
+    /// Base name.
+    pub name: String,
+    /// Files that were read.
+    pub files: Vec<std::path::PathBuf>,
+    /// Length unit of the grid: METRES, FEET or CM.
+    pub length_unit: String,
+    /// The six numbers of MAPAXES as read.
+    pub map_axes: Option<[f64; 6]>,
+    /// `single`, `dual porosity` or `dual permeability`.
+    pub porosity_model: String,
+    /// Non-neighbor connections of the global grid.
+    pub nnc: usize,
+    /// Local grids.
+    pub local_grids: Vec<LocalGrid>,
+    /// Faults that have a name.
+    pub named_faults: Vec<NamedFault>,
+    /// Wells by name.
+    pub wells: Vec<String>,
+    /// What was not loaded or does not fit, one sentence each.
+    pub notes: Vec<String>,
+}
+
+/// Why a property could not be had.
+#[derive(Debug, thiserror::Error)]
+pub enum CaseError {
+    /// There is no such property.
+    #[error("there is no property {name}; {known}")]
+    UnknownProperty {
+        /// What was asked for.
+        name: String,
+        /// What there is.
+        known: String,
+    },
+    /// There is no such step.
+    #[error("there is no step {asked}; {known}")]
+    UnknownStep {
+        /// What was asked for.
+        asked: String,
+        /// What there is.
+        known: String,
+    },
+    /// The property has no values at this step.
+    #[error("{name} has no values at step {step}")]
+    NotAtStep {
+        /// Property.
+        name: String,
+        /// Step.
+        step: usize,
+    },
+    /// The file could not be read.
+    #[error(transparent)]
+    Parse(#[from] strataray_parsers::ParseError),
+}
+
+/// Gives the values of file properties; implemented by [`crate::load`].
+pub trait Source: Send + Sync {
+    /// Values of the active cells; `None` where the property has none at this step.
+    ///
+    /// # Errors
+    /// When the file cannot be read.
+    fn values(&self, name: &str, step: usize) -> Result<Option<Vec<f32>>, CaseError>;
+}
+
+/// One grid, its properties and time steps.
+pub struct Case {
+    /// The grid.
+    pub grid: Grid,
+    /// What else the files say.
+    pub about: About,
+    /// Time steps in file order.
+    pub steps: Vec<Step>,
+    /// Properties that can be shown.
+    pub properties: Vec<Property>,
+    /// Gives the values.
+    pub source: Box<dyn Source>,
+}
+
+impl Case {
+    /// The property called `name`, whatever its letter case.
+    ///
+    /// # Errors
+    /// When there is none; the sentence lists what there is.
+    pub fn property(&self, name: &str) -> Result<&Property, CaseError> {
+        let found = self
+            .properties
+            .iter()
+            .find(|p| p.name.eq_ignore_ascii_case(name));
+        found.ok_or_else(|| CaseError::UnknownProperty {
+            name: name.to_owned(),
+            known: format!(
+                "this case has {}",
+                self.properties
+                    .iter()
+                    .map(|p| p.name.as_str())
+                    .collect::<Vec<_>>()
+                    .join(", ")
+            ),
+        })
+    }
+
+    /// Values of a property at a step (ignored for static ones).
+    ///
+    /// `name` may be a difference to a base step, such as `PRESSURE-PRESSURE@0`.
+    ///
+    /// # Errors
+    /// When the property or step does not exist or its file cannot be read.
+    pub fn field(&self, name: &str, step: usize) -> Result<CellField, CaseError> {
+        if let Some((now, base, base_step)) = difference(name) {
+            let base_step = self.step(base_step)?;
+            let now = self.field(now, step)?;
+            let base = self.field(base, base_step)?;
+            let pairs = now.values().iter().zip(base.values());
+            return Ok(CellField::new(pairs.map(|(a, b)| a - b).collect()));
+        }
+        let property = self.property(name)?;
+        match property.kind {
+            Kind::Dynamic if self.steps.get(step).is_none() => {
+                Err(self.unknown_step(&step.to_string()))
+            }
+            Kind::Derived => self.derived(property, step),
+            _ => self.from_source(&property.name, step),
+        }
+    }
+
+    /// The unit of a property or of a difference of one.
+    pub fn unit(&self, name: &str) -> &str {
+        let name = difference(name).map_or(name, |(now, ..)| now);
+        self.property(name).map_or("", |p| &p.unit)
+    }
+
+    /// True where the values of `name` change with the step.
+    pub fn is_dynamic(&self, name: &str) -> bool {
+        let name = difference(name).map_or(name, |(now, ..)| now);
+        self.property(name).is_ok_and(|p| p.steps > 0)
+    }
+
+    /// The step that `text` names: `first`, `last`, a number from 0, or a date.
+    ///
+    /// # Errors
+    /// When there is no such step.
+    pub fn step(&self, text: &str) -> Result<usize, CaseError> {
+        let found = match text {
+            "first" => Some(0),
+            "last" => Some(self.steps.len().saturating_sub(1)),
+            _ => match text.parse::<usize>() {
+                Ok(number) => (number < self.steps.len().max(1)).then_some(number),
+                Err(_) => self.steps.iter().position(|s| s.date == text),
+            },
+        };
+        found.ok_or_else(|| self.unknown_step(text))
+    }
+
+    fn unknown_step(&self, asked: &str) -> CaseError {
+        let known = match (self.steps.first(), self.steps.last()) {
+            (Some(a), Some(b)) => format!(
+                "this case has steps 0 to {} ({} to {})",
+                self.steps.len() - 1,
+                a.date,
+                b.date
+            ),
+            _ => "this case has no time steps".into(),
+        };
+        CaseError::UnknownStep {
+            asked: asked.to_owned(),
+            known,
+        }
+    }
+
+    fn from_source(&self, name: &str, step: usize) -> Result<CellField, CaseError> {
+        match self.source.values(name, step)? {
+            Some(values) => Ok(CellField::new(values)),
+            None => Err(CaseError::NotAtStep {
+                name: name.to_owned(),
+                step,
+            }),
+        }
+    }
+
+    fn derived(&self, property: &Property, step: usize) -> Result<CellField, CaseError> {
+        if let Some((_, derived)) = Derived::ALL.iter().find(|(n, _)| *n == property.name) {
+            return Ok(derived.field(&self.grid));
+        }
+        let values = match property.name.as_str() {
+            SOIL => {
+                let mut soil = vec![1.0; self.grid.active_cells().len()];
+                for phase in ["SWAT", "SGAS"] {
+                    if self.properties.iter().any(|p| p.name == phase) {
+                        let field = self.from_source(phase, step)?;
+                        for (s, v) in soil.iter_mut().zip(field.values()) {
+                            *s -= v;
+                        }
+                    }
+                }
+                soil
+            }
+            _ => {
+                let thickness = self.derived_thickness()?;
+                let poro = self.from_source("PORO", step)?;
+                let ntg = match self.properties.iter().any(|p| p.name == "NTG") {
+                    true => self.from_source("NTG", step)?.values().to_vec(),
+                    false => vec![1.0; thickness.len()],
+                };
+                let terms = poro.values().iter().zip(&ntg).zip(&thickness);
+                terms.map(|((p, n), t)| p * n * t).collect()
+            }
+        };
+        Ok(CellField::new(values))
+    }
+
+    /// DZ of the file where there is one, else the geometric thickness.
+    fn derived_thickness(&self) -> Result<Vec<f32>, CaseError> {
+        Ok(match self.source.values("DZ", 0)? {
+            Some(dz) => CellField::new(dz).values().to_vec(),
+            None => Derived::Thickness.field(&self.grid).values().to_vec(),
+        })
+    }
+}
+
+/// Oil saturation where the file leaves it out.
+pub const SOIL: &str = "SOIL";
+/// Porosity times net-to-gross times thickness.
+pub const POROSITY_THICKNESS: &str = "PORO_THICKNESS";
+
+/// Splits `NAME-NAME@STEP`; the base is what stands behind the last dash.
+fn difference(name: &str) -> Option<(&str, &str, &str)> {
+    let (names, base_step) = name.rsplit_once('@')?;
+    let (now, base) = names.rsplit_once('-')?;
+    Some((now, base, base_step))
+}

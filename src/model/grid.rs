@@ -1,0 +1,317 @@
+//! The corner-point grid in compact form: pillars, shared depth lists, activity.
+//!
+//! Each column has four corners, each on a pillar. The depths of a column corner, from the top of
+//! the first layer to the bottom of the last, form a list in one pool; columns around a pillar
+//! that have the same list share it. So two columns are displaced along their common edge exactly
+//! where their lists differ, and topology needs no storage.
+//!
+//! ```text
+//! corner numbers of a cell          depth list of a column corner
+//!        4----5    z = depth          touching layers: D0 D1 D2 .. Dnk        (nk+1)
+//!       /|   /|    grows downwards    with gaps:       T0 B0 T1 B1 .. Tnk Bnk (2 nk)
+//!      6----7 |
+//!      | 0--|-1    corner = di + 2 dj + 4 dk
+//!      |/   |/     (drawn upside down: 0..3 is the top face)
+//!      2----3
+//! ```
+
+use glam::{DVec2, DVec3};
+use rayon::prelude::*;
+
+use super::corner_point::Hexahedron;
+use super::ids::{ActiveIndex, CellIndex, Dims, Ijk};
+use super::spaces::MapAxes;
+
+/// A cell whose four edges along the pillars are all at most this long has no thickness
+/// and is never drawn (length units of the file).
+pub const NO_THICKNESS: f64 = 1e-6;
+
+/// Pillars whose ends lie closer in depth than this are vertical.
+const VERTICAL_PILLAR: f64 = 1e-10;
+
+/// Why a grid could not be built.
+#[derive(Debug, thiserror::Error, PartialEq)]
+pub enum ModelError {
+    /// An array has the wrong number of values.
+    #[error("{keyword}: expected {expected} values, found {found}")]
+    Length {
+        /// The array.
+        keyword: &'static str,
+        /// Values that the dimensions ask for.
+        expected: usize,
+        /// Values given.
+        found: usize,
+    },
+    /// A coordinate is infinite or not a number.
+    #[error("{keyword}: value {index} is not a finite number")]
+    NotFinite {
+        /// The array.
+        keyword: &'static str,
+        /// Position in the array, from 1.
+        index: usize,
+    },
+    /// The dimensions are zero or too large.
+    #[error("a grid of {0} x {1} x {2} cells is not supported; 1 to 2^31-1 cells are")]
+    Dimensions(usize, usize, usize),
+}
+
+/// A coordinate line: the straight line on which corners lie.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pillar {
+    /// Upper end (x, y, depth).
+    pub top: DVec3,
+    /// Lower end (x, y, depth).
+    pub bottom: DVec3,
+}
+
+impl Pillar {
+    /// Horizontal displacement per unit of depth; zero for a vertical pillar.
+    pub fn slope(&self) -> DVec2 {
+        let axis = self.bottom - self.top;
+        if axis.z.abs() < VERTICAL_PILLAR {
+            return DVec2::ZERO;
+        }
+        axis.truncate() / axis.z
+    }
+
+    /// The point of the line at `depth`, extrapolated beyond the ends.
+    pub fn at(&self, depth: f64) -> DVec3 {
+        (self.top.truncate() + self.slope() * (depth - self.top.z)).extend(depth)
+    }
+}
+
+/// A list of depths in the pool: `nk + 1` where layers touch, `2 nk` where there are gaps.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct DepthList(u32);
+
+impl DepthList {
+    const GAPPED: u32 = 1 << 31;
+
+    fn new(offset: usize, gapped: bool) -> Self {
+        Self(offset as u32 | if gapped { Self::GAPPED } else { 0 })
+    }
+
+    /// First entry in the pool.
+    pub fn offset(self) -> usize {
+        (self.0 & !Self::GAPPED) as usize
+    }
+
+    /// True when top and bottom of every layer are listed apart.
+    pub fn gapped(self) -> bool {
+        self.0 & Self::GAPPED != 0
+    }
+
+    /// Pool position of the top (`dk` 0) or bottom (`dk` 1) of layer `k`.
+    pub fn entry(self, k: usize, dk: usize) -> usize {
+        self.offset() + if self.gapped() { 2 * k + dk } else { k + dk }
+    }
+}
+
+/// The arrays from which a grid is built, as files hold them.
+///
+/// **Shape**: `coord` 6 values a pillar, `zcorn` 8 a cell (index
+/// `2i+di + 2ni(2j+dj) + 4ni*nj(2k+dk)`), `actnum` one a cell, absent = all active.
+#[derive(Debug, Clone, Copy)]
+pub struct GridInput<'a, C, Z> {
+    /// Cells along each axis.
+    pub dims: Dims,
+    /// Pillar ends: x, y, depth of the upper, then of the lower end.
+    pub coord: &'a [C],
+    /// Corner depths.
+    pub zcorn: &'a [Z],
+    /// Activity: a cell is active where this is not zero.
+    pub actnum: Option<&'a [i32]>,
+    /// Map coordinate system, `None` where coordinates are map coordinates.
+    pub map_axes: Option<MapAxes>,
+}
+
+/// A corner-point grid in its file's own coordinates (grid space).
+#[derive(Debug)]
+pub struct Grid {
+    dims: Dims,
+    pillars: Vec<Pillar>,
+    lists: Vec<DepthList>,
+    depths: Vec<f64>,
+    active_cells: Vec<CellIndex>,
+    active_rank: Vec<u32>,
+    map_axes: Option<MapAxes>,
+}
+
+const INACTIVE: u32 = u32::MAX;
+
+impl Grid {
+    /// Builds the compact form.
+    ///
+    /// # Errors
+    /// When an array has the wrong length, a coordinate is not finite, or the dimensions are
+    /// zero or over 2^31-1 cells.
+    pub fn new<C, Z>(input: &GridInput<'_, C, Z>) -> Result<Self, ModelError>
+    where
+        C: Copy + Into<f64> + Sync,
+        Z: Copy + Into<f64> + Sync,
+    {
+        let dims = input.dims;
+        check(input)?;
+        let coord: Vec<f64> = input.coord.iter().map(|&v| v.into()).collect();
+        let pillars = coord
+            .chunks_exact(6)
+            .map(|c| Pillar {
+                top: DVec3::new(c[0], c[1], c[2]),
+                bottom: DVec3::new(c[3], c[4], c[5]),
+            })
+            .collect();
+        let (lists, depths) = super::depth_lists::build(dims, input.zcorn);
+        let mut active_cells = Vec::new();
+        let mut active_rank = vec![INACTIVE; dims.cells()];
+        for (cell, rank) in active_rank.iter_mut().enumerate() {
+            if input.actnum.is_none_or(|actnum| actnum[cell] != 0) {
+                *rank = active_cells.len() as u32;
+                active_cells.push(CellIndex(cell as u32));
+            }
+        }
+        Ok(Self {
+            dims,
+            pillars,
+            lists,
+            depths,
+            active_cells,
+            active_rank,
+            map_axes: input.map_axes,
+        })
+    }
+
+    /// Cells along each axis.
+    pub fn dims(&self) -> Dims {
+        self.dims
+    }
+
+    /// All pillars, i fastest.
+    pub fn pillars(&self) -> &[Pillar] {
+        &self.pillars
+    }
+
+    /// The pillar at corner `corner` (`di + 2 dj`) of column (`i`, `j`).
+    pub fn pillar(&self, i: usize, j: usize, corner: usize) -> &Pillar {
+        &self.pillars[(i + (corner & 1)) + (self.dims.ni + 1) * (j + (corner >> 1 & 1))]
+    }
+
+    /// The four depth lists of a column (`i + ni * j`), by corner `di + 2 dj`.
+    pub fn column_lists(&self, column: usize) -> [DepthList; 4] {
+        let at = 4 * column;
+        [
+            self.lists[at],
+            self.lists[at + 1],
+            self.lists[at + 2],
+            self.lists[at + 3],
+        ]
+    }
+
+    /// The pool of all depth lists.
+    pub fn depths(&self) -> &[f64] {
+        &self.depths
+    }
+
+    /// Depth-pool position of corner `corner` (`di + 2 dj + 4 dk`) of a cell.
+    pub fn corner_entry(&self, ijk: Ijk, corner: usize) -> usize {
+        let column = ijk.i + self.dims.ni * ijk.j;
+        self.lists[4 * column + (corner & 3)].entry(ijk.k, corner >> 2)
+    }
+
+    /// Depth of corner `corner` (`di + 2 dj + 4 dk`) of a cell.
+    pub fn corner_depth(&self, ijk: Ijk, corner: usize) -> f64 {
+        self.depths[self.corner_entry(ijk, corner)]
+    }
+
+    /// The hexahedron of a cell in grid space.
+    pub fn hexahedron(&self, ijk: Ijk) -> Hexahedron {
+        Hexahedron(std::array::from_fn(|corner| {
+            self.pillar(ijk.i, ijk.j, corner & 3)
+                .at(self.corner_depth(ijk, corner))
+        }))
+    }
+
+    /// The active cells in natural order.
+    pub fn active_cells(&self) -> &[CellIndex] {
+        &self.active_cells
+    }
+
+    /// Rank of a cell among the active ones, `None` where it is inactive.
+    pub fn active_index(&self, cell: CellIndex) -> Option<ActiveIndex> {
+        let rank = self.active_rank[cell.0 as usize];
+        (rank != INACTIVE).then_some(ActiveIndex(rank))
+    }
+
+    /// True when the cell is active.
+    pub fn is_active(&self, ijk: Ijk) -> bool {
+        self.active_index(self.dims.cell(ijk)).is_some()
+    }
+
+    /// True when at least one of the four edges along the pillars has a length.
+    pub fn has_thickness(&self, ijk: Ijk) -> bool {
+        (0..4).any(|c| {
+            (self.corner_depth(ijk, c + 4) - self.corner_depth(ijk, c)).abs() > NO_THICKNESS
+        })
+    }
+
+    /// Map axes, `None` where grid coordinates are map coordinates.
+    pub fn map_axes(&self) -> Option<MapAxes> {
+        self.map_axes
+    }
+
+    /// Smallest and largest corner of the active cells in grid space; `None` without any.
+    pub fn bounds(&self) -> Option<[DVec3; 2]> {
+        self.active_cells
+            .par_iter()
+            .map(|&cell| self.hexahedron(self.dims.ijk(cell)).bounds())
+            .reduce_with(|a, b| [a[0].min(b[0]), a[1].max(b[1])])
+    }
+}
+
+fn check<C, Z>(input: &GridInput<'_, C, Z>) -> Result<(), ModelError>
+where
+    C: Copy + Into<f64> + Sync,
+    Z: Copy + Into<f64> + Sync,
+{
+    let Dims { ni, nj, nk } = input.dims;
+    let cells = ni.checked_mul(nj).and_then(|n| n.checked_mul(nk));
+    if !cells.is_some_and(|n| (1..1 << 31).contains(&n)) {
+        return Err(ModelError::Dimensions(ni, nj, nk));
+    }
+    let lengths = [
+        ("COORD", 6 * input.dims.pillars(), input.coord.len()),
+        ("ZCORN", 8 * input.dims.cells(), input.zcorn.len()),
+        (
+            "ACTNUM",
+            input.dims.cells(),
+            input.actnum.map_or(input.dims.cells(), <[_]>::len),
+        ),
+    ];
+    for (keyword, expected, found) in lengths {
+        if expected != found {
+            return Err(ModelError::Length {
+                keyword,
+                expected,
+                found,
+            });
+        }
+    }
+    finite("COORD", input.coord)?;
+    finite("ZCORN", input.zcorn)
+}
+
+fn finite<T: Copy + Into<f64> + Sync>(
+    keyword: &'static str,
+    values: &[T],
+) -> Result<(), ModelError> {
+    match values.par_iter().position_first(|&v| !v.into().is_finite()) {
+        None => Ok(()),
+        Some(at) => Err(ModelError::NotFinite {
+            keyword,
+            index: at + 1,
+        }),
+    }
+}
+
+pub(super) fn list(offset: usize, gapped: bool) -> DepthList {
+    DepthList::new(offset, gapped)
+}

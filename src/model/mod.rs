@@ -1,0 +1,16 @@
+//! The reservoir in f64: corner-point geometry, topology and fields. No files, no GPU.
+
+pub mod corner_point;
+mod depth_lists;
+pub mod derived;
+pub mod fields;
+pub mod grid;
+pub mod ids;
+pub mod spaces;
+pub mod topology;
+
+pub use corner_point::Hexahedron;
+pub use fields::{CellField, Statistics, VertexField};
+pub use grid::{Grid, GridInput, ModelError, Pillar};
+pub use ids::{ActiveIndex, CellIndex, Dims, Ijk};
+pub use spaces::{MapAxes, Spaces};

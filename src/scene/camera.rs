@@ -1,0 +1,81 @@
+//! A perspective camera in world space.
+
+use glam::{DVec2, DVec3};
+
+/// A pinhole camera with an orthonormal frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Camera {
+    /// Position in world space.
+    pub eye: DVec3,
+    /// Viewing direction, unit length.
+    pub forward: DVec3,
+    /// To the right in the picture, unit length.
+    pub right: DVec3,
+    /// Up in the picture, unit length.
+    pub up: DVec3,
+    /// Tangent of half the vertical field of view.
+    pub tan_half_fovy: f64,
+}
+
+impl Camera {
+    /// A camera at `eye` that looks at `target`; `None` where the three do not span a frame.
+    pub fn look_at(eye: DVec3, target: DVec3, up: DVec3, fovy_radians: f64) -> Option<Self> {
+        let forward = (target - eye).try_normalize()?;
+        let right = forward.cross(up).try_normalize()?;
+        Some(Self {
+            eye,
+            forward,
+            right,
+            up: right.cross(forward),
+            tan_half_fovy: (0.5 * fovy_radians).tan(),
+        })
+    }
+
+    /// A camera that frames a box of world space from a direction.
+    ///
+    /// `azimuth` is the compass direction of the camera as seen from the box (0 north, 90 east),
+    /// `aspect` width over height; a `zoom` above 1 comes closer.
+    pub fn framing(
+        bounds: [DVec3; 2],
+        azimuth_radians: f64,
+        elevation_radians: f64,
+        zoom: f64,
+        aspect: f64,
+    ) -> Option<Self> {
+        let fovy = 30f64.to_radians();
+        let center = 0.5 * (bounds[0] + bounds[1]);
+        let (sin_a, cos_a) = azimuth_radians.sin_cos();
+        let (sin_e, cos_e) = elevation_radians.sin_cos();
+        let towards_eye = DVec3::new(sin_a * cos_e, cos_a * cos_e, sin_e);
+        // Straight above or below, north is up.
+        let up = if cos_e.abs() < 1e-6 {
+            DVec3::Y
+        } else {
+            DVec3::Z
+        };
+        let mut camera = Self::look_at(center + towards_eye, center, up, fovy)?;
+        let tan = DVec2::new(camera.tan_half_fovy * aspect, camera.tan_half_fovy) / 1.08;
+        // The nearest distance at which all corners of the box are inside the picture.
+        let distance = (0..8)
+            .map(|c| {
+                let pick = |axis: usize| bounds[c >> axis & 1][axis] - center[axis];
+                let corner = DVec3::new(pick(0), pick(1), pick(2));
+                let (x, y) = (corner.dot(camera.right).abs(), corner.dot(camera.up).abs());
+                (x / tan.x).max(y / tan.y) - corner.dot(camera.forward)
+            })
+            .fold(0.0, f64::max);
+        camera.eye = center + towards_eye * (distance.max(1e-9) / zoom);
+        Some(camera)
+    }
+
+    /// Picture position (x right, y down, 0..1) of a world point in front of the camera.
+    pub fn project(&self, point: DVec3, aspect: f64) -> Option<DVec2> {
+        let v = point - self.eye;
+        let depth = v.dot(self.forward);
+        (depth > 1e-9).then(|| {
+            let x = v.dot(self.right) / (depth * self.tan_half_fovy * aspect);
+            let y = v.dot(self.up) / (depth * self.tan_half_fovy);
+            DVec2::new(0.5 + 0.5 * x, 0.5 - 0.5 * y)
+        })
+    }
+}

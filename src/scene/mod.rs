@@ -1,0 +1,246 @@
+//! The scene file: what to look at and how, as JSON. Every field has a default.
+
+pub mod camera;
+pub mod resolve;
+
+use serde::{Deserialize, Serialize};
+
+pub use camera::Camera;
+pub use resolve::{SceneError, View, resolve};
+
+/// A scene as users write it. Unknown fields are errors; absent ones have defaults.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Scene {
+    /// Version of the format.
+    pub version: u32,
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+    /// `#rrggbb`.
+    pub background: String,
+    /// Where to look from.
+    pub camera: CameraSpec,
+    /// Vertical exaggeration; chosen from the model's shape where absent.
+    pub vertical_exaggeration: Option<f64>,
+    /// Property to show; chosen where absent.
+    pub property: Option<String>,
+    /// Time step: a number, a date, `first` or `last`.
+    pub step: StepSpec,
+    /// How values vary inside a cell.
+    pub interpolation: Interpolation,
+    /// Values at both ends of the color map; the property's own range where absent.
+    pub range: Option<[f64; 2]>,
+    /// Color and opacity.
+    pub transfer: TransferSpec,
+    /// Ray-casting strategy by name.
+    pub strategy: String,
+    /// Distance of samples in world space; an eighth of the smallest mean cell edge where absent.
+    pub sampling_step: Option<f64>,
+    /// Transmittance at which a ray ends; 0 turns early termination off.
+    pub early_termination: f64,
+    /// Settings of the resampled-grid strategy.
+    pub srg: Option<serde_json::Value>,
+    /// Occlusion and lights.
+    pub lighting: Option<serde_json::Value>,
+    /// Which cells are drawn.
+    pub filter: Filter,
+    /// Clip planes.
+    pub clip: Vec<serde_json::Value>,
+    /// What is drawn beside the volume.
+    pub show: Show,
+}
+
+impl Default for Scene {
+    fn default() -> Self {
+        Self {
+            version: 1,
+            size: [1000, 1000],
+            background: "#ffffff".into(),
+            camera: CameraSpec::default(),
+            vertical_exaggeration: None,
+            property: None,
+            step: StepSpec::Name("last".into()),
+            interpolation: Interpolation::Vertex,
+            range: None,
+            transfer: TransferSpec::default(),
+            strategy: "plts".into(),
+            sampling_step: None,
+            early_termination: 0.01,
+            srg: None,
+            lighting: None,
+            filter: Filter::default(),
+            clip: Vec::new(),
+            show: Show::default(),
+        }
+    }
+}
+
+/// A camera in world coordinates, or one that frames the model.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum CameraSpec {
+    /// Explicit position.
+    Explicit(ExplicitCamera),
+    /// Direction only; distance frames the model.
+    Framing(FramingCamera),
+}
+
+/// A camera placed in world coordinates.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ExplicitCamera {
+    /// Position.
+    pub eye: [f64; 3],
+    /// Point in the middle of the picture.
+    pub target: [f64; 3],
+    /// Direction that is up in the picture.
+    #[serde(default = "z_up")]
+    pub up: [f64; 3],
+    /// Vertical field of view.
+    #[serde(default = "default_fovy")]
+    pub fovy_degrees: f64,
+}
+
+/// A camera that looks at the middle of the model from a direction.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FramingCamera {
+    /// Compass direction in which the camera stands as seen from the model: 0 north, 90 east.
+    pub azimuth_degrees: f64,
+    /// Height above the horizon.
+    pub elevation_degrees: f64,
+    /// Above 1 comes closer.
+    #[serde(default = "one")]
+    pub zoom: f64,
+}
+
+impl Default for CameraSpec {
+    fn default() -> Self {
+        Self::Framing(FramingCamera {
+            azimuth_degrees: 205.0,
+            elevation_degrees: 35.0,
+            zoom: 1.0,
+        })
+    }
+}
+
+fn z_up() -> [f64; 3] {
+    [0.0, 0.0, 1.0]
+}
+
+fn default_fovy() -> f64 {
+    30.0
+}
+
+fn one() -> f64 {
+    1.0
+}
+
+/// A time step by number, date or name.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum StepSpec {
+    /// Position in file order, from 0.
+    Index(usize),
+    /// `first`, `last`, a date `2001-06-30`, or a number as text.
+    Name(String),
+}
+
+/// How values vary inside a cell.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
+#[serde(rename_all = "lowercase")]
+pub enum Interpolation {
+    /// The cell's own value everywhere in it.
+    Cell,
+    /// Trilinear between averages at the vertices.
+    Vertex,
+}
+
+/// Color map and opacity curve.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct TransferSpec {
+    /// A named map or a list of points.
+    pub color: ColorSpec,
+    /// Points (position 0..1, opacity 0..1); a curve rising with the value where absent.
+    pub opacity: Option<Vec<[f64; 2]>>,
+    /// Length to which opacity refers; the mean cell edge in world space where absent.
+    pub reference_length: Option<f64>,
+}
+
+impl Default for TransferSpec {
+    fn default() -> Self {
+        Self {
+            color: ColorSpec::Name("turbo".into()),
+            opacity: None,
+            reference_length: None,
+        }
+    }
+}
+
+/// A color map by name or by points (position 0..1, `#rrggbb`).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum ColorSpec {
+    /// One of the presets.
+    Name(String),
+    /// Position and `#rrggbb`.
+    Points(Vec<(f64, String)>),
+}
+
+/// Which active cells are drawn; ranges are one-based and inclusive.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Filter {
+    /// Columns along i.
+    pub i: Option<[usize; 2]>,
+    /// Columns along j.
+    pub j: Option<[usize; 2]>,
+    /// Layers.
+    pub k: Option<[usize; 2]>,
+    /// Property ranges, all of which must hold.
+    pub properties: Vec<PropertyFilter>,
+}
+
+/// Keeps the cells whose value lies in a range.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PropertyFilter {
+    /// Property, of the scene's step.
+    pub name: String,
+    /// Smallest value kept.
+    pub min: f64,
+    /// Largest value kept.
+    pub max: f64,
+}
+
+/// What is drawn beside the volume.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Show {
+    /// Inactive cells: `hidden` or `ghost`.
+    pub inactive: String,
+    /// Fault surfaces.
+    pub faults: bool,
+    /// Wells.
+    pub wells: bool,
+    /// Cell edges.
+    pub cell_edges: bool,
+    /// Box around the model with orientation axes.
+    pub r#box: bool,
+    /// Legend and title.
+    pub legend: bool,
+}
+
+impl Default for Show {
+    fn default() -> Self {
+        Self {
+            inactive: "hidden".into(),
+            faults: false,
+            wells: true,
+            cell_edges: false,
+            r#box: true,
+            legend: true,
+        }
+    }
+}

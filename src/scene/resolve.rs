@@ -1,0 +1,387 @@
+//! A scene against a case: every default filled in, every value checked.
+
+use glam::DVec3;
+
+use super::{Camera, CameraSpec, ColorSpec, Filter, Interpolation, Scene, StepSpec};
+use crate::case::{Case, CaseError};
+use crate::model::{CellField, Ijk, Spaces};
+use crate::strategies::StrategyKind;
+use crate::transfer::{TransferFunction, presets};
+
+/// Why a scene cannot be shown.
+#[derive(Debug, thiserror::Error)]
+pub enum SceneError {
+    /// A field has a value that is not allowed.
+    #[error("scene: {field}: {problem}")]
+    Field {
+        /// Name of the field, dotted.
+        field: &'static str,
+        /// What is wrong with it.
+        problem: String,
+    },
+    /// The case cannot give what the scene asks for.
+    #[error(transparent)]
+    Case(#[from] CaseError),
+    /// No active cell has a thickness.
+    #[error("the case has no active cell to show")]
+    Empty,
+}
+
+fn wrong(field: &'static str, problem: impl Into<String>) -> SceneError {
+    SceneError::Field {
+        field,
+        problem: problem.into(),
+    }
+}
+
+/// All that a renderer needs beside the grid: what every strategy and the reference integrate.
+///
+/// **Units**: lengths in world space, the grid's length unit.
+#[derive(Debug, Clone)]
+pub struct View {
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+    /// Background in sRGB, 0..1.
+    pub background: [f64; 3],
+    /// The camera in world space.
+    pub camera: Camera,
+    /// Grid to world and back.
+    pub spaces: Spaces,
+    /// Factor on depth in world space.
+    pub vertical_exaggeration: f64,
+    /// Box of the active cells in world space.
+    pub world_bounds: [DVec3; 2],
+    /// The strategy asked for.
+    pub strategy: StrategyKind,
+    /// Name of the property shown.
+    pub property: String,
+    /// Step shown.
+    pub step: usize,
+    /// Its values.
+    pub field: CellField,
+    /// How values vary inside a cell.
+    pub interpolation: Interpolation,
+    /// Value to color and extinction.
+    pub transfer: TransferFunction,
+    /// Samples lie at distances `(n + 1/2) * sampling_step` from the eye.
+    pub sampling_step: f64,
+    /// Transmittance at which a ray ends.
+    pub early_termination: f64,
+    /// By active index: true where the cell is drawn (has thickness and a value, passes the filter).
+    pub drawn: Vec<bool>,
+    /// Draw the box and axes.
+    pub show_box: bool,
+    /// Draw legend and title.
+    pub show_legend: bool,
+}
+
+/// Fills in every default of `scene` for `case` and checks every value.
+///
+/// # Errors
+/// When a value is out of its range, or asks for what the case or this version does not have.
+pub fn resolve(scene: &Scene, case: &Case) -> Result<View, SceneError> {
+    refuse_later_work(scene)?;
+    let grid_bounds = case.grid.bounds().ok_or(SceneError::Empty)?;
+    let exaggeration = match scene.vertical_exaggeration {
+        Some(v) => positive("vertical_exaggeration", v)?,
+        None => automatic_exaggeration(grid_bounds),
+    };
+    let spaces = Spaces::new(case.grid.map_axes(), exaggeration);
+    let world_bounds = world_bounds(&spaces, grid_bounds);
+    let edges = mean_world_edges(case, exaggeration);
+    let property = match &scene.property {
+        Some(name) => name.clone(),
+        None => default_property(case),
+    };
+    let step = step(case, &scene.step, case.is_dynamic(&property))?;
+    let field = case.field(&property, step)?;
+    let range = range(scene, &field)?;
+    let drawn = drawn(case, &field, &scene.filter, step)?;
+    let strategy = StrategyKind::from_name(&scene.strategy)
+        .ok_or_else(|| wrong("strategy", StrategyKind::refusal(&scene.strategy)))?;
+    if !(0.0..1.0).contains(&scene.early_termination) {
+        return Err(wrong("early_termination", "must be at least 0 and below 1"));
+    }
+    let size = scene.size;
+    if size.iter().any(|n| !(1..=16384).contains(n)) {
+        return Err(wrong("size", "must be 1 to 16384 pixels each way"));
+    }
+    Ok(View {
+        size,
+        background: presets::parse_color(&scene.background)
+            .ok_or_else(|| wrong("background", "must be a color like #ffffff"))?,
+        camera: camera(scene, world_bounds)?,
+        spaces,
+        vertical_exaggeration: exaggeration,
+        world_bounds,
+        strategy,
+        step,
+        transfer: transfer(scene, range, edges)?,
+        sampling_step: match scene.sampling_step {
+            Some(v) => positive("sampling_step", v)?,
+            None => edges.min_element() / 8.0,
+        },
+        early_termination: scene.early_termination,
+        interpolation: scene.interpolation,
+        property,
+        field,
+        drawn,
+        show_box: scene.show.r#box,
+        show_legend: scene.show.legend,
+    })
+}
+
+fn refuse_later_work(scene: &Scene) -> Result<(), SceneError> {
+    if scene.version != 1 {
+        return Err(wrong(
+            "version",
+            format!("{} is not known; this is version 1", scene.version),
+        ));
+    }
+    let later = [
+        (
+            "lighting",
+            scene.lighting.is_some(),
+            "lighting is not supported yet; leave it out",
+        ),
+        (
+            "clip",
+            !scene.clip.is_empty(),
+            "clip planes are not supported yet; leave them out",
+        ),
+        (
+            "srg",
+            scene.srg.is_some(),
+            "the resampled-grid strategy is not supported yet; leave its settings out",
+        ),
+        (
+            "show.inactive",
+            scene.show.inactive != "hidden",
+            "only \"hidden\" is supported yet",
+        ),
+        (
+            "show.faults",
+            scene.show.faults,
+            "fault surfaces are not supported yet; use false",
+        ),
+        (
+            "show.cell_edges",
+            scene.show.cell_edges,
+            "cell edges are not supported yet; use false",
+        ),
+    ];
+    match later.into_iter().find(|l| l.1) {
+        Some((field, _, problem)) => Err(wrong(field, problem)),
+        None => Ok(()),
+    }
+}
+
+fn positive(field: &'static str, value: f64) -> Result<f64, SceneError> {
+    if value.is_finite() && value > 0.0 {
+        Ok(value)
+    } else {
+        Err(wrong(field, format!("{value} must be above 0")))
+    }
+}
+
+/// Makes the model a quarter as high as it is wide, in the steps that engineers use.
+fn automatic_exaggeration(bounds: [DVec3; 2]) -> f64 {
+    let size = bounds[1] - bounds[0];
+    let wanted = 0.25 * size.x.max(size.y) / size.z.max(1e-9);
+    let steps = [1.0, 2.0, 3.0, 5.0, 10.0, 15.0, 20.0, 30.0, 50.0];
+    steps
+        .into_iter()
+        .rev()
+        .find(|&s| s <= wanted)
+        .unwrap_or(1.0)
+}
+
+fn world_bounds(spaces: &Spaces, [low, high]: [DVec3; 2]) -> [DVec3; 2] {
+    let corners = (0..8).map(|c| {
+        let pick = |axis: usize| {
+            if c >> axis & 1 == 1 {
+                high[axis]
+            } else {
+                low[axis]
+            }
+        };
+        spaces
+            .world_from_grid
+            .transform_point3(DVec3::new(pick(0), pick(1), pick(2)))
+    });
+    let start = [DVec3::INFINITY, DVec3::NEG_INFINITY];
+    corners.fold(start, |[a, b], p| [a.min(p), b.max(p)])
+}
+
+/// Mean edge lengths of the drawn cells along s, t and r, in world space.
+fn mean_world_edges(case: &Case, exaggeration: f64) -> DVec3 {
+    let grid = &case.grid;
+    let cells = grid.active_cells().iter().map(|&c| grid.dims().ijk(c));
+    let (mut sum, mut count) = (DVec3::ZERO, 0.0f64);
+    for ijk in cells.filter(|&ijk| grid.has_thickness(ijk)) {
+        let mut hexahedron = grid.hexahedron(ijk);
+        for corner in &mut hexahedron.0 {
+            corner.z *= exaggeration;
+        }
+        sum += hexahedron.mean_edges();
+        count += 1.0;
+    }
+    (sum / count.max(1.0)).max(DVec3::splat(1e-6))
+}
+
+fn default_property(case: &Case) -> String {
+    let has = |name: &&str| case.properties.iter().any(|p| p.name == **name);
+    ["SOIL", "SWAT", "PRESSURE", "PORO"]
+        .iter()
+        .find(|n| has(n))
+        .map_or_else(|| "DEPTH".to_owned(), |n| (*n).to_owned())
+}
+
+fn step(case: &Case, spec: &StepSpec, dynamic: bool) -> Result<usize, SceneError> {
+    if !dynamic {
+        return Ok(0);
+    }
+    Ok(match spec {
+        StepSpec::Index(n) => case.step(&n.to_string())?,
+        StepSpec::Name(name) => case.step(name)?,
+    })
+}
+
+fn range(scene: &Scene, field: &CellField) -> Result<[f64; 2], SceneError> {
+    match (scene.range, field.statistics()) {
+        (Some([a, b]), _) if a.is_finite() && b.is_finite() && a < b => Ok([a, b]),
+        (Some(_), _) => Err(wrong("range", "must be two numbers, the smaller first")),
+        (None, Some(s)) => Ok([s.min, s.max]),
+        (None, None) => Ok([0.0, 1.0]),
+    }
+}
+
+fn drawn(
+    case: &Case,
+    field: &CellField,
+    filter: &Filter,
+    step: usize,
+) -> Result<Vec<bool>, SceneError> {
+    let grid = &case.grid;
+    let dims = grid.dims();
+    for (name, range, n) in [
+        ("filter.i", filter.i, dims.ni),
+        ("filter.j", filter.j, dims.nj),
+        ("filter.k", filter.k, dims.nk),
+    ] {
+        if range.is_some_and(|[a, b]| a < 1 || a > b || b > n) {
+            return Err(wrong(
+                name,
+                format!("must be two numbers from 1 to {n}, the smaller first"),
+            ));
+        }
+    }
+    let within = |range: Option<[usize; 2]>, at: usize| {
+        range.is_none_or(|[a, b]| (a..=b).contains(&(at + 1)))
+    };
+    let passes =
+        |ijk: Ijk| within(filter.i, ijk.i) && within(filter.j, ijk.j) && within(filter.k, ijk.k);
+    let mut drawn: Vec<bool> = grid
+        .active_cells()
+        .iter()
+        .zip(field.values())
+        .map(|(&cell, value)| {
+            let ijk = dims.ijk(cell);
+            !value.is_nan() && passes(ijk) && grid.has_thickness(ijk)
+        })
+        .collect();
+    for property in &filter.properties {
+        let values = case.field(&property.name, step)?;
+        for (d, &v) in drawn.iter_mut().zip(values.values()) {
+            *d &= (property.min..=property.max).contains(&f64::from(v));
+        }
+    }
+    Ok(drawn)
+}
+
+fn camera(scene: &Scene, bounds: [DVec3; 2]) -> Result<Camera, SceneError> {
+    let aspect = f64::from(scene.size[0]) / f64::from(scene.size[1]);
+    let camera = match &scene.camera {
+        CameraSpec::Explicit(c) => {
+            if !(c.fovy_degrees > 0.0 && c.fovy_degrees < 180.0) {
+                return Err(wrong("camera.fovy_degrees", "must be between 0 and 180"));
+            }
+            let [eye, target, up] = [c.eye, c.target, c.up].map(DVec3::from_array);
+            Camera::look_at(eye, target, up, c.fovy_degrees.to_radians())
+        }
+        CameraSpec::Framing(c) => {
+            let (azimuth, elevation) = (
+                c.azimuth_degrees.to_radians(),
+                c.elevation_degrees.to_radians(),
+            );
+            Camera::framing(
+                bounds,
+                azimuth,
+                elevation,
+                positive("camera.zoom", c.zoom)?,
+                aspect,
+            )
+        }
+    };
+    camera
+        .filter(|c| c.eye.is_finite() && c.forward.is_finite() && c.right.is_finite())
+        .ok_or_else(|| {
+            wrong(
+                "camera",
+                "eye, target and up must be three finite points that span a view",
+            )
+        })
+}
+
+fn transfer(scene: &Scene, range: [f64; 2], edges: DVec3) -> Result<TransferFunction, SceneError> {
+    let spec = &scene.transfer;
+    let color = match &spec.color {
+        ColorSpec::Name(name) => presets::color_map(name).ok_or_else(|| {
+            wrong(
+                "transfer.color",
+                format!(
+                    "{name} is not known; there are {}",
+                    presets::NAMES.join(", ")
+                ),
+            )
+        })?,
+        ColorSpec::Points(points) => points
+            .iter()
+            .map(|(at, hex)| presets::parse_color(hex).map(|rgb| (*at, rgb)))
+            .collect::<Option<Vec<_>>>()
+            .ok_or_else(|| wrong("transfer.color", "colors must look like #rrggbb"))?,
+    };
+    let opacity: Vec<(f64, f64)> = match &spec.opacity {
+        Some(points) => points.iter().map(|p| (p[0], p[1])).collect(),
+        None => vec![(0.0, 0.02), (0.5, 0.1), (1.0, 0.5)],
+    };
+    let rising = |positions: Vec<f64>| {
+        !positions.is_empty()
+            && positions.iter().all(|p| (0.0..=1.0).contains(p))
+            && positions.is_sorted()
+    };
+    if !rising(color.iter().map(|c| c.0).collect()) {
+        return Err(wrong(
+            "transfer.color",
+            "needs positions that rise from 0 to 1",
+        ));
+    }
+    if !rising(opacity.iter().map(|c| c.0).collect())
+        || !opacity.iter().all(|o| (0.0..=1.0).contains(&o.1))
+    {
+        return Err(wrong(
+            "transfer.opacity",
+            "needs rising positions and opacities, both from 0 to 1",
+        ));
+    }
+    let reference_length = match spec.reference_length {
+        Some(v) => positive("transfer.reference_length", v)?,
+        None => edges.element_sum() / 3.0,
+    };
+    Ok(TransferFunction {
+        color,
+        opacity,
+        range,
+        reference_length,
+    })
+}

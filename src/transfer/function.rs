@@ -1,0 +1,86 @@
+//! The transfer function: piecewise linear color and opacity over a property's range.
+
+/// Opacities are kept below one: full opacity would mean an infinite extinction.
+pub const MAX_OPACITY: f64 = 1.0 - 1e-6;
+
+/// Piecewise linear color and opacity over positions 0..1 of a property's range.
+///
+/// **Invariants**: both curves have at least one point; positions do not decrease.
+/// **Units**: `reference_length` in world-space length units; opacity is per that length.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TransferFunction {
+    /// Position and color in sRGB, 0..1.
+    pub color: Vec<(f64, [f64; 3])>,
+    /// Position and opacity, 0..1.
+    pub opacity: Vec<(f64, f64)>,
+    /// Values at positions 0 and 1.
+    pub range: [f64; 2],
+    /// Length to which an opacity refers.
+    pub reference_length: f64,
+}
+
+impl TransferFunction {
+    /// Position of a value in the range, clamped to 0..1. An empty range puts all at 0.
+    pub fn position(&self, value: f64) -> f64 {
+        let [low, high] = self.range;
+        if high > low {
+            ((value - low) / (high - low)).clamp(0.0, 1.0)
+        } else {
+            0.0
+        }
+    }
+
+    /// Color at a position in sRGB; interpolation happens in sRGB, as color maps are published.
+    pub fn srgb(&self, position: f64) -> [f64; 3] {
+        let (a, b, f) = segment(&self.color, position);
+        std::array::from_fn(|c| a[c] + (b[c] - a[c]) * f)
+    }
+
+    /// Color at a position in linear light, in which pictures are composited.
+    pub fn linear_rgb(&self, position: f64) -> [f64; 3] {
+        self.srgb(position).map(linear_from_srgb)
+    }
+
+    /// Opacity per reference length at a position.
+    pub fn opacity(&self, position: f64) -> f64 {
+        let (a, b, f) = segment(&self.opacity, position);
+        a + (b - a) * f
+    }
+
+    /// Extinction at a position, per world-space length: `-ln(1 - alpha) / L`.
+    pub fn extinction(&self, position: f64) -> f64 {
+        -(-self.opacity(position).min(MAX_OPACITY)).ln_1p() / self.reference_length
+    }
+}
+
+/// The two points around `position` and the fraction between them.
+fn segment<T: Copy>(curve: &[(f64, T)], position: f64) -> (T, T, f64) {
+    let after = curve.partition_point(|point| point.0 <= position);
+    let (low, high) = (after.saturating_sub(1), after.min(curve.len() - 1));
+    let (a, b) = (curve[low], curve[high]);
+    let width = b.0 - a.0;
+    let fraction = if width > 0.0 {
+        (position - a.0) / width
+    } else {
+        0.0
+    };
+    (a.1, b.1, fraction.clamp(0.0, 1.0))
+}
+
+/// Linear light from one sRGB channel (IEC 61966-2-1).
+pub fn linear_from_srgb(v: f64) -> f64 {
+    if v <= 0.040_45 {
+        v / 12.92
+    } else {
+        ((v + 0.055) / 1.055).powf(2.4)
+    }
+}
+
+/// One sRGB channel from linear light (IEC 61966-2-1).
+pub fn srgb_from_linear(v: f64) -> f64 {
+    if v <= 0.003_130_8 {
+        v * 12.92
+    } else {
+        1.055 * v.powf(1.0 / 2.4) - 0.055
+    }
+}

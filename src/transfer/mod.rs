@@ -1,0 +1,6 @@
+//! From a value to color and extinction.
+
+pub mod function;
+pub mod presets;
+
+pub use function::TransferFunction;
