@@ -1,0 +1,142 @@
+// PLTS: point location with topological search (campagnolo-2021, 4.1.3).
+//
+// One thread = one pixel; dispatch covers the tile. Reads the grid and the transfer table, writes
+// the target and the counters. The first sample of a ray is located through the acceleration grid;
+// each next one by Newton's method in the same cell, then in the neighbor across the face that the
+// result overshoots most, and through the acceleration grid again where the cells do not join.
+// Departure from the paper: the start value is extrapolated with the last inverse Jacobian, so that
+// one iteration usually does, and empty bins are skipped instead of rasterizing the hull.
+#import locate
+#import transfer
+
+const TOPOLOGICAL_LIMIT: u32 = 6u;
+// Steps below this end the iteration while marching; the error left is of its square.
+const MARCH_ENOUGH: f32 = 2e-4;
+
+@compute @workgroup_size(8, 8)
+fn main(@builtin(global_invocation_id) id: vec3u) {
+    if any(id.xy >= tile.size) {
+        return;
+    }
+    let pixel = tile.origin + id.xy;
+    let ray = ray_of(pixel);
+    var sum = Accumulated(vec3f(0.0), 1.0);
+    var cell: Cell;
+    var s: Solution;
+    var have_cell = false;
+    var samples = 0u;
+    var iterations = 0u;
+    var topological_steps = 0u;
+    var fallbacks = 0u;
+    var n = 0.0;
+    while n < ray.count && sum.transmittance >= frame.early_termination {
+        let point = ray.base + n * ray.advance;
+        var found = false;
+        if have_cell {
+            let ahead = vec3f(dot(s.inverse_u, ray.advance), dot(s.inverse_v, ray.advance),
+                dot(s.inverse_w, ray.advance));
+            var start = clamp(s.uvw + ahead, vec3f(-1.0), vec3f(2.0));
+            for (var attempt = 0u; attempt <= TOPOLOGICAL_LIMIT; attempt++) {
+                s = solve(cell, point - cell.corner, start, MARCH_ENOUGH);
+                iterations += s.iterations;
+                if s.inside {
+                    found = true;
+                    break;
+                }
+                var next = s.uvw;
+                if attempt == TOPOLOGICAL_LIMIT || !step_to_neighbor(&cell, &next) {
+                    break;
+                }
+                topological_steps += 1u;
+                start = next;
+            }
+        }
+        if !found {
+            fallbacks += 1u;
+            let location = locate(point, vec3f(0.0), ray.advance, frame.interpolation);
+            iterations += location.iterations;
+            if !location.found {
+                have_cell = false;
+                n += location.skip;
+                continue;
+            }
+            cell = location.cell;
+            // One more step for the inverse Jacobian at the sample.
+            s = solve(cell, point - cell.corner, location.uvw, 1.0);
+            s.uvw = location.uvw;
+        }
+        have_cell = true;
+        samples += 1u;
+        sum = accumulate(sum, evaluate(cell, clamp(s.uvw, vec3f(0.0), vec3f(1.0))).w);
+        n += 1.0;
+    }
+    textureStore(target_image, vec2i(pixel), vec4f(sum.color, 1.0 - sum.transmittance));
+    count(0u, samples);
+    count(1u, iterations);
+    count(2u, topological_steps);
+    count(3u, fallbacks);
+}
+
+// Loads the drawn cell that shares the whole face which `uvw` overshoots most; `uvw` becomes a start
+// in it. False where the cells do not join: hull, fault, gap, a cell that is not drawn.
+fn step_to_neighbor(cell: ptr<function, Cell>, uvw: ptr<function, vec3f>) -> bool {
+    let q = *uvw;
+    let excess = max(-q, q - vec3f(1.0));
+    let axis = select(select(2u, 1u, excess.y >= excess.z), 0u, excess.x >= max(excess.y, excess.z));
+    let plus = q[axis] > 0.5;
+    let i = (*cell).column % grid.ni;
+    let j = (*cell).column / grid.ni;
+    let layer = (*cell).layer;
+    var column = (*cell).column;
+    var next_layer = layer;
+    if axis == 0u {
+        if (plus && i + 1u >= grid.ni) || (!plus && i == 0u) {
+            return false;
+        }
+        column = select(column - 1u, column + 1u, plus);
+    } else if axis == 1u {
+        if (plus && j + 1u >= grid.nj) || (!plus && j == 0u) {
+            return false;
+        }
+        column = select(column - grid.ni, column + grid.ni, plus);
+    } else {
+        if (plus && layer + 1u >= grid.nk) || (!plus && layer == 0u) {
+            return false;
+        }
+        next_layer = select(layer - 1u, layer + 1u, plus);
+    }
+    if !is_drawn(column, next_layer) || !faces_join((*cell).column, layer, column, next_layer, axis, plus) {
+        return false;
+    }
+    *cell = load_cell(column, next_layer, frame.interpolation);
+    var start = q;
+    start[axis] = select(q[axis] + 1.0, q[axis] - 1.0, plus);
+    *uvw = clamp(start, vec3f(-1.0), vec3f(2.0));
+    return true;
+}
+
+fn faces_join(a: u32, a_layer: u32, b: u32, b_layer: u32, axis: u32, plus: bool) -> bool {
+    let a_lists = column_lists[a];
+    let b_lists = column_lists[b];
+    if axis == 2u {
+        let mine = depths_at(layer_entries(a_lists, a_layer, select(0u, 1u, plus)));
+        return all_coincide(mine, depths_at(layer_entries(a_lists, b_layer, select(1u, 0u, plus))));
+    }
+    // The two lists on the shared pillars, seen from each column.
+    var mine = select(a_lists.xz, a_lists.yw, plus);
+    var theirs = select(b_lists.yw, b_lists.xz, plus);
+    if axis == 1u {
+        mine = select(a_lists.xy, a_lists.zw, plus);
+        theirs = select(b_lists.zw, b_lists.xy, plus);
+    }
+    // Flags aside, shared lists are one list: no fault.
+    if all((mine & vec2u(LIST_OFFSET)) == (theirs & vec2u(LIST_OFFSET))) {
+        return true;
+    }
+    return all_coincide(pair_depths(mine, a_layer), pair_depths(theirs, b_layer));
+}
+
+fn pair_depths(lists: vec2u, layer: u32) -> vec4f {
+    return depths_at(vec4u(list_entry(lists.x, layer, 0u), list_entry(lists.y, layer, 0u),
+        list_entry(lists.x, layer, 1u), list_entry(lists.y, layer, 1u)));
+}

@@ -1,0 +1,131 @@
+// One cell as a trilinear map from [0, 1]^3, with the field as a fourth coordinate, and its inverse.
+// Positions are relative to the cell's first corner, so that thin layers far from the origin keep
+// their digits.
+#import grid
+
+struct Cell {
+    column: u32,
+    layer: u32,
+    // First corner, grid space relative to the origin.
+    corner: vec3f,
+    // Coefficients of 1, u, v, w, uv, vw, uw, uvw; .w is the field.
+    k0: vec4f,
+    ku: vec4f,
+    kv: vec4f,
+    kw: vec4f,
+    kuv: vec4f,
+    kvw: vec4f,
+    kuw: vec4f,
+    kuvw: vec4f,
+}
+
+// Result of Newton's method: parameters in [0, 1]^3 where inside.
+struct Solution {
+    uvw: vec3f,
+    inside: bool,
+    iterations: u32,
+    // Rows of the inverse Jacobian of the last iteration.
+    inverse_u: vec3f,
+    inverse_v: vec3f,
+    inverse_w: vec3f,
+}
+
+// Slack for f32 at faces, in cells: points on a shared face are in at least one cell; callers take
+// the first, so in exactly one.
+const INSIDE_SLACK: f32 = 1e-5;
+const NEWTON_LIMIT: u32 = 10u;
+
+fn load_cell(column: u32, layer: u32, interpolation: u32) -> Cell {
+    let lists = column_lists[column];
+    let p = pillar_index(column);
+    let top_entries = layer_entries(lists, layer, 0u);
+    let bottom_entries = layer_entries(lists, layer, 1u);
+    let top = depths_at(top_entries);
+    let bottom = depths_at(bottom_entries);
+    let pillar0 = pillars[p.x];
+    let first = vec3f(pillar0.xy + pillar0.zw * top.x, top.x);
+    var top_values = vec4f(0.0);
+    var bottom_values = vec4f(0.0);
+    if interpolation == INTERPOLATION_VERTEX {
+        top_values = values_at(top_entries);
+        bottom_values = values_at(bottom_entries);
+    } else {
+        top_values = vec4f(values[drawn_rank(column, layer)]);
+        bottom_values = top_values;
+    }
+    let c0 = vec4f(0.0, 0.0, 0.0, top_values.x);
+    let c1 = corner_at(pillars[p.y], pillar0, first, top.x, top.y, top_values.y);
+    let c2 = corner_at(pillars[p.z], pillar0, first, top.x, top.z, top_values.z);
+    let c3 = corner_at(pillars[p.w], pillar0, first, top.x, top.w, top_values.w);
+    let c4 = corner_at(pillar0, pillar0, first, top.x, bottom.x, bottom_values.x);
+    let c5 = corner_at(pillars[p.y], pillar0, first, top.x, bottom.y, bottom_values.y);
+    let c6 = corner_at(pillars[p.z], pillar0, first, top.x, bottom.z, bottom_values.z);
+    let c7 = corner_at(pillars[p.w], pillar0, first, top.x, bottom.w, bottom_values.w);
+    var cell: Cell;
+    cell.column = column;
+    cell.layer = layer;
+    cell.corner = first;
+    cell.k0 = c0;
+    cell.ku = c1 - c0;
+    cell.kv = c2 - c0;
+    cell.kw = c4 - c0;
+    cell.kuv = (c3 - c2) - (c1 - c0);
+    cell.kvw = (c6 - c4) - (c2 - c0);
+    cell.kuw = (c5 - c4) - (c1 - c0);
+    cell.kuvw = ((c7 - c6) - (c5 - c4)) - ((c3 - c2) - (c1 - c0));
+    return cell;
+}
+
+// A corner relative to the first one; differences first, products of slopes last.
+fn corner_at(pillar: vec4f, pillar0: vec4f, first: vec3f, top0: f32, depth: f32, value: f32) -> vec4f {
+    let xy = (pillar.xy - pillar0.xy) + pillar.zw * depth - pillar0.zw * top0;
+    return vec4f(xy, depth - first.z, value);
+}
+
+fn evaluate(cell: Cell, q: vec3f) -> vec4f {
+    return cell.k0 + q.x * (cell.ku + q.y * cell.kuv) + q.y * (cell.kv + q.z * cell.kvw)
+        + q.z * (cell.kw + q.x * (cell.kuw + q.y * cell.kuvw));
+}
+
+fn is_inside(q: vec3f) -> bool {
+    return all(q >= vec3f(-INSIDE_SLACK)) && all(q <= vec3f(1.0 + INSIDE_SLACK));
+}
+
+// Newton's method for the parameters of `point` (relative to the cell's first corner), from `start`.
+// Stops once a step is below `enough`; convergence is quadratic, so the step after it is far smaller.
+fn solve(cell: Cell, point: vec3f, start: vec3f, enough: f32) -> Solution {
+    var s: Solution;
+    s.uvw = start;
+    var converged = false;
+    for (var n = 0u; n < NEWTON_LIMIT; n++) {
+        let q = s.uvw;
+        let tu = (cell.ku + q.y * cell.kuv + q.z * (cell.kuw + q.y * cell.kuvw)).xyz;
+        let tv = (cell.kv + q.x * cell.kuv + q.z * (cell.kvw + q.x * cell.kuvw)).xyz;
+        let tw = (cell.kw + q.x * cell.kuw + q.y * (cell.kvw + q.x * cell.kuvw)).xyz;
+        let nu = cross(tv, tw);
+        let nv = cross(tw, tu);
+        let nw = cross(tu, tv);
+        let determinant = dot(tu, nu);
+        s.iterations = n + 1u;
+        if abs(determinant) < 1e-30 {
+            // On a collapsed edge; the tangents span a volume again further inside.
+            s.uvw = mix(q, vec3f(0.5), 0.1);
+            continue;
+        }
+        let scale = 1.0 / determinant;
+        s.inverse_u = nu * scale;
+        s.inverse_v = nv * scale;
+        s.inverse_w = nw * scale;
+        let residual = point - evaluate(cell, q).xyz;
+        let step = vec3f(dot(s.inverse_u, residual), dot(s.inverse_v, residual), dot(s.inverse_w, residual));
+        let length = max(abs(step.x), max(abs(step.y), abs(step.z)));
+        // Damped: a step never leads further than one cell.
+        s.uvw = clamp(q + step * min(1.0, 1.0 / max(length, 1e-30)), vec3f(-2.0), vec3f(3.0));
+        if length < enough {
+            converged = true;
+            break;
+        }
+    }
+    s.inside = converged && is_inside(s.uvw);
+    return s;
+}

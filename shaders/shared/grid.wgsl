@@ -1,0 +1,59 @@
+// The compact corner-point grid: the only place that indexes its buffers.
+// Depths and positions are grid space relative to the model's origin, depth positive down.
+#import layout
+
+@group(1) @binding(0) var<uniform> grid: GridInfo;
+// x, y at depth 0 of the origin, and their change per unit of depth.
+@group(1) @binding(1) var<storage, read> pillars: array<vec4f>;
+@group(1) @binding(2) var<storage, read> column_lists: array<vec4u>;
+@group(1) @binding(3) var<storage, read> depths: array<f32>;
+// For each 32 cells, column by column: bits of the drawn ones, and how many are drawn before.
+@group(1) @binding(4) var<storage, read> drawn_cells: array<vec2u>;
+// One value a drawn cell, or one a depth-list entry, by frame.interpolation.
+@group(1) @binding(5) var<storage, read> values: array<f32>;
+// Acceleration grid over x and y: first entry in bin_columns, and the depth range in 2 x 16 bits.
+@group(1) @binding(6) var<storage, read> bins: array<vec2u>;
+@group(1) @binding(7) var<storage, read> bin_columns: array<u32>;
+
+fn pillar_index(column: u32) -> vec4u {
+    let first = column % grid.ni + (grid.ni + 1u) * (column / grid.ni);
+    return vec4u(first, first + 1u, first + grid.ni + 1u, first + grid.ni + 2u);
+}
+
+fn is_drawn(column: u32, layer: u32) -> bool {
+    let slot = column * grid.nk + layer;
+    return (drawn_cells[slot >> 5u].x >> (slot & 31u) & 1u) == 1u;
+}
+
+// Rank among the drawn cells.
+fn drawn_rank(column: u32, layer: u32) -> u32 {
+    let slot = column * grid.nk + layer;
+    let word = drawn_cells[slot >> 5u];
+    return word.y + countOneBits(word.x & ((1u << (slot & 31u)) - 1u));
+}
+
+fn list_entry(list: u32, layer: u32, bottom: u32) -> u32 {
+    return (list & LIST_OFFSET) + select(layer + bottom, 2u * layer + bottom, (list & LIST_GAPPED) != 0u);
+}
+
+// Positions in `depths` of the four corners of a layer's top (0) or bottom (1).
+fn layer_entries(lists: vec4u, layer: u32, bottom: u32) -> vec4u {
+    return vec4u(
+        list_entry(lists.x, layer, bottom),
+        list_entry(lists.y, layer, bottom),
+        list_entry(lists.z, layer, bottom),
+        list_entry(lists.w, layer, bottom),
+    );
+}
+
+fn depths_at(entries: vec4u) -> vec4f {
+    return vec4f(depths[entries.x], depths[entries.y], depths[entries.z], depths[entries.w]);
+}
+
+fn values_at(entries: vec4u) -> vec4f {
+    return vec4f(values[entries.x], values[entries.y], values[entries.z], values[entries.w]);
+}
+
+fn all_coincide(a: vec4f, b: vec4f) -> bool {
+    return all(abs(a - b) <= vec4f(COINCIDENT));
+}

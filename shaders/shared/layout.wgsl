@@ -1,0 +1,70 @@
+// Every struct and constant that host and shaders share; the host's mirrors have the same names.
+
+struct Frame {
+    // Grid space relative to the model's origin, file length units.
+    eye: vec3f,
+    // World-space distance of samples.
+    step: f32,
+    // Ray basis in world space; `right` and `up` are scaled to half the picture.
+    forward: vec3f,
+    early_termination: f32,
+    right: vec3f,
+    value_low: f32,
+    up: vec3f,
+    // Transfer-function position per unit of value; zero for an empty range.
+    value_scale: f32,
+    // Columns of the linear part of the grid-from-world transform.
+    grid_from_world_x: vec3f,
+    width: u32,
+    grid_from_world_y: vec3f,
+    height: u32,
+    grid_from_world_z: vec3f,
+    interpolation: u32,
+    // Box of the active cells, grid space relative to the origin.
+    box_low: vec3f,
+    reserved0: u32,
+    box_high: vec3f,
+    reserved1: u32,
+}
+
+// The part of the picture that one dispatch makes, in pixels.
+struct Tile {
+    origin: vec2u,
+    size: vec2u,
+}
+
+struct GridInfo {
+    ni: u32,
+    nj: u32,
+    nk: u32,
+    bins_x: u32,
+    bins_y: u32,
+    // How far outside its column, in cell widths, a point may seem by the horizontal section.
+    uv_margin: f32,
+    bin_origin: vec2f,
+    bin_size: vec2f,
+    // Depth = depth_low + depth_scale * 16-bit number, relative to the origin.
+    depth_low: f32,
+    depth_scale: f32,
+}
+
+// One found point for the probe: cell column and layer, or NOT_FOUND, and (s, t, r) and value.
+struct Found {
+    column: u32,
+    layer: u32,
+    reserved0: u32,
+    reserved1: u32,
+    parameters: vec3f,
+    value: f32,
+}
+
+const INTERPOLATION_CELL: u32 = 0u;
+const INTERPOLATION_VERTEX: u32 = 1u;
+const LUT_SIZE: u32 = 4096u;
+const NOT_FOUND: u32 = 0xffffffffu;
+// Flags in the four list references of a column.
+const LIST_GAPPED: u32 = 0x80000000u;
+const COLUMN_CROSSED: u32 = 0x40000000u;
+const LIST_OFFSET: u32 = 0x3fffffffu;
+// Corners closer than this along their pillar coincide.
+const COINCIDENT: f32 = 1e-3;

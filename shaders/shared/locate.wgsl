@@ -1,0 +1,201 @@
+// Point location through the acceleration grid: bin, columns in the bin, layer by depth, Newton.
+// (campagnolo-2021, 4.1; the regular grid here is two-dimensional, with a search by depth in the column.)
+#import cell
+
+struct Location {
+    found: bool,
+    iterations: u32,
+    uvw: vec3f,
+    cell: Cell,
+    // Where not found: how many steps of `advance` surely lie outside all cells (at least 1).
+    skip: f32,
+}
+
+const LOCATE_ENOUGH: f32 = 5e-6;
+const LAYER_MOVES: u32 = 8u;
+
+// Finds the cell that holds `point` (+ `low_bits`, its rounding error); `advance` is the
+// displacement to the next sample, used to skip what is empty.
+fn locate(point: vec3f, low_bits: vec3f, advance: vec3f, interpolation: u32) -> Location {
+    var result: Location;
+    result.skip = 1.0;
+    let at = floor((point.xy - grid.bin_origin) / grid.bin_size);
+    let bin_xy = vec2u(clamp(at, vec2f(0.0), vec2f(f32(grid.bins_x - 1u), f32(grid.bins_y - 1u))));
+    let bin = bin_xy.x + grid.bins_x * bin_xy.y;
+    let range = bins[bin].y;
+    let shallow = grid.depth_low + grid.depth_scale * f32(range & 0xffffu);
+    let deep = grid.depth_low + grid.depth_scale * f32(range >> 16u);
+    let first = bins[bin].x;
+    let last = bins[bin + 1u].x;
+    if first == last || point.z < shallow || point.z > deep {
+        let low = grid.bin_origin + vec2f(bin_xy) * grid.bin_size;
+        var skip = min(steps_to_leave(point.x, advance.x, low.x, low.x + grid.bin_size.x),
+            steps_to_leave(point.y, advance.y, low.y, low.y + grid.bin_size.y));
+        if first != last {
+            if point.z < shallow && advance.z > 0.0 {
+                skip = min(skip, (shallow - point.z) / advance.z);
+            } else if point.z > deep && advance.z < 0.0 {
+                skip = min(skip, (deep - point.z) / advance.z);
+            }
+        }
+        result.skip = max(1.0, ceil(skip - 1e-3));
+        return result;
+    }
+    for (var n = first; n < last; n++) {
+        if locate_in_column(bin_columns[n], point, low_bits, interpolation, &result) {
+            return result;
+        }
+    }
+    return result;
+}
+
+// Number of steps until `at` leaves (low, high); a large number where it never does.
+fn steps_to_leave(at: f32, advance: f32, low: f32, high: f32) -> f32 {
+    if abs(advance) < 1e-20 {
+        return 1e6;
+    }
+    return clamp(select(low - at, high - at, advance > 0.0) / advance, 0.0, 1e6);
+}
+
+fn locate_in_column(
+    column: u32, point: vec3f, low_bits: vec3f, interpolation: u32, result: ptr<function, Location>,
+) -> bool {
+    let p = pillar_index(column);
+    let q0 = section_corner(pillars[p.x], point, low_bits);
+    let q1 = section_corner(pillars[p.y], point, low_bits);
+    let q2 = section_corner(pillars[p.z], point, low_bits);
+    let q3 = section_corner(pillars[p.w], point, low_bits);
+    let uv = inverse_bilinear(q0, q1, q2, q3);
+    let outside = abs(uv - vec2f(0.5)) - vec2f(0.5 + grid.uv_margin);
+    if max(outside.x, outside.y) > 0.0 {
+        return false;
+    }
+    let lists = column_lists[column];
+    if (lists.x & COLUMN_CROSSED) != 0u {
+        return search_all_layers(column, point, low_bits, uv, interpolation, result);
+    }
+    let inner = clamp(uv, vec2f(0.0), vec2f(1.0));
+    let weights = vec4f((1.0 - inner.x) * (1.0 - inner.y), inner.x * (1.0 - inner.y),
+        (1.0 - inner.x) * inner.y, inner.x * inner.y);
+    // The first layer whose bottom lies below the point.
+    var low = 0u;
+    var high = grid.nk;
+    while low < high {
+        let middle = (low + high) / 2u;
+        if height_above(lists, middle, 1u, weights, point.z, low_bits.z) > 0.0 {
+            high = middle;
+        } else {
+            low = middle + 1u;
+        }
+    }
+    return search_from_layer(column, min(low, grid.nk - 1u), point, low_bits, uv, weights, interpolation, result);
+}
+
+// Pillar position at the point's depth, relative to the point.
+fn section_corner(pillar: vec4f, point: vec3f, low_bits: vec3f) -> vec2f {
+    return (pillar.xy - point.xy) + pillar.zw * point.z - low_bits.xy;
+}
+
+// Depth of a layer's top or bottom below the point, bilinear in the column.
+fn height_above(lists: vec4u, layer: u32, bottom: u32, weights: vec4f, depth: f32, low_bits: f32) -> f32 {
+    return dot(weights, depths_at(layer_entries(lists, layer, bottom)) - vec4f(depth)) - low_bits;
+}
+
+// Parameters of the origin in a quadrilateral, by Newton's method.
+fn inverse_bilinear(q0: vec2f, q1: vec2f, q2: vec2f, q3: vec2f) -> vec2f {
+    let a = q1 - q0;
+    let b = q2 - q0;
+    let c = (q3 - q2) - a;
+    var uv = vec2f(0.5);
+    for (var n = 0u; n < 8u; n++) {
+        let residual = -(q0 + uv.x * a + uv.y * b + uv.x * uv.y * c);
+        let tu = a + uv.y * c;
+        let tv = b + uv.x * c;
+        let determinant = tu.x * tv.y - tu.y * tv.x;
+        if abs(determinant) < 1e-30 {
+            uv = mix(uv, vec2f(0.5), 0.2) + vec2f(1e-3);
+            continue;
+        }
+        let step = vec2f(residual.x * tv.y - residual.y * tv.x, tu.x * residual.y - tu.y * residual.x) / determinant;
+        uv = clamp(uv + step, vec2f(-8.0), vec2f(9.0));
+        if max(abs(step.x), abs(step.y)) < 1e-5 {
+            break;
+        }
+    }
+    return uv;
+}
+
+// Newton in `start` and, where the result lies above or below, in the layers there.
+fn search_from_layer(
+    column: u32, start: u32, point: vec3f, low_bits: vec3f, uv: vec2f, weights: vec4f, interpolation: u32,
+    result: ptr<function, Location>,
+) -> bool {
+    let lists = column_lists[column];
+    var layer = i32(start);
+    var direction = 0;
+    for (var n = 0u; n < LAYER_MOVES; n++) {
+        if layer < 0 || layer >= i32(grid.nk) {
+            return false;
+        }
+        let top = height_above(lists, u32(layer), 0u, weights, point.z, low_bits.z);
+        let bottom = height_above(lists, u32(layer), 1u, weights, point.z, low_bits.z);
+        let thickness = max(bottom - top, 1e-20);
+        let w = clamp(-top / thickness, 0.0, 1.0);
+        var move_to = 0;
+        if is_drawn(column, u32(layer)) {
+            let cell = load_cell(column, u32(layer), interpolation);
+            let s = solve(cell, (point - cell.corner) + low_bits, vec3f(uv, w), LOCATE_ENOUGH);
+            (*result).iterations += s.iterations;
+            if s.inside {
+                (*result).found = true;
+                (*result).uvw = s.uvw;
+                (*result).cell = cell;
+                return true;
+            }
+            move_to = select(select(0, 1, s.uvw.z > 1.0), -1, s.uvw.z < 0.0);
+        } else {
+            // Not drawn: near its top or bottom the point may belong to the layer beyond.
+            move_to = select(select(0, 1, w > 0.75), -1, w < 0.25);
+            if thickness <= COINCIDENT && direction != 0 {
+                move_to = direction;
+            }
+        }
+        if move_to == 0 || (direction != 0 && move_to != direction) {
+            return false;
+        }
+        direction = move_to;
+        layer += move_to;
+    }
+    return false;
+}
+
+// Layers that cross or are turned over allow no search by depth.
+fn search_all_layers(
+    column: u32, point: vec3f, low_bits: vec3f, uv: vec2f, interpolation: u32,
+    result: ptr<function, Location>,
+) -> bool {
+    let lists = column_lists[column];
+    for (var layer = 0u; layer < grid.nk; layer++) {
+        if !is_drawn(column, layer) {
+            continue;
+        }
+        let top = depths_at(layer_entries(lists, layer, 0u)) - vec4f(point.z);
+        let bottom = depths_at(layer_entries(lists, layer, 1u)) - vec4f(point.z);
+        let shallow = min(top, bottom);
+        let deep = max(top, bottom);
+        if min(min(shallow.x, shallow.y), min(shallow.z, shallow.w)) > COINCIDENT
+            || max(max(deep.x, deep.y), max(deep.z, deep.w)) < -COINCIDENT {
+            continue;
+        }
+        let cell = load_cell(column, layer, interpolation);
+        let s = solve(cell, (point - cell.corner) + low_bits, vec3f(uv, 0.5), LOCATE_ENOUGH);
+        (*result).iterations += s.iterations;
+        if s.inside {
+            (*result).found = true;
+            (*result).uvw = s.uvw;
+            (*result).cell = cell;
+            return true;
+        }
+    }
+    return false;
+}

@@ -1,0 +1,23 @@
+// Value to color and extinction, from a table.
+#import frame
+
+// Linear red, green, blue and extinction per world-space length at LUT_SIZE positions over the range.
+@group(2) @binding(0) var<storage, read> transfer_table: array<vec4f>;
+
+fn transfer(value: f32) -> vec4f {
+    let position = clamp((value - frame.value_low) * frame.value_scale, 0.0, 1.0) * f32(LUT_SIZE - 1u);
+    let entry = min(u32(position), LUT_SIZE - 2u);
+    return mix(transfer_table[entry], transfer_table[entry + 1u], position - f32(entry));
+}
+
+// Front-to-back emission and absorption; linear light, premultiplied.
+struct Accumulated {
+    color: vec3f,
+    transmittance: f32,
+}
+
+fn accumulate(a: Accumulated, value: f32) -> Accumulated {
+    let entry = transfer(value);
+    let passed = exp(-entry.w * frame.step);
+    return Accumulated(a.color + a.transmittance * (1.0 - passed) * entry.rgb, a.transmittance * passed);
+}

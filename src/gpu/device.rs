@@ -1,0 +1,286 @@
+//! The adapter, the device and what it must be able to do.
+
+use std::sync::{Arc, Mutex};
+
+/// Why the GPU cannot be used.
+#[derive(Debug, thiserror::Error)]
+pub enum GpuError {
+    /// No adapter at all.
+    #[error(
+        "no GPU adapter was found; install a Vulkan driver (on Debian the package mesa-vulkan-drivers has a software one)"
+    )]
+    NoAdapter,
+    /// None with the wanted name.
+    #[error("no GPU adapter is called {wanted}; there are: {known}")]
+    NoSuchAdapter {
+        /// What was asked for.
+        wanted: String,
+        /// What there is.
+        known: String,
+    },
+    /// The adapter offers too little.
+    #[error("the adapter {adapter} cannot be used: {reason}")]
+    Unsuitable {
+        /// Adapter name.
+        adapter: String,
+        /// Which limit or request failed.
+        reason: String,
+    },
+    /// A buffer is larger than the adapter allows.
+    #[error(
+        "the model does not fit this adapter: {what} needs {needed} bytes and one binding holds {limit}"
+    )]
+    TooLarge {
+        /// Which array.
+        what: &'static str,
+        /// Bytes it takes.
+        needed: u64,
+        /// Bytes that fit.
+        limit: u64,
+    },
+    /// The driver reported an error.
+    #[error("the GPU reported an error: {0}")]
+    Device(String),
+    /// A shader of this program is broken.
+    #[error("shader {name}: {message}")]
+    Shader {
+        /// File stem.
+        name: String,
+        /// The compiler's words.
+        message: String,
+    },
+}
+
+/// A device with its queue. Errors that the driver reports late are kept until [`Gpu::check`].
+pub struct Gpu {
+    /// The logical device.
+    pub device: wgpu::Device,
+    /// Its queue.
+    pub queue: wgpu::Queue,
+    /// What the driver says of the adapter.
+    pub info: wgpu::AdapterInfo,
+    /// Nanoseconds per timestamp tick, where the adapter has timestamps.
+    pub timestamp_period_ns: Option<f32>,
+    late_error: Arc<Mutex<Option<String>>>,
+}
+
+impl Gpu {
+    /// Opens the best adapter (discrete, integrated, virtual, software), or the best one whose name
+    /// contains `wanted`, whatever the letter case.
+    ///
+    /// # Errors
+    /// When there is no (such) adapter, or it lacks a limit.
+    pub fn new(wanted: Option<&str>) -> Result<Self, GpuError> {
+        let instance =
+            wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
+        let mut adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::all()));
+        adapters.sort_by_key(|a| rank(a.get_info().device_type));
+        let names: Vec<String> = adapters.iter().map(|a| a.get_info().name).collect();
+        let matches =
+            |name: &str| wanted.is_none_or(|w| name.to_lowercase().contains(&w.to_lowercase()));
+        match (names.iter().position(|n| matches(n)), wanted) {
+            (Some(at), _) => Self::open(&adapters[at]),
+            (None, Some(wanted)) if !names.is_empty() => Err(GpuError::NoSuchAdapter {
+                wanted: wanted.to_owned(),
+                known: names.join(", "),
+            }),
+            _ => Err(GpuError::NoAdapter),
+        }
+    }
+
+    fn open(adapter: &wgpu::Adapter) -> Result<Self, GpuError> {
+        let info = adapter.get_info();
+        let unsuitable = |reason: String| GpuError::Unsuitable {
+            adapter: info.name.clone(),
+            reason,
+        };
+        let offered = adapter.limits();
+        let needed = 10;
+        if offered.max_storage_buffers_per_shader_stage < needed {
+            return Err(unsuitable(format!(
+                "it offers {} storage buffers a shader and {needed} are needed",
+                offered.max_storage_buffers_per_shader_stage
+            )));
+        }
+        let limits = wgpu::Limits {
+            // Seven arrays of the grid, the transfer table, counters, and a strategy's own.
+            max_storage_buffers_per_shader_stage: needed,
+            // Depth lists and values of large models are single arrays: take what there is.
+            max_storage_buffer_binding_size: offered.max_storage_buffer_binding_size,
+            max_buffer_size: offered.max_buffer_size,
+            // Pictures as large as the adapter can make.
+            max_texture_dimension_2d: offered.max_texture_dimension_2d,
+            ..wgpu::Limits::default()
+        };
+        let features = adapter.features() & wgpu::Features::TIMESTAMP_QUERY;
+        let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
+            label: Some("strataray"),
+            required_features: features,
+            required_limits: limits,
+            ..Default::default()
+        }))
+        .map_err(|e| unsuitable(e.to_string()))?;
+        let late_error = Arc::new(Mutex::new(None));
+        let keep = late_error.clone();
+        device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
+            let mut slot = keep
+                .lock()
+                .unwrap_or_else(std::sync::PoisonError::into_inner);
+            slot.get_or_insert(error.to_string());
+        }));
+        let timestamp_period_ns = (!features.is_empty()).then(|| queue.get_timestamp_period());
+        Ok(Self {
+            device,
+            queue,
+            info,
+            timestamp_period_ns,
+            late_error,
+        })
+    }
+
+    /// True where the "GPU" is a program on the CPU.
+    pub fn is_software(&self) -> bool {
+        self.info.device_type == wgpu::DeviceType::Cpu
+    }
+
+    /// Name and kind of the adapter in one line.
+    pub fn describe(&self) -> String {
+        let software = if self.is_software() { ", software" } else { "" };
+        format!("{} ({}{software})", self.info.name, self.info.backend)
+    }
+
+    /// Fails with the first error that the driver has reported since the last call.
+    ///
+    /// # Errors
+    /// When there was one.
+    pub fn check(&self) -> Result<(), GpuError> {
+        let mut slot = self
+            .late_error
+            .lock()
+            .unwrap_or_else(std::sync::PoisonError::into_inner);
+        slot.take().map_or(Ok(()), |e| Err(GpuError::Device(e)))
+    }
+
+    /// Waits for all submitted work.
+    ///
+    /// # Errors
+    /// When the device was lost or reported an error.
+    pub fn wait(&self) -> Result<(), GpuError> {
+        self.device
+            .poll(wgpu::PollType::wait_indefinitely())
+            .map_err(|e| GpuError::Device(e.to_string()))?;
+        self.check()
+    }
+
+    /// A read-only storage buffer with `content`; never empty, as bindings may not be.
+    ///
+    /// # Errors
+    /// When it exceeds what one binding holds.
+    pub fn storage<T: bytemuck::NoUninit>(
+        &self,
+        what: &'static str,
+        content: &[T],
+    ) -> Result<wgpu::Buffer, GpuError> {
+        use wgpu::util::DeviceExt;
+        let bytes: &[u8] = bytemuck::cast_slice(content);
+        let needed = bytes.len() as u64;
+        let limits = self.device.limits();
+        let limit = limits
+            .max_storage_buffer_binding_size
+            .min(limits.max_buffer_size);
+        if needed > limit {
+            return Err(GpuError::TooLarge {
+                what,
+                needed,
+                limit,
+            });
+        }
+        let contents = if bytes.is_empty() { &[0; 16] } else { bytes };
+        let descriptor = wgpu::util::BufferInitDescriptor {
+            label: Some(what),
+            contents,
+            usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST,
+        };
+        Ok(self.device.create_buffer_init(&descriptor))
+    }
+
+    /// A uniform buffer with `content`.
+    pub fn uniform<T: bytemuck::NoUninit>(&self, label: &str, content: &T) -> wgpu::Buffer {
+        use wgpu::util::DeviceExt;
+        self.device
+            .create_buffer_init(&wgpu::util::BufferInitDescriptor {
+                label: Some(label),
+                contents: bytemuck::bytes_of(content),
+                usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+            })
+    }
+
+    /// A bind group of `pipeline` from buffers in binding order.
+    pub fn bind(
+        &self,
+        pipeline: &wgpu::ComputePipeline,
+        group: u32,
+        entries: &[wgpu::BindingResource<'_>],
+    ) -> wgpu::BindGroup {
+        let entries: Vec<_> = (0..)
+            .zip(entries)
+            .map(|(binding, resource)| wgpu::BindGroupEntry {
+                binding,
+                resource: resource.clone(),
+            })
+            .collect();
+        self.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: None,
+            layout: &pipeline.get_bind_group_layout(group),
+            entries: &entries,
+        })
+    }
+
+    /// Copies the first `bytes` bytes of a buffer back.
+    ///
+    /// # Errors
+    /// When the device was lost or reported an error.
+    pub fn read(&self, source: &wgpu::Buffer, bytes: u64) -> Result<Vec<u8>, GpuError> {
+        let staging = self.staging(bytes);
+        let mut encoder = self.device.create_command_encoder(&Default::default());
+        encoder.copy_buffer_to_buffer(source, 0, &staging, 0, bytes);
+        self.queue.submit([encoder.finish()]);
+        self.map(&staging)
+    }
+
+    /// A buffer that work can be copied to and the host can read.
+    pub fn staging(&self, bytes: u64) -> wgpu::Buffer {
+        self.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("staging"),
+            size: bytes,
+            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+            mapped_at_creation: false,
+        })
+    }
+
+    /// Waits for the work and gives back what a staging buffer holds.
+    ///
+    /// # Errors
+    /// When the device was lost or reported an error.
+    pub fn map(&self, staging: &wgpu::Buffer) -> Result<Vec<u8>, GpuError> {
+        staging.map_async(wgpu::MapMode::Read, .., |_| ());
+        self.wait()?;
+        let view = staging
+            .get_mapped_range(..)
+            .map_err(|e| GpuError::Device(e.to_string()))?;
+        let content = view.to_vec();
+        drop(view);
+        staging.unmap();
+        Ok(content)
+    }
+}
+
+fn rank(kind: wgpu::DeviceType) -> u8 {
+    match kind {
+        wgpu::DeviceType::DiscreteGpu => 0,
+        wgpu::DeviceType::IntegratedGpu => 1,
+        wgpu::DeviceType::VirtualGpu => 2,
+        wgpu::DeviceType::Cpu => 3,
+        wgpu::DeviceType::Other => 4,
+    }
+}

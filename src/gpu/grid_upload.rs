@@ -1,0 +1,265 @@
+//! The compact grid on the device: pillars, shared depth lists, drawn cells, values, bins.
+
+use glam::{DVec2, DVec3};
+use rayon::prelude::*;
+
+use super::accel::AccelGrid;
+use super::device::{Gpu, GpuError};
+use super::layout::{COLUMN_CROSSED, GridInfo, LIST_GAPPED, LIST_OFFSET};
+use crate::model::{CellField, Grid, Ijk, VertexField};
+use crate::scene::Interpolation;
+
+/// Bytes on the device by purpose.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, serde::Serialize)]
+pub struct GpuBytes {
+    /// Pillars, depth lists, drawn cells.
+    pub geometry: u64,
+    /// Acceleration grid.
+    pub acceleration: u64,
+    /// Values of the property shown.
+    pub property: u64,
+    /// Resampled grids.
+    pub resampled: u64,
+    /// Light and occlusion volumes.
+    pub lighting: u64,
+    /// Pictures.
+    pub targets: u64,
+}
+
+/// A grid on the device, with the field and selection that are shown now.
+pub struct GpuGrid {
+    /// Origin of the device's coordinates in grid space.
+    pub origin: DVec3,
+    /// Box of the active cells relative to the origin.
+    pub bounds: [DVec3; 2],
+    info: wgpu::Buffer,
+    pillars: wgpu::Buffer,
+    column_lists: wgpu::Buffer,
+    depths: wgpu::Buffer,
+    bins: wgpu::Buffer,
+    bin_columns: wgpu::Buffer,
+    drawn_cells: wgpu::Buffer,
+    values: wgpu::Buffer,
+}
+
+impl GpuGrid {
+    /// Uploads geometry and acceleration grid; [`Self::show`] adds values.
+    ///
+    /// # Errors
+    /// When an array exceeds what the adapter holds.
+    pub fn new(gpu: &Gpu, grid: &Grid) -> Result<Self, GpuError> {
+        let bounds = grid.bounds().unwrap_or([DVec3::ZERO, DVec3::ONE]);
+        let origin = round_origin(bounds);
+        let accel = AccelGrid::new(grid, origin);
+        let dims = grid.dims();
+        if grid.depths().len() > LIST_OFFSET as usize {
+            return Err(GpuError::TooLarge {
+                what: "depth lists",
+                needed: 4 * grid.depths().len() as u64,
+                limit: 4 * u64::from(LIST_OFFSET),
+            });
+        }
+        let info = GridInfo {
+            ni: dims.ni as u32,
+            nj: dims.nj as u32,
+            nk: dims.nk as u32,
+            bins_x: accel.size[0],
+            bins_y: accel.size[1],
+            uv_margin: uv_margin(grid) as f32,
+            bin_origin: accel.origin.as_vec2().to_array(),
+            bin_size: accel.bin.as_vec2().to_array(),
+            depth_low: accel.depth[0] as f32,
+            depth_scale: accel.depth[1] as f32,
+        };
+        let pillars: Vec<[f32; 4]> = grid
+            .pillars()
+            .iter()
+            .map(|p| {
+                let (at, slope) = (p.at(origin.z) - origin, p.slope());
+                [at.x as f32, at.y as f32, slope.x as f32, slope.y as f32]
+            })
+            .collect();
+        let depths: Vec<f32> = grid
+            .depths()
+            .par_iter()
+            .map(|d| (d - origin.z) as f32)
+            .collect();
+        Ok(Self {
+            origin,
+            bounds: bounds.map(|b| b - origin),
+            info: gpu.uniform("grid info", &info),
+            pillars: gpu.storage("pillars", &pillars)?,
+            column_lists: gpu.storage("column lists", &column_lists(grid))?,
+            depths: gpu.storage("depth lists", &depths)?,
+            bins: gpu.storage("acceleration bins", &accel.bins)?,
+            bin_columns: gpu.storage("acceleration columns", &accel.columns)?,
+            drawn_cells: gpu.storage("drawn cells", &drawn_words(grid, &[]))?,
+            values: gpu.storage::<f32>("values", &[])?,
+        })
+    }
+
+    /// Puts the values of a field on the device, for the cells that `drawn` (by active index) names.
+    ///
+    /// # Errors
+    /// When the values exceed what the adapter holds.
+    pub fn show(
+        &mut self,
+        gpu: &Gpu,
+        grid: &Grid,
+        field: &CellField,
+        drawn: &[bool],
+        interpolation: Interpolation,
+    ) -> Result<(), GpuError> {
+        self.drawn_cells = gpu.storage("drawn cells", &drawn_words(grid, drawn))?;
+        self.values = match interpolation {
+            Interpolation::Cell => gpu.storage("values", &column_major(grid, field, drawn))?,
+            Interpolation::Vertex => {
+                let vertices = VertexField::new(grid, field);
+                // Entries that no drawn cell touches are never read; NaN stays off the device.
+                let values: Vec<f32> = vertices
+                    .values()
+                    .iter()
+                    .map(|v| if v.is_nan() { 0.0 } else { *v })
+                    .collect();
+                gpu.storage("values", &values)?
+            }
+        };
+        Ok(())
+    }
+
+    /// The bind group of the grid for a pipeline.
+    pub fn bind(&self, gpu: &Gpu, pipeline: &wgpu::ComputePipeline) -> wgpu::BindGroup {
+        let buffers = [
+            &self.info,
+            &self.pillars,
+            &self.column_lists,
+            &self.depths,
+            &self.drawn_cells,
+            &self.values,
+            &self.bins,
+            &self.bin_columns,
+        ];
+        gpu.bind(pipeline, 1, &buffers.map(wgpu::Buffer::as_entire_binding))
+    }
+
+    /// Bytes by purpose.
+    pub fn bytes(&self) -> GpuBytes {
+        let sum = |buffers: &[&wgpu::Buffer]| buffers.iter().map(|b| b.size()).sum();
+        GpuBytes {
+            geometry: sum(&[
+                &self.info,
+                &self.pillars,
+                &self.column_lists,
+                &self.depths,
+                &self.drawn_cells,
+            ]),
+            acceleration: sum(&[&self.bins, &self.bin_columns]),
+            property: sum(&[&self.values]),
+            ..GpuBytes::default()
+        }
+    }
+}
+
+/// The middle of the model, rounded so coarsely that coordinates that were f32 in the file stay
+/// exact when it is subtracted.
+fn round_origin([low, high]: [DVec3; 2]) -> DVec3 {
+    let extent = (high - low).max_element().max(1e-6);
+    let grain = (extent.log2().floor() - 10.0).min(0.0).exp2();
+    (0.5 * (low + high) / grain).round() * grain
+}
+
+fn column_lists(grid: &Grid) -> Vec<[u32; 4]> {
+    (0..grid.dims().columns())
+        .into_par_iter()
+        .map(|column| {
+            let mut lists = grid
+                .column_lists(column)
+                .map(|list| list.offset() as u32 | if list.gapped() { LIST_GAPPED } else { 0 });
+            if layers_cross(grid, column) {
+                lists[0] |= COLUMN_CROSSED;
+            }
+            lists
+        })
+        .collect()
+}
+
+/// True where depth does not grow with the layer on some pillar, so that no search by depth works.
+fn layers_cross(grid: &Grid, column: usize) -> bool {
+    let nk = grid.dims().nk;
+    grid.column_lists(column).iter().any(|list| {
+        let planes = (0..2 * nk).map(|plane| grid.depths()[list.entry(plane / 2, plane % 2)]);
+        !planes.is_sorted()
+    })
+}
+
+/// How far outside the column's horizontal section, in cell widths, a point of a cell may lie: pillars
+/// that are not parallel meet a dipping layer at different depths.
+fn uv_margin(grid: &Grid) -> f64 {
+    let dims = grid.dims();
+    let margin = |ijk: Ijk| {
+        let slopes: [DVec2; 4] = std::array::from_fn(|c| grid.pillar(ijk.i, ijk.j, c).slope());
+        let mean = slopes.iter().sum::<DVec2>() / 4.0;
+        let spread = slopes.iter().map(|s| s.distance(mean)).fold(0.0, f64::max);
+        let corners = grid.hexahedron(ijk).0;
+        let dip = |c: [usize; 4]| {
+            let depths = c.map(|c| corners[c].z);
+            depths.iter().copied().fold(f64::MIN, f64::max)
+                - depths.iter().copied().fold(f64::MAX, f64::min)
+        };
+        let width = [[0, 1], [2, 3], [0, 2], [1, 3]]
+            .iter()
+            .map(|&[a, b]| corners[a].truncate().distance(corners[b].truncate()))
+            .fold(f64::MAX, f64::min);
+        let shift = spread * dip([0, 1, 2, 3]).max(dip([4, 5, 6, 7]));
+        if shift > 0.0 {
+            shift / width.max(1e-9)
+        } else {
+            0.0
+        }
+    };
+    let largest = grid
+        .active_cells()
+        .par_iter()
+        .map(|&cell| margin(dims.ijk(cell)))
+        .reduce(|| 0.0, f64::max);
+    (1.5 * largest + 1e-3).min(2.0)
+}
+
+/// Slots column by column, layers fastest: bits of the drawn cells and the count before each word.
+fn drawn_words(grid: &Grid, drawn: &[bool]) -> Vec<[u32; 2]> {
+    let dims = grid.dims();
+    let mut words = vec![[0u32; 2]; dims.cells().div_ceil(32)];
+    for (&cell, _) in grid.active_cells().iter().zip(drawn).filter(|(_, d)| **d) {
+        let ijk = dims.ijk(cell);
+        let slot = (ijk.i + dims.ni * ijk.j) * dims.nk + ijk.k;
+        words[slot / 32][0] |= 1 << (slot % 32);
+    }
+    let mut before = 0;
+    for word in &mut words {
+        word[1] = before;
+        before += word[0].count_ones();
+    }
+    words
+}
+
+/// Values of the drawn cells in slot order.
+fn column_major(grid: &Grid, field: &CellField, drawn: &[bool]) -> Vec<f32> {
+    let dims = grid.dims();
+    let mut values = Vec::new();
+    for column in 0..dims.columns() {
+        for k in 0..dims.nk {
+            let ijk = Ijk {
+                i: column % dims.ni,
+                j: column / dims.ni,
+                k,
+            };
+            if let Some(active) = grid.active_index(dims.cell(ijk)) {
+                let active = active.0 as usize;
+                if drawn.get(active) == Some(&true) {
+                    values.push(field.values()[active]);
+                }
+            }
+        }
+    }
+    values
+}

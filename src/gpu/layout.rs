@@ -1,0 +1,82 @@
+//! Mirrors of the structs and constants in `shaders/shared/layout.wgsl`; a test compares them.
+
+use bytemuck::{Pod, Zeroable};
+
+/// Camera, lattice and value range of a frame.
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+#[allow(missing_docs, reason = "described where the shader reads them")]
+pub struct Frame {
+    pub eye: [f32; 3],
+    pub step: f32,
+    pub forward: [f32; 3],
+    pub early_termination: f32,
+    pub right: [f32; 3],
+    pub value_low: f32,
+    pub up: [f32; 3],
+    pub value_scale: f32,
+    pub grid_from_world_x: [f32; 3],
+    pub width: u32,
+    pub grid_from_world_y: [f32; 3],
+    pub height: u32,
+    pub grid_from_world_z: [f32; 3],
+    pub interpolation: u32,
+    pub box_low: [f32; 3],
+    pub reserved0: u32,
+    pub box_high: [f32; 3],
+    pub reserved1: u32,
+}
+
+/// The part of the picture that one dispatch makes.
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+#[allow(missing_docs, reason = "described where the shader reads them")]
+pub struct Tile {
+    pub origin: [u32; 2],
+    pub size: [u32; 2],
+}
+
+/// Sizes of the grid and its acceleration grid.
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+#[allow(missing_docs, reason = "described where the shader reads them")]
+pub struct GridInfo {
+    pub ni: u32,
+    pub nj: u32,
+    pub nk: u32,
+    pub bins_x: u32,
+    pub bins_y: u32,
+    pub uv_margin: f32,
+    pub bin_origin: [f32; 2],
+    pub bin_size: [f32; 2],
+    pub depth_low: f32,
+    pub depth_scale: f32,
+}
+
+/// One answer of the probe.
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+#[allow(missing_docs, reason = "described where the shader writes them")]
+pub struct Found {
+    pub column: u32,
+    pub layer: u32,
+    pub reserved0: u32,
+    pub reserved1: u32,
+    pub parameters: [f32; 3],
+    pub value: f32,
+}
+
+/// Value constant within a cell.
+pub const INTERPOLATION_CELL: u32 = 0;
+/// Value trilinear between the vertices.
+pub const INTERPOLATION_VERTEX: u32 = 1;
+/// Entries of the transfer table.
+pub const LUT_SIZE: u32 = 4096;
+/// Column of a point that lies in no cell.
+pub const NOT_FOUND: u32 = u32::MAX;
+/// Flag of a depth list with gaps.
+pub const LIST_GAPPED: u32 = 0x8000_0000;
+/// Flag of a column whose layers cross, in its first list reference.
+pub const COLUMN_CROSSED: u32 = 0x4000_0000;
+/// Mask of the offset in a list reference.
+pub const LIST_OFFSET: u32 = 0x3fff_ffff;

@@ -1,0 +1,99 @@
+//! Point location on the device, for many points at once.
+
+use glam::DVec3;
+
+use super::device::{Gpu, GpuError};
+use super::grid_upload::GpuGrid;
+use super::layout::{Found, INTERPOLATION_CELL, INTERPOLATION_VERTEX, NOT_FOUND};
+use super::shader::Pipeline;
+use crate::model::{Grid, Ijk};
+use crate::scene::Interpolation;
+
+/// Points of one submission: short enough for slow adapters.
+const BATCH: usize = 16 * 1024;
+
+/// A point that lies in a cell.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Located {
+    /// The cell.
+    pub ijk: Ijk,
+    /// (s, t, r) in [-1, 1]^3.
+    pub parameters: DVec3,
+    /// Value of the field there.
+    pub value: f64,
+}
+
+/// Locates points given in grid space; `None` where a point lies in no drawn cell.
+///
+/// # Errors
+/// When the device reports an error.
+pub fn locate(
+    gpu: &Gpu,
+    gpu_grid: &GpuGrid,
+    grid: &Grid,
+    points_in_grid: &[DVec3],
+    interpolation: Interpolation,
+) -> Result<Vec<Option<Located>>, GpuError> {
+    let pipeline = Pipeline::new(gpu, "probe")?;
+    let grid_group = gpu_grid.bind(gpu, &pipeline.pipeline);
+    let mut located = Vec::with_capacity(points_in_grid.len());
+    for batch in points_in_grid.chunks(BATCH) {
+        let points: Vec<[[f32; 4]; 2]> =
+            batch.iter().map(|&p| split(p - gpu_grid.origin)).collect();
+        let interpolation = match interpolation {
+            Interpolation::Cell => INTERPOLATION_CELL,
+            Interpolation::Vertex => INTERPOLATION_VERTEX,
+        };
+        let info = gpu.uniform("points", &[interpolation, batch.len() as u32, 0, 0]);
+        let points = gpu.storage("points", &points)?;
+        let bytes = (batch.len() * size_of::<Found>()) as u64;
+        let found = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("found"),
+            size: bytes,
+            usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
+            mapped_at_creation: false,
+        });
+        let own_group = gpu.bind(
+            &pipeline.pipeline,
+            3,
+            &[
+                info.as_entire_binding(),
+                points.as_entire_binding(),
+                found.as_entire_binding(),
+            ],
+        );
+        let mut encoder = gpu
+            .device
+            .create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        {
+            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+            pass.set_pipeline(&pipeline.pipeline);
+            pass.set_bind_group(1, &grid_group, &[]);
+            pass.set_bind_group(3, &own_group, &[]);
+            pass.dispatch_workgroups((batch.len() as u32).div_ceil(pipeline.workgroup[0]), 1, 1);
+        }
+        gpu.queue.submit([encoder.finish()]);
+        let found: Vec<Found> = bytemuck::pod_collect_to_vec(&gpu.read(&found, bytes)?);
+        located.extend(found.iter().map(|f| from_device(f, grid)));
+    }
+    Ok(located)
+}
+
+/// A point as f32, and what rounding cut off.
+fn split(point: DVec3) -> [[f32; 4]; 2] {
+    let high = point.as_vec3();
+    let low = (point - high.as_dvec3()).as_vec3();
+    [high.extend(0.0).to_array(), low.extend(0.0).to_array()]
+}
+
+fn from_device(found: &Found, grid: &Grid) -> Option<Located> {
+    (found.column != NOT_FOUND).then(|| Located {
+        ijk: Ijk {
+            i: found.column as usize % grid.dims().ni,
+            j: found.column as usize / grid.dims().ni,
+            k: found.layer as usize,
+        },
+        parameters: glam::Vec3::from_array(found.parameters).as_dvec3(),
+        value: f64::from(found.value),
+    })
+}

@@ -1,0 +1,107 @@
+//! Shader sources: `#import name` by stem from `shaders/shared/`, each once.
+
+use super::device::{Gpu, GpuError};
+
+macro_rules! sources {
+    ($($name:literal => $path:literal),* $(,)?) => {
+        /// Every shader by stem; what tests validate and pipelines are made from.
+        const SOURCES: &[(&str, &str)] = &[$(($name, include_str!(concat!("../../shaders/", $path)))),*];
+    };
+}
+
+sources! {
+    "layout" => "shared/layout.wgsl",
+    "grid" => "shared/grid.wgsl",
+    "cell" => "shared/cell.wgsl",
+    "locate" => "shared/locate.wgsl",
+    "frame" => "shared/frame.wgsl",
+    "transfer" => "shared/transfer.wgsl",
+    "plts" => "plts.wgsl",
+    "probe" => "probe.wgsl",
+}
+
+/// The stems of all shaders that are entry points of a pipeline.
+pub const ENTRIES: [&str; 2] = ["plts", "probe"];
+
+/// The whole text of a shader with its imports in front, each once.
+///
+/// # Errors
+/// When an imported name does not exist.
+pub fn compose(name: &str) -> Result<String, GpuError> {
+    let mut text = String::new();
+    append(name, &mut Vec::new(), &mut text)?;
+    Ok(text)
+}
+
+fn append(name: &str, done: &mut Vec<String>, text: &mut String) -> Result<(), GpuError> {
+    if done.iter().any(|d| d == name) {
+        return Ok(());
+    }
+    done.push(name.to_owned());
+    let source = SOURCES.iter().find(|(n, _)| *n == name).map(|(_, s)| *s);
+    let source = source.ok_or_else(|| GpuError::Shader {
+        name: name.to_owned(),
+        message: "is imported but does not exist".into(),
+    })?;
+    for import in source.lines().filter_map(|l| l.strip_prefix("#import ")) {
+        append(import.trim(), done, text)?;
+    }
+    for line in source.lines().filter(|l| !l.starts_with("#import ")) {
+        text.push_str(line);
+        text.push('\n');
+    }
+    Ok(())
+}
+
+/// A compute pipeline from the `main` of a shader, with its workgroup size as the shader states it.
+pub struct Pipeline {
+    /// The pipeline.
+    pub pipeline: wgpu::ComputePipeline,
+    /// Invocations of a workgroup along x, y and z.
+    pub workgroup: [u32; 3],
+}
+
+impl Pipeline {
+    /// Compiles shader `name`.
+    ///
+    /// # Errors
+    /// When it is not valid, with the compiler's words.
+    pub fn new(gpu: &Gpu, name: &str) -> Result<Self, GpuError> {
+        let text = compose(name)?;
+        let wrong = |message: String| GpuError::Shader {
+            name: name.to_owned(),
+            message,
+        };
+        let module = wgpu::naga::front::wgsl::parse_str(&text)
+            .map_err(|e| wrong(e.emit_to_string(&text)))?;
+        let workgroup = module
+            .entry_points
+            .first()
+            .map(|e| e.workgroup_size)
+            .ok_or_else(|| wrong("has no entry point".into()))?;
+        let scope = gpu.device.push_error_scope(wgpu::ErrorFilter::Validation);
+        let module = gpu
+            .device
+            .create_shader_module(wgpu::ShaderModuleDescriptor {
+                label: Some(name),
+                source: wgpu::ShaderSource::Wgsl(text.into()),
+            });
+        let pipeline = gpu
+            .device
+            .create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+                label: Some(name),
+                layout: None,
+                module: &module,
+                entry_point: Some("main"),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                cache: None,
+            });
+        match pollster::block_on(scope.pop()) {
+            Some(error) => Err(wrong(error.to_string())),
+            None => Ok(Self {
+                pipeline,
+                workgroup,
+            }),
+        }
+    }
+}
