@@ -5,8 +5,16 @@
 //! end in a [`ParseError`] that names file, keyword and place; no reader panics, prints, or
 //! allocates by a count that the remaining bytes do not cover.
 
+pub mod case;
+pub mod cells;
+pub mod deck;
+pub mod egrid;
 pub mod error;
+pub mod init;
 pub mod mapped;
+pub mod records;
+pub mod restart;
+pub mod units;
 
 pub use error::{At, ParseError, Warning, Warnings};
 pub use mapped::MappedFile;

@@ -1,0 +1,203 @@
+//! Finds the files that belong to a case, from any of them or the base name.
+
+use std::path::{Path, PathBuf};
+
+use crate::error::{At, ParseError};
+
+/// Where the grid is.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum GridSource {
+    /// A binary EGRID file.
+    Egrid(PathBuf),
+    /// A text deck with COORD and ZCORN.
+    Deck(PathBuf),
+}
+
+/// Where the time steps are.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub enum RestartSource {
+    /// There are none.
+    #[default]
+    None,
+    /// One file with all steps.
+    Unified(PathBuf),
+    /// One file a step, with its report number, rising.
+    Separate(Vec<(u32, PathBuf)>),
+}
+
+/// The files of a case.
+#[derive(Debug, Clone)]
+pub struct CaseFiles {
+    /// Base name.
+    pub name: String,
+    /// Geometry.
+    pub grid: GridSource,
+    /// Static properties.
+    pub init: Option<PathBuf>,
+    /// Time steps.
+    pub restart: RestartSource,
+    /// Files that belong to the case and are not read, with the reason.
+    pub not_read: Vec<(PathBuf, &'static str)>,
+}
+
+/// What an extension stands for.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Role {
+    Egrid,
+    Init,
+    Unified,
+    Separate(u32),
+    Deck,
+    Text,
+    NotRead(&'static str),
+}
+
+fn role(path: &Path) -> Option<Role> {
+    let extension = path.extension()?.to_str()?.to_ascii_uppercase();
+    let numbered = |letter: char| {
+        extension
+            .strip_prefix(letter)
+            .filter(|d| d.len() >= 4)?
+            .parse()
+            .ok()
+    };
+    Some(match extension.as_str() {
+        "EGRID" => Role::Egrid,
+        "INIT" => Role::Init,
+        "UNRST" => Role::Unified,
+        "DATA" => Role::Deck,
+        "GRDECL" => Role::Text,
+        "GRID" => Role::NotRead("the legacy GRID format is not read yet"),
+        "FEGRID" | "FINIT" | "FUNRST" | "FGRID" => {
+            Role::NotRead("formatted files are not read yet")
+        }
+        _ if numbered('F').is_some() => Role::NotRead("formatted files are not read yet"),
+        _ => Role::Separate(numbered('X')?),
+    })
+}
+
+/// Finds the case that `path` names: one of its files, or its base name without extension.
+///
+/// A `.grdecl` file named by the user is the grid itself; an unknown extension is taken for such a
+/// text file when the file exists.
+///
+/// # Errors
+/// When no grid is found; the sentence says what was looked for.
+pub fn find(path: &Path) -> Result<CaseFiles, ParseError> {
+    let is_file = path.is_file();
+    let named = if is_file {
+        Some(role(path).unwrap_or(Role::Text))
+    } else {
+        None
+    };
+    if path.is_dir() {
+        return Err(ParseError::new(
+            path,
+            At::File,
+            "",
+            "is a folder; name a file of the case in it",
+        ));
+    }
+    let stem = match named.or_else(|| role(path)) {
+        Some(_) => path.file_stem(),
+        None => path.file_name(),
+    };
+    let stem = stem.and_then(|s| s.to_str()).unwrap_or_default().to_owned();
+    let mut files = siblings(path, &stem)?;
+    // What the user named wins over a sibling of the same role, then exact letter case of the stem.
+    let exact = |p: &Path| p.file_stem().and_then(|s| s.to_str()) == Some(&stem);
+    files.sort_by_key(|(p, _)| (p.file_name() != path.file_name(), !exact(p), p.clone()));
+    let first = |wanted: Role| {
+        files
+            .iter()
+            .find(|(_, r)| *r == wanted)
+            .map(|(p, _)| p.clone())
+    };
+    let text = is_file
+        .then(|| path.to_owned())
+        .filter(|_| named == Some(Role::Text));
+    let grid = match (
+        text,
+        first(Role::Egrid),
+        first(Role::Deck),
+        first(Role::Text),
+    ) {
+        (Some(text), ..) => GridSource::Deck(text),
+        (_, Some(egrid), ..) => GridSource::Egrid(egrid),
+        (_, _, Some(deck), _) | (_, _, None, Some(deck)) => GridSource::Deck(deck),
+        _ => return Err(no_grid(path, &stem, &files)),
+    };
+    let mut separate: Vec<(u32, PathBuf)> = Vec::new();
+    for (file, role) in &files {
+        if let Role::Separate(report) = role
+            && !separate.iter().any(|s| s.0 == *report)
+        {
+            separate.push((*report, file.clone()));
+        }
+    }
+    separate.sort();
+    let restart = match first(Role::Unified) {
+        Some(unified) if !matches!(named, Some(Role::Separate(_))) => {
+            RestartSource::Unified(unified)
+        }
+        _ if separate.is_empty() => RestartSource::None,
+        _ => RestartSource::Separate(separate),
+    };
+    let reason = |role: &Role| {
+        if let Role::NotRead(why) = role {
+            Some(*why)
+        } else {
+            None
+        }
+    };
+    Ok(CaseFiles {
+        name: stem,
+        grid,
+        init: first(Role::Init),
+        restart,
+        not_read: files
+            .iter()
+            .filter_map(|(p, r)| Some((p.clone(), reason(r)?)))
+            .collect(),
+    })
+}
+
+/// Files beside `path` with the same stem, whatever the letter case, and a known extension.
+fn siblings(path: &Path, stem: &str) -> Result<Vec<(PathBuf, Role)>, ParseError> {
+    let folder = match path.parent() {
+        Some(p) if !p.as_os_str().is_empty() => p,
+        _ => Path::new("."),
+    };
+    let list =
+        std::fs::read_dir(folder).map_err(|e| ParseError::io(path, "cannot open its folder", e))?;
+    let shown = |entry: std::fs::DirEntry| {
+        if folder == Path::new(".") && path.parent().is_none_or(|p| p.as_os_str().is_empty()) {
+            PathBuf::from(entry.file_name())
+        } else {
+            entry.path()
+        }
+    };
+    let same_stem = |p: &Path| {
+        let this = p.file_stem().and_then(|s| s.to_str());
+        this.is_some_and(|s| s.eq_ignore_ascii_case(stem))
+    };
+    let files = list.flatten().map(shown).filter(|p| same_stem(p));
+    Ok(files.filter_map(|p| role(&p).map(|r| (p, r))).collect())
+}
+
+fn no_grid(path: &Path, stem: &str, files: &[(PathBuf, Role)]) -> ParseError {
+    let reason = files.iter().find_map(|(p, r)| match r {
+        Role::NotRead(why) => Some(format!("; there is {}, but {why}", p.display())),
+        _ => None,
+    });
+    let found = if path.exists() {
+        "this case has no grid"
+    } else {
+        "there is no such case"
+    };
+    let message = format!(
+        "{found}: looked for {stem}.EGRID, {stem}.DATA and {stem}.GRDECL{}",
+        reason.unwrap_or_default()
+    );
+    ParseError::new(path, At::File, "", message)
+}

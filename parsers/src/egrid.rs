@@ -1,0 +1,264 @@
+//! EGRID: the geometry of a case, as written.
+//!
+//! Keywords: FILEHEAD, MAPUNITS, MAPAXES, GRIDUNIT, GRIDHEAD, COORD, ZCORN, ACTNUM, NNC1 with NNC2;
+//! sections of local grids start at LGR and end at ENDLGR.
+
+use std::path::Path;
+
+use crate::error::{At, ParseError, Warnings};
+use crate::records::{Entry, RecordFile};
+
+/// Unit of the grid's coordinates.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct GridUnit {
+    /// METRES, FEET or CM.
+    pub length: String,
+    /// True where coordinates are map coordinates already.
+    pub is_map: bool,
+}
+
+/// One value a cell, or one for the matrix and one for the fractures.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PorosityModel {
+    /// Single porosity.
+    Single,
+    /// Dual porosity.
+    Dual,
+    /// Dual porosity and permeability.
+    DualPermeability,
+}
+
+/// A local grid, by name only: its geometry is not read.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct LocalGrid {
+    /// Name.
+    pub name: String,
+    /// Cells along i, j and k.
+    pub dims: [usize; 3],
+    /// Active cells.
+    pub active: usize,
+}
+
+/// The global grid of an EGRID file.
+#[derive(Debug, Clone)]
+pub struct Egrid {
+    /// Cells along i, j and k.
+    pub dims: [usize; 3],
+    /// **Shape**: 6 values a pillar: x, y, depth of the upper, then of the lower end.
+    pub coord: Vec<f32>,
+    /// **Shape**: 8 depths a cell, index `2i+di + 2ni(2j+dj) + 4ni*nj(2k+dk)`.
+    pub zcorn: Vec<f32>,
+    /// One value a cell; absent = all active. Dual porosity: 1 matrix, 2 fracture, 3 both.
+    pub actnum: Option<Vec<i32>>,
+    /// Unit of MAPAXES.
+    pub map_units: Option<String>,
+    /// A point on the y axis, the origin, a point on the x axis.
+    pub map_axes: Option<[f64; 6]>,
+    /// Unit of the coordinates.
+    pub grid_unit: Option<GridUnit>,
+    /// Single or dual porosity.
+    pub porosity_model: PorosityModel,
+    /// Non-neighbor connections of the global grid: cell numbers from 1.
+    pub nnc: Vec<[i32; 2]>,
+    /// Local grids.
+    pub local_grids: Vec<LocalGrid>,
+}
+
+impl Egrid {
+    /// Reads the global grid.
+    ///
+    /// # Errors
+    /// When the file is damaged, lacks a keyword, is no corner-point grid, or an array has the
+    /// wrong length.
+    pub fn read(path: &Path, warnings: &mut Warnings) -> Result<Self, ParseError> {
+        let file = RecordFile::open(path)?;
+        let entries = file.entries();
+        // The global grid comes first; sections of local grids start at LGR, and NNC lists follow.
+        let first_local = entries
+            .iter()
+            .position(|e| e.name() == "LGR")
+            .unwrap_or(entries.len());
+        let global = &entries[..first_local];
+        let find = |name: &str| global.iter().find(|e| e.name() == name);
+        let need = |name: &str| {
+            find(name).ok_or_else(|| {
+                ParseError::new(
+                    path,
+                    At::File,
+                    name,
+                    "is missing; a grid needs GRIDHEAD, COORD and ZCORN",
+                )
+            })
+        };
+        let head = need("GRIDHEAD")?;
+        let dims = dimensions(&file, head)?;
+        let cells = dims[0] * dims[1] * dims[2];
+        let pillars = (dims[0] + 1) * (dims[1] + 1);
+        let mut coord = sized(&file, need("COORD")?, 6 * pillars, true)?;
+        if coord.len() > 6 * pillars {
+            warnings.push(
+                path,
+                At::File,
+                "COORD has several coordinate reservoirs; the first is used for all layers",
+            );
+            coord.truncate(6 * pillars);
+        }
+        let zcorn = sized(&file, need("ZCORN")?, 8 * cells, false)?;
+        let actnum = match find("ACTNUM") {
+            None => None,
+            Some(entry) if entry.count as usize == cells => Some(file.i32s(entry)?),
+            Some(entry) => {
+                return Err(file.error(
+                    entry,
+                    format!("expected {cells} values, found {}", entry.count),
+                ));
+            }
+        };
+        let grid_unit = find("GRIDUNIT")
+            .map(|e| file.strings(e))
+            .transpose()?
+            .map(|s| GridUnit {
+                length: s.first().cloned().unwrap_or_default(),
+                is_map: s.get(1).is_some_and(|m| m.trim() == "MAP"),
+            });
+        let map_axes = match find("MAPAXES") {
+            None => None,
+            Some(entry) => file.f64s(entry)?.try_into().ok(),
+        };
+        Ok(Self {
+            dims,
+            coord,
+            zcorn,
+            actnum,
+            map_units: find("MAPUNITS")
+                .map(|e| file.strings(e))
+                .transpose()?
+                .and_then(|s| s.into_iter().next()),
+            map_axes,
+            grid_unit,
+            porosity_model: porosity_model(&file)?,
+            nnc: connections(&file)?,
+            local_grids: local_grids(&file)?,
+        })
+    }
+}
+
+fn dimensions(file: &RecordFile, head: &Entry) -> Result<[usize; 3], ParseError> {
+    let values = file.i32s(head)?;
+    let [kind, ni, nj, nk, ..] = values[..] else {
+        return Err(file.error(
+            head,
+            format!("has {} values and needs at least 4", values.len()),
+        ));
+    };
+    if kind != 1 {
+        return Err(file.error(
+            head,
+            format!("the grid is of type {kind}; only corner-point grids (type 1) are read"),
+        ));
+    }
+    let dims = [ni, nj, nk].map(|n| usize::try_from(n).unwrap_or(0));
+    let cells = dims
+        .iter()
+        .try_fold(1usize, |product, &n| product.checked_mul(n));
+    match cells {
+        Some(1..=0x7fff_ffff) => Ok(dims),
+        _ => Err(file.error(
+            head,
+            format!("dimensions {ni} x {nj} x {nk} are not possible"),
+        )),
+    }
+}
+
+fn sized(
+    file: &RecordFile,
+    entry: &Entry,
+    expected: usize,
+    more_allowed: bool,
+) -> Result<Vec<f32>, ParseError> {
+    let found = entry.count as usize;
+    let fits =
+        found == expected || more_allowed && found > expected && found.is_multiple_of(expected);
+    if !fits {
+        return Err(file.error(entry, format!("expected {expected} values, found {found}")));
+    }
+    let values = file.f32s(entry)?;
+    match values.iter().position(|v| !v.is_finite()) {
+        Some(at) => Err(file.error(entry, format!("value {} is not a finite number", at + 1))),
+        None => Ok(values),
+    }
+}
+
+fn porosity_model(file: &RecordFile) -> Result<PorosityModel, ParseError> {
+    let Some(head) = file.find("FILEHEAD") else {
+        return Ok(PorosityModel::Single);
+    };
+    Ok(match file.i32s(head)?.get(5) {
+        Some(1) => PorosityModel::Dual,
+        Some(2) => PorosityModel::DualPermeability,
+        _ => PorosityModel::Single,
+    })
+}
+
+/// Connections of the global grid: the NNC1 and NNC2 that follow an NNCHEAD for grid 0.
+fn connections(file: &RecordFile) -> Result<Vec<[i32; 2]>, ParseError> {
+    let mut global = true;
+    let mut from = Vec::new();
+    let mut pairs = Vec::new();
+    for entry in file.entries() {
+        match entry.name() {
+            "NNCHEAD" => global = file.i32s(entry)?.get(1).is_none_or(|&grid| grid == 0),
+            "NNC1" if global => from = file.i32s(entry)?,
+            "NNC2" if global => {
+                let to = file.i32s(entry)?;
+                if to.len() != from.len() {
+                    return Err(file.error(
+                        entry,
+                        format!(
+                            "expected {} values as in NNC1, found {}",
+                            from.len(),
+                            to.len()
+                        ),
+                    ));
+                }
+                pairs.extend(from.drain(..).zip(to).map(|(a, b)| [a, b]));
+            }
+            _ => {}
+        }
+    }
+    Ok(pairs)
+}
+
+fn local_grids(file: &RecordFile) -> Result<Vec<LocalGrid>, ParseError> {
+    let mut grids: Vec<LocalGrid> = Vec::new();
+    let mut inside = false;
+    for entry in file.entries() {
+        match entry.name() {
+            "LGR" => {
+                inside = true;
+                let name = file.strings(entry)?.into_iter().next().unwrap_or_default();
+                grids.push(LocalGrid {
+                    name,
+                    dims: [0; 3],
+                    active: 0,
+                });
+            }
+            "ENDLGR" => inside = false,
+            "GRIDHEAD" if inside => {
+                if let (Some(grid), [_, ni, nj, nk, ..]) =
+                    (grids.last_mut(), &file.i32s(entry)?[..])
+                {
+                    grid.dims = [ni, nj, nk].map(|n| usize::try_from(*n).unwrap_or(0));
+                    grid.active = grid.dims.iter().fold(1, |p: usize, &n| p.saturating_mul(n));
+                }
+            }
+            "ACTNUM" if inside => {
+                if let Some(grid) = grids.last_mut() {
+                    grid.active = file.i32s(entry)?.iter().filter(|a| **a != 0).count();
+                }
+            }
+            _ => {}
+        }
+    }
+    Ok(grids)
+}

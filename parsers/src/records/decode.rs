@@ -1,0 +1,126 @@
+//! Decoding of arrays, in parallel when they are large.
+
+use rayon::prelude::*;
+
+use super::{Entry, Kind, RecordFile, i32_at};
+use crate::error::{At, ParseError};
+
+/// Blocks that one task decodes.
+const BLOCKS_A_TASK: usize = 64;
+
+impl RecordFile {
+    /// Values of a REAL, DOUB or INTE array as f32.
+    ///
+    /// # Errors
+    /// When the array holds no numbers or is damaged.
+    pub fn f32s(&self, entry: &Entry) -> Result<Vec<f32>, ParseError> {
+        match entry.kind {
+            Kind::Real => self.decode(entry, f32::from_be_bytes),
+            Kind::Inte => self.decode(entry, |b| i32::from_be_bytes(b) as f32),
+            Kind::Doub => self.decode(entry, |b| f64::from_be_bytes(b) as f32),
+            _ => Err(self.error(entry, "holds no numbers")),
+        }
+    }
+
+    /// Values of a REAL, DOUB or INTE array as f64.
+    ///
+    /// # Errors
+    /// When the array holds no numbers or is damaged.
+    pub fn f64s(&self, entry: &Entry) -> Result<Vec<f64>, ParseError> {
+        match entry.kind {
+            Kind::Real => self.decode(entry, |b| f64::from(f32::from_be_bytes(b))),
+            Kind::Inte => self.decode(entry, |b| f64::from(i32::from_be_bytes(b))),
+            Kind::Doub => self.decode(entry, f64::from_be_bytes),
+            _ => Err(self.error(entry, "holds no numbers")),
+        }
+    }
+
+    /// Values of an INTE array.
+    ///
+    /// # Errors
+    /// When the array holds no integers or is damaged.
+    pub fn i32s(&self, entry: &Entry) -> Result<Vec<i32>, ParseError> {
+        match entry.kind {
+            Kind::Inte => self.decode(entry, i32::from_be_bytes),
+            _ => Err(self.error(entry, "holds no integers")),
+        }
+    }
+
+    /// Strings of a CHAR or C0nn array, without trailing blanks.
+    ///
+    /// # Errors
+    /// When the array holds no strings or is damaged.
+    pub fn strings(&self, entry: &Entry) -> Result<Vec<String>, ParseError> {
+        let Kind::Text(length) = entry.kind else {
+            return Err(self.error(entry, "holds no strings"));
+        };
+        let blocks = self.blocks(entry)?;
+        let strings = blocks
+            .iter()
+            .flat_map(|b| b.chunks_exact(usize::from(length)));
+        Ok(strings
+            .map(|s| String::from_utf8_lossy(s).trim_end().to_owned())
+            .collect())
+    }
+
+    fn decode<const N: usize, T: Send + Sync + Copy + Default>(
+        &self,
+        entry: &Entry,
+        convert: impl Fn([u8; N]) -> T + Sync,
+    ) -> Result<Vec<T>, ParseError> {
+        let blocks = self.blocks(entry)?;
+        // The index has checked that the file is larger than the values.
+        let mut values = vec![T::default(); entry.count as usize];
+        let mut rest = values.as_mut_slice();
+        let mut tasks = Vec::with_capacity(blocks.len() / BLOCKS_A_TASK + 1);
+        for group in blocks.chunks(BLOCKS_A_TASK) {
+            let count = group.iter().map(|b| b.len() / N).sum();
+            let (mine, others) = rest.split_at_mut(count);
+            rest = others;
+            tasks.push((group, mine));
+        }
+        tasks.into_par_iter().for_each(|(group, out)| {
+            let elements = group.iter().flat_map(|b| b.as_chunks::<N>().0);
+            for (value, bytes) in out.iter_mut().zip(elements) {
+                *value = convert(*bytes);
+            }
+        });
+        Ok(values)
+    }
+
+    /// The data of each block, with both markers checked.
+    fn blocks(&self, entry: &Entry) -> Result<Vec<&[u8]>, ParseError> {
+        let bytes = self.bytes();
+        let mut blocks = Vec::new();
+        let mut at = entry.data;
+        let mut total = 0;
+        while at < entry.end {
+            let length = i32_at(bytes, at).and_then(|l| u64::try_from(l).ok());
+            let block = length
+                .filter(|l| {
+                    l % entry.kind.size().max(1) == 0
+                        && i32_at(bytes, at + 4 + l) == Some(*l as i32)
+                })
+                .and_then(|l| bytes.get(at as usize + 4..(at + 4 + l) as usize));
+            let Some(block) = block.filter(|b| !b.is_empty()) else {
+                let message = "the two lengths of a block differ; the file is damaged";
+                return Err(ParseError::new(
+                    self.path(),
+                    At::Byte(at),
+                    entry.name(),
+                    message,
+                ));
+            };
+            total += block.len() as u64;
+            blocks.push(block);
+            at += 8 + block.len() as u64;
+        }
+        if total != entry.count * entry.kind.size() || at != entry.end {
+            return Err(self.error(
+                entry,
+                "its blocks do not add up to its count; the file is damaged",
+            ));
+        }
+        Ok(blocks)
+    }
+}

@@ -1,0 +1,267 @@
+//! Fortran-record files: named, typed arrays in big-endian blocks (EGRID, INIT, UNRST, ...).
+//!
+//! Each array has a header record of 16 bytes (name, count, type) and data in blocks, every record
+//! between two copies of its length in bytes. Opening a file indexes the headers by skipping over
+//! the data; an array is decoded when asked for.
+
+mod decode;
+mod index;
+
+use std::path::Path;
+
+use crate::error::{At, ParseError, Warnings};
+use crate::mapped::MappedFile;
+
+/// Type of the elements of an array.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// 4-byte integers.
+    Inte,
+    /// 4-byte reals.
+    Real,
+    /// 8-byte reals.
+    Doub,
+    /// 4-byte logicals.
+    Logi,
+    /// Strings of this many bytes (8 for CHAR, nn for C0nn).
+    Text(u16),
+    /// A message without data.
+    Mess,
+}
+
+impl Kind {
+    /// Bytes of one element.
+    pub fn size(self) -> u64 {
+        match self {
+            Self::Inte | Self::Real | Self::Logi => 4,
+            Self::Doub => 8,
+            Self::Text(n) => u64::from(n),
+            Self::Mess => 0,
+        }
+    }
+
+    fn parse(name: &[u8]) -> Option<Self> {
+        Some(match name {
+            b"INTE" => Self::Inte,
+            b"REAL" => Self::Real,
+            b"DOUB" => Self::Doub,
+            b"LOGI" => Self::Logi,
+            b"CHAR" => Self::Text(8),
+            b"MESS" => Self::Mess,
+            [b'C', digits @ ..] => {
+                let digits = std::str::from_utf8(digits).ok()?;
+                Self::Text(digits.parse().ok().filter(|n| *n > 0)?)
+            }
+            _ => return None,
+        })
+    }
+}
+
+/// One array of a file, not decoded.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Entry {
+    name: [u8; 8],
+    /// Element type.
+    pub kind: Kind,
+    /// Number of elements.
+    pub count: u64,
+    /// Byte offset of the header record.
+    pub offset: u64,
+    /// Byte offset of the first data record.
+    data: u64,
+    /// Byte offset behind the last data record.
+    end: u64,
+}
+
+impl Entry {
+    /// Name without trailing blanks.
+    pub fn name(&self) -> &str {
+        std::str::from_utf8(&self.name)
+            .unwrap_or_default()
+            .trim_end()
+    }
+
+    /// True for types that hold numbers.
+    pub fn is_numeric(&self) -> bool {
+        matches!(self.kind, Kind::Inte | Kind::Real | Kind::Doub)
+    }
+}
+
+/// A mapped file with the index of its arrays.
+#[derive(Debug)]
+pub struct RecordFile {
+    file: MappedFile,
+    entries: Vec<Entry>,
+}
+
+impl RecordFile {
+    /// Maps a file and indexes its arrays.
+    ///
+    /// # Errors
+    /// When the file cannot be read, is not such a file, or ends within an array.
+    pub fn open(path: &Path) -> Result<Self, ParseError> {
+        let file = MappedFile::open(path)?;
+        let (entries, broken) = index::index(&file);
+        match broken {
+            Some(error) => Err(error),
+            None => Ok(Self { file, entries }),
+        }
+    }
+
+    /// Like [`Self::open`], but keeps the complete arrays of a file that ends within one, as a
+    /// simulator that is still running leaves it; what is missing becomes a warning.
+    ///
+    /// # Errors
+    /// When the file cannot be read or holds no complete array.
+    pub fn open_lenient(path: &Path, warnings: &mut Warnings) -> Result<Self, ParseError> {
+        let file = MappedFile::open(path)?;
+        let (entries, broken) = index::index(&file);
+        if let Some(error) = broken {
+            if entries.is_empty() {
+                return Err(error);
+            }
+            let message = format!("{}: the rest of the file was left out", error.message);
+            warnings.push(path, error.at, message);
+        }
+        Ok(Self { file, entries })
+    }
+
+    /// All arrays in file order.
+    pub fn entries(&self) -> &[Entry] {
+        &self.entries
+    }
+
+    /// The path that was opened.
+    pub fn path(&self) -> &Path {
+        self.file.path()
+    }
+
+    /// The first array called `name`.
+    pub fn find(&self, name: &str) -> Option<&Entry> {
+        self.entries.iter().find(|e| e.name() == name)
+    }
+
+    /// An error about an array of this file.
+    pub fn error(&self, entry: &Entry, message: impl Into<String>) -> ParseError {
+        ParseError::new(self.path(), At::Byte(entry.offset), entry.name(), message)
+    }
+
+    fn bytes(&self) -> &[u8] {
+        self.file.bytes()
+    }
+}
+
+/// Big-endian i32 at a byte offset, if the bytes are there.
+fn i32_at(bytes: &[u8], at: u64) -> Option<i32> {
+    let at = usize::try_from(at).ok()?;
+    let four = bytes.get(at..at.checked_add(4)?)?;
+    Some(i32::from_be_bytes(four.try_into().ok()?))
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+
+    /// Bytes of one array in blocks of at most `block` elements.
+    pub(crate) fn array(name: &str, kind: &str, size: usize, data: &[u8], block: usize) -> Vec<u8> {
+        let mut bytes = 16i32.to_be_bytes().to_vec();
+        bytes.extend(format!("{name:<8}").bytes());
+        let count = if size == 0 { 0 } else { data.len() / size };
+        bytes.extend((count as i32).to_be_bytes());
+        bytes.extend(kind.bytes());
+        bytes.extend(16i32.to_be_bytes());
+        for chunk in data.chunks((size * block).max(1)) {
+            let length = (chunk.len() as i32).to_be_bytes();
+            bytes.extend(length);
+            bytes.extend(chunk);
+            bytes.extend(length);
+        }
+        bytes
+    }
+
+    fn open(bytes: &[u8]) -> Result<RecordFile, ParseError> {
+        let file = tempfile::NamedTempFile::new().unwrap();
+        std::fs::write(file.path(), bytes).unwrap();
+        RecordFile::open(file.path())
+    }
+
+    fn reals(n: usize) -> Vec<u8> {
+        (0..n).flat_map(|v| (v as f32).to_be_bytes()).collect()
+    }
+
+    #[test]
+    fn ok_blocks_of_any_size() {
+        for block in [1, 7, 1000, 5000] {
+            let mut bytes = array("PORO", "REAL", 4, &reals(2500), block);
+            bytes.extend(array("NOTHING", "INTE", 4, &[], 1000));
+            bytes.extend(array("TEXT", "C012", 12, b"abc         defghijklmno", 105));
+            bytes.extend(array("ENDSOL", "MESS", 0, &[], 1));
+            let file = open(&bytes).unwrap();
+            assert_eq!(file.entries().len(), 4, "blocks of {block}");
+            let values = file.f32s(&file.entries()[0]).unwrap();
+            assert!(values.iter().enumerate().all(|(n, v)| *v == n as f32));
+            assert_eq!(values.len(), 2500);
+            assert!(file.i32s(&file.entries()[1]).unwrap().is_empty());
+            assert_eq!(
+                file.strings(&file.entries()[2]).unwrap(),
+                ["abc", "defghijklmno"]
+            );
+        }
+    }
+
+    #[test]
+    fn err_truncated_anywhere_names_the_keyword() {
+        let mut bytes = array("PORO", "REAL", 4, &reals(1200), 1000);
+        bytes.extend(array("PERMX", "REAL", 4, &reals(1200), 1000));
+        let half = bytes.len() / 2;
+        for cut in (1..bytes.len()).step_by(61).filter(|&c| c != half) {
+            let error = open(&bytes[..cut]).unwrap_err().to_string();
+            assert!(error.contains('@'), "{cut}: {error}");
+        }
+        assert!(
+            open(&bytes[..half]).is_ok(),
+            "a whole number of arrays is a whole file"
+        );
+    }
+
+    #[test]
+    fn err_counts_that_the_file_does_not_cover() {
+        for count in [-1i32, i32::MIN, i32::MAX, 1201] {
+            let mut bytes = array("PORO", "REAL", 4, &reals(1200), 1000);
+            bytes[12..16].copy_from_slice(&count.to_be_bytes());
+            let error = open(&bytes).unwrap_err().to_string();
+            assert!(error.contains("PORO"), "{count}: {error}");
+        }
+    }
+
+    #[test]
+    fn err_flipped_bytes_never_panic() {
+        let mut random = fastrand::Rng::with_seed(11);
+        let mut bytes = array("PORO", "REAL", 4, &reals(300), 100);
+        bytes.extend(array("NAMES", "CHAR", 8, b"ONE     TWO     ", 105));
+        for _ in 0..3000 {
+            let mut flipped = bytes.clone();
+            for _ in 0..random.usize(1..4) {
+                let at = random.usize(0..flipped.len());
+                flipped[at] ^= 1 << random.u8(0..8);
+            }
+            if let Ok(file) = open(&flipped) {
+                for entry in file.entries() {
+                    let _ = (file.f64s(entry), file.strings(entry));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn ok_half_written_file_keeps_complete_arrays() {
+        let mut bytes = array("SWAT", "REAL", 4, &reals(10), 1000);
+        bytes.extend(array("SGAS", "REAL", 4, &reals(10), 1000));
+        let file = tempfile::NamedTempFile::new().unwrap();
+        std::fs::write(file.path(), &bytes[..bytes.len() - 9]).unwrap();
+        let mut warnings = Warnings::default();
+        let kept = RecordFile::open_lenient(file.path(), &mut warnings).unwrap();
+        assert_eq!(kept.entries().len(), 1);
+        assert_eq!(warnings.iter().count(), 1);
+    }
+}

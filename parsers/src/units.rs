@@ -1,0 +1,51 @@
+//! Unit systems and the units of well-known properties.
+
+/// The unit system of a simulation.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum UnitSystem {
+    /// Metres, bar, sm3.
+    Metric,
+    /// Feet, psi, barrels.
+    Field,
+    /// Centimetres, atm, scc.
+    Lab,
+    /// Metres, atm, sm3.
+    PvtM,
+}
+
+impl UnitSystem {
+    /// From item 3 of INTEHEAD.
+    pub fn from_code(code: i32) -> Option<Self> {
+        Some(match code {
+            1 => Self::Metric,
+            2 => Self::Field,
+            3 => Self::Lab,
+            4 => Self::PvtM,
+            _ => return None,
+        })
+    }
+
+    /// Unit of a property; empty for one without dimension or not in the table.
+    pub fn unit_of(self, property: &str) -> &'static str {
+        let row: [&'static str; 4] = match property {
+            "PRESSURE" | "PBUB" | "PDEW" | "PPCW" => ["BARSA", "PSIA", "ATMA", "ATMA"],
+            "PERMX" | "PERMY" | "PERMZ" => ["MD"; 4],
+            "DX" | "DY" | "DZ" | "DEPTH" | "TOPS" | "THICKNESS" | "PORO_THICKNESS" => {
+                ["M", "FT", "CM", "M"]
+            }
+            "PORV" => ["RM3", "RB", "RCC", "RM3"],
+            "CELL_VOLUME" => ["M3", "FT3", "CM3", "M3"],
+            "RS" => ["SM3/SM3", "MSCF/STB", "SCC/SCC", "SM3/SM3"],
+            "RV" => ["SM3/SM3", "STB/MSCF", "SCC/SCC", "SM3/SM3"],
+            "TRANX" | "TRANY" | "TRANZ" => [
+                "CP.RM3/DAY/BARS",
+                "CP.RB/DAY/PSI",
+                "CP.RCC/HR/ATM",
+                "CP.RM3/DAY/ATM",
+            ],
+            "TEMP" => ["C", "F", "C", "C"],
+            _ => [""; 4],
+        };
+        row[self as usize]
+    }
+}
