@@ -5,7 +5,9 @@
 // each next one by Newton's method in the same cell, then in the neighbor across the face that the
 // result overshoots most, and through the acceleration grid again where the cells do not join.
 // Departure from the paper: the start value is extrapolated with the last inverse Jacobian, so that
-// one iteration usually does, and empty bins are skipped instead of rasterizing the hull.
+// one iteration usually does, and empty bins are skipped instead of rasterizing the hull. A ray that
+// has done frame.work_limit loop iterations pauses: drivers end long loops without a word (llvmpipe
+// after 65,535 iterations of all loops together), and no submission may run for long.
 #import locate
 #import transfer
 
@@ -20,7 +22,16 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     }
     let pixel = tile.origin + id.xy;
     let ray = ray_of(pixel);
+    let state = 2u * (id.y * tile.size.x + id.x);
     var sum = Accumulated(vec3f(0.0), 1.0);
+    var n = 0.0;
+    if tile.resume == 1u {
+        n = ray_states[state + 1u].x;
+        if n == DONE {
+            return;
+        }
+        sum = Accumulated(ray_states[state].rgb, ray_states[state].a);
+    }
     var cell: Cell;
     var s: Solution;
     var have_cell = false;
@@ -28,8 +39,9 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     var iterations = 0u;
     var topological_steps = 0u;
     var fallbacks = 0u;
-    var n = 0.0;
-    while n < ray.count && sum.transmittance >= frame.early_termination {
+    var work = 0u;
+    while n < ray.count && sum.transmittance >= frame.early_termination && work < frame.work_limit {
+        work += 1u;
         let point = ray.base + n * ray.advance;
         var found = false;
         if have_cell {
@@ -37,8 +49,9 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
                 dot(s.inverse_w, ray.advance));
             var start = clamp(s.uvw + ahead, vec3f(-1.0), vec3f(2.0));
             for (var attempt = 0u; attempt <= TOPOLOGICAL_LIMIT; attempt++) {
-                s = solve(cell, point - cell.corner, start, MARCH_ENOUGH);
+                s = solve(cell, relative_to(cell, point), start, MARCH_ENOUGH);
                 iterations += s.iterations;
+                work += s.iterations + 1u;
                 if s.inside {
                     found = true;
                     break;
@@ -55,6 +68,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
             fallbacks += 1u;
             let location = locate(point, vec3f(0.0), ray.advance, frame.interpolation);
             iterations += location.iterations;
+            work += location.work + 2u;
             if !location.found {
                 have_cell = false;
                 n += location.skip;
@@ -62,7 +76,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
             }
             cell = location.cell;
             // One more step for the inverse Jacobian at the sample.
-            s = solve(cell, point - cell.corner, location.uvw, 1.0);
+            s = solve(cell, relative_to(cell, point), location.uvw, 1.0);
             s.uvw = location.uvw;
         }
         have_cell = true;
@@ -70,11 +84,18 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         sum = accumulate(sum, evaluate(cell, clamp(s.uvw, vec3f(0.0), vec3f(1.0))).w);
         n += 1.0;
     }
-    textureStore(target_image, vec2i(pixel), vec4f(sum.color, 1.0 - sum.transmittance));
-    count(0u, samples);
-    count(1u, iterations);
-    count(2u, topological_steps);
-    count(3u, fallbacks);
+    if n < ray.count && sum.transmittance >= frame.early_termination {
+        ray_states[state] = vec4f(sum.color, sum.transmittance);
+        ray_states[state + 1u] = vec4f(n, 0.0, 0.0, 0.0);
+    } else {
+        ray_states[state + 1u] = vec4f(DONE, 0.0, 0.0, 0.0);
+        textureStore(target_image, vec2i(pixel), vec4f(sum.color, 1.0 - sum.transmittance));
+        count(COUNT_FINISHED, 1u);
+    }
+    count(COUNT_SAMPLES, samples);
+    count(COUNT_ITERATIONS, iterations);
+    count(COUNT_STEPS, topological_steps);
+    count(COUNT_FALLBACKS, fallbacks);
 }
 
 // Loads the drawn cell that shares the whole face which `uvw` overshoots most; `uvw` becomes a start

@@ -80,8 +80,17 @@ pub struct About {
     pub named_faults: Vec<NamedFault>,
     /// Wells by name.
     pub wells: Vec<String>,
+    /// What loading took.
+    pub load_times: LoadTimes,
     /// What was not loaded or does not fit, one sentence each.
     pub notes: Vec<String>,
+}
+
+/// Time that parts of loading took.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct LoadTimes {
+    /// Building the grid from its arrays.
+    pub model: std::time::Duration,
 }
 
 /// Why a property could not be had.

@@ -1,1 +1,7 @@
-fn main() {}
+//! The `strataray` command: argument parsing only, see [`cli`].
+
+mod cli;
+
+fn main() -> std::process::ExitCode {
+    cli::run()
+}

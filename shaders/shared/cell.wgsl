@@ -6,8 +6,9 @@
 struct Cell {
     column: u32,
     layer: u32,
-    // First corner, grid space relative to the origin.
-    corner: vec3f,
+    // First corner, grid space relative to the origin: `base + offset`, kept apart for precision.
+    base: vec3f,
+    offset: vec3f,
     // Coefficients of 1, u, v, w, uv, vw, uw, uvw; .w is the field.
     k0: vec4f,
     ku: vec4f,
@@ -42,8 +43,10 @@ fn load_cell(column: u32, layer: u32, interpolation: u32) -> Cell {
     let bottom_entries = layer_entries(lists, layer, 1u);
     let top = depths_at(top_entries);
     let bottom = depths_at(bottom_entries);
-    let pillar0 = pillars[p.x];
-    let first = vec3f(pillar0.xy + pillar0.zw * top.x, top.x);
+    let pillar0 = load_pillar(p.x);
+    let pillar1 = load_pillar(p.y);
+    let pillar2 = load_pillar(p.z);
+    let pillar3 = load_pillar(p.w);
     var top_values = vec4f(0.0);
     var bottom_values = vec4f(0.0);
     if interpolation == INTERPOLATION_VERTEX {
@@ -54,17 +57,18 @@ fn load_cell(column: u32, layer: u32, interpolation: u32) -> Cell {
         bottom_values = top_values;
     }
     let c0 = vec4f(0.0, 0.0, 0.0, top_values.x);
-    let c1 = corner_at(pillars[p.y], pillar0, first, top.x, top.y, top_values.y);
-    let c2 = corner_at(pillars[p.z], pillar0, first, top.x, top.z, top_values.z);
-    let c3 = corner_at(pillars[p.w], pillar0, first, top.x, top.w, top_values.w);
-    let c4 = corner_at(pillar0, pillar0, first, top.x, bottom.x, bottom_values.x);
-    let c5 = corner_at(pillars[p.y], pillar0, first, top.x, bottom.y, bottom_values.y);
-    let c6 = corner_at(pillars[p.z], pillar0, first, top.x, bottom.z, bottom_values.z);
-    let c7 = corner_at(pillars[p.w], pillar0, first, top.x, bottom.w, bottom_values.w);
+    let c1 = corner_at(pillar1, pillar0, top.x, top.y, top_values.y);
+    let c2 = corner_at(pillar2, pillar0, top.x, top.z, top_values.z);
+    let c3 = corner_at(pillar3, pillar0, top.x, top.w, top_values.w);
+    let c4 = corner_at(pillar0, pillar0, top.x, bottom.x, bottom_values.x);
+    let c5 = corner_at(pillar1, pillar0, top.x, bottom.y, bottom_values.y);
+    let c6 = corner_at(pillar2, pillar0, top.x, bottom.z, bottom_values.z);
+    let c7 = corner_at(pillar3, pillar0, top.x, bottom.w, bottom_values.w);
     var cell: Cell;
     cell.column = column;
     cell.layer = layer;
-    cell.corner = first;
+    cell.base = vec3f(pillar0.at, top.x);
+    cell.offset = vec3f(pillar0.low_bits + pillar0.slope * top.x, 0.0);
     cell.k0 = c0;
     cell.ku = c1 - c0;
     cell.kv = c2 - c0;
@@ -76,10 +80,17 @@ fn load_cell(column: u32, layer: u32, interpolation: u32) -> Cell {
     return cell;
 }
 
-// A corner relative to the first one; differences first, products of slopes last.
-fn corner_at(pillar: vec4f, pillar0: vec4f, first: vec3f, top0: f32, depth: f32, value: f32) -> vec4f {
-    let xy = (pillar.xy - pillar0.xy) + pillar.zw * depth - pillar0.zw * top0;
-    return vec4f(xy, depth - first.z, value);
+// A corner relative to the first one; differences of large numbers first.
+fn corner_at(pillar: Pillar, pillar0: Pillar, top0: f32, depth: f32, value: f32) -> vec4f {
+    let down = depth - top0;
+    let xy = (pillar.at - pillar0.at)
+        + ((pillar.low_bits - pillar0.low_bits) + (pillar.slope - pillar0.slope) * top0 + pillar.slope * down);
+    return vec4f(xy, down, value);
+}
+
+// A point of grid space relative to the cell's first corner.
+fn relative_to(cell: Cell, point: vec3f) -> vec3f {
+    return (point - cell.base) - cell.offset;
 }
 
 fn evaluate(cell: Cell, q: vec3f) -> vec4f {
@@ -93,10 +104,12 @@ fn is_inside(q: vec3f) -> bool {
 
 // Newton's method for the parameters of `point` (relative to the cell's first corner), from `start`.
 // Stops once a step is below `enough`; convergence is quadratic, so the step after it is far smaller.
+// In layers of millimeters f32 cannot get there: a small step that no longer shrinks is the end too.
 fn solve(cell: Cell, point: vec3f, start: vec3f, enough: f32) -> Solution {
     var s: Solution;
     s.uvw = start;
     var converged = false;
+    var previous = 1e30;
     for (var n = 0u; n < NEWTON_LIMIT; n++) {
         let q = s.uvw;
         let tu = (cell.ku + q.y * cell.kuv + q.z * (cell.kuw + q.y * cell.kuvw)).xyz;
@@ -121,10 +134,11 @@ fn solve(cell: Cell, point: vec3f, start: vec3f, enough: f32) -> Solution {
         let length = max(abs(step.x), max(abs(step.y), abs(step.z)));
         // Damped: a step never leads further than one cell.
         s.uvw = clamp(q + step * min(1.0, 1.0 / max(length, 1e-30)), vec3f(-2.0), vec3f(3.0));
-        if length < enough {
+        if length < enough || (length < 1e-2 && length > 0.5 * previous) {
             converged = true;
             break;
         }
+        previous = length;
     }
     s.inside = converged && is_inside(s.uvw);
     return s;

@@ -3,8 +3,9 @@
 #import layout
 
 @group(1) @binding(0) var<uniform> grid: GridInfo;
-// x, y at depth 0 of the origin, and their change per unit of depth.
-@group(1) @binding(1) var<storage, read> pillars: array<vec4f>;
+// Three a pillar: x, y at depth 0 of the origin, what rounding to f32 cut off there, and their change
+// per unit of depth.
+@group(1) @binding(1) var<storage, read> pillars: array<vec2f>;
 @group(1) @binding(2) var<storage, read> column_lists: array<vec4u>;
 @group(1) @binding(3) var<storage, read> depths: array<f32>;
 // For each 32 cells, column by column: bits of the drawn ones, and how many are drawn before.
@@ -14,6 +15,26 @@
 // Acceleration grid over x and y: first entry in bin_columns, and the depth range in 2 x 16 bits.
 @group(1) @binding(6) var<storage, read> bins: array<vec2u>;
 @group(1) @binding(7) var<storage, read> bin_columns: array<u32>;
+
+struct Pillar {
+    at: vec2f,
+    low_bits: vec2f,
+    slope: vec2f,
+}
+
+fn load_pillar(index: u32) -> Pillar {
+    return Pillar(pillars[3u * index], pillars[3u * index + 1u], pillars[3u * index + 2u]);
+}
+
+// How far outside its column, in cell widths, a point may seem by the horizontal section: pillars that
+// are not parallel meet a dipping layer at different depths.
+const COLUMN_MARGINS = array<f32, 8>(0.002, 0.01, 0.03, 0.08, 0.2, 0.5, 1.0, 2.0);
+
+fn column_margin(lists: vec4u) -> f32 {
+    let bits = select(vec3u(0u), vec3u(1u, 2u, 4u), (lists.yzw & vec3u(COLUMN_FLAG)) != vec3u(0u));
+    var margins = COLUMN_MARGINS;
+    return margins[bits.x + bits.y + bits.z];
+}
 
 fn pillar_index(column: u32) -> vec4u {
     let first = column % grid.ni + (grid.ni + 1u) * (column / grid.ni);

@@ -22,15 +22,21 @@ struct Frame {
     interpolation: u32,
     // Box of the active cells, grid space relative to the origin.
     box_low: vec3f,
-    reserved0: u32,
+    // Loop iterations after which a ray pauses until the next dispatch.
+    work_limit: u32,
     box_high: vec3f,
-    reserved1: u32,
+    reserved: u32,
 }
 
 // The part of the picture that one dispatch makes, in pixels.
 struct Tile {
     origin: vec2u,
     size: vec2u,
+    // 1 where rays go on from their states.
+    resume: u32,
+    reserved0: u32,
+    reserved1: u32,
+    reserved2: u32,
 }
 
 struct GridInfo {
@@ -39,8 +45,7 @@ struct GridInfo {
     nk: u32,
     bins_x: u32,
     bins_y: u32,
-    // How far outside its column, in cell widths, a point may seem by the horizontal section.
-    uv_margin: f32,
+    reserved: u32,
     bin_origin: vec2f,
     bin_size: vec2f,
     // Depth = depth_low + depth_scale * 16-bit number, relative to the origin.
@@ -62,9 +67,10 @@ const INTERPOLATION_CELL: u32 = 0u;
 const INTERPOLATION_VERTEX: u32 = 1u;
 const LUT_SIZE: u32 = 4096u;
 const NOT_FOUND: u32 = 0xffffffffu;
-// Flags in the four list references of a column.
+// Flags in the four list references of a column: its own list has gaps; one bit of the column's:
+// in the first reference that layers cross, in the others the level of its margin, low bit first.
 const LIST_GAPPED: u32 = 0x80000000u;
-const COLUMN_CROSSED: u32 = 0x40000000u;
+const COLUMN_FLAG: u32 = 0x40000000u;
 const LIST_OFFSET: u32 = 0x3fffffffu;
 // Corners closer than this along their pillar coincide.
 const COINCIDENT: f32 = 1e-3;

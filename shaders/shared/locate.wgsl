@@ -5,6 +5,8 @@
 struct Location {
     found: bool,
     iterations: u32,
+    // Loop iterations of any kind, about.
+    work: u32,
     uvw: vec3f,
     cell: Cell,
     // Where not found: how many steps of `advance` surely lie outside all cells (at least 1).
@@ -13,6 +15,8 @@ struct Location {
 
 const LOCATE_ENOUGH: f32 = 5e-6;
 const LAYER_MOVES: u32 = 8u;
+// Loop iterations for a column before any cell is tried: inverse bilinear map and search by depth.
+const COLUMN_WORK: u32 = 24u;
 
 // Finds the cell that holds `point` (+ `low_bits`, its rounding error); `advance` is the
 // displacement to the next sample, used to skip what is empty.
@@ -60,18 +64,19 @@ fn steps_to_leave(at: f32, advance: f32, low: f32, high: f32) -> f32 {
 fn locate_in_column(
     column: u32, point: vec3f, low_bits: vec3f, interpolation: u32, result: ptr<function, Location>,
 ) -> bool {
+    (*result).work += COLUMN_WORK;
     let p = pillar_index(column);
-    let q0 = section_corner(pillars[p.x], point, low_bits);
-    let q1 = section_corner(pillars[p.y], point, low_bits);
-    let q2 = section_corner(pillars[p.z], point, low_bits);
-    let q3 = section_corner(pillars[p.w], point, low_bits);
+    let q0 = section_corner(load_pillar(p.x), point, low_bits);
+    let q1 = section_corner(load_pillar(p.y), point, low_bits);
+    let q2 = section_corner(load_pillar(p.z), point, low_bits);
+    let q3 = section_corner(load_pillar(p.w), point, low_bits);
     let uv = inverse_bilinear(q0, q1, q2, q3);
-    let outside = abs(uv - vec2f(0.5)) - vec2f(0.5 + grid.uv_margin);
+    let lists = column_lists[column];
+    let outside = abs(uv - vec2f(0.5)) - vec2f(0.5 + column_margin(lists));
     if max(outside.x, outside.y) > 0.0 {
         return false;
     }
-    let lists = column_lists[column];
-    if (lists.x & COLUMN_CROSSED) != 0u {
+    if (lists.x & COLUMN_FLAG) != 0u {
         return search_all_layers(column, point, low_bits, uv, interpolation, result);
     }
     let inner = clamp(uv, vec2f(0.0), vec2f(1.0));
@@ -92,8 +97,8 @@ fn locate_in_column(
 }
 
 // Pillar position at the point's depth, relative to the point.
-fn section_corner(pillar: vec4f, point: vec3f, low_bits: vec3f) -> vec2f {
-    return (pillar.xy - point.xy) + pillar.zw * point.z - low_bits.xy;
+fn section_corner(pillar: Pillar, point: vec3f, low_bits: vec3f) -> vec2f {
+    return (pillar.at - point.xy) + (pillar.low_bits + pillar.slope * point.z - low_bits.xy);
 }
 
 // Depth of a layer's top or bottom below the point, bilinear in the column.
@@ -144,8 +149,9 @@ fn search_from_layer(
         var move_to = 0;
         if is_drawn(column, u32(layer)) {
             let cell = load_cell(column, u32(layer), interpolation);
-            let s = solve(cell, (point - cell.corner) + low_bits, vec3f(uv, w), LOCATE_ENOUGH);
+            let s = solve(cell, relative_to(cell, point) + low_bits, vec3f(uv, w), LOCATE_ENOUGH);
             (*result).iterations += s.iterations;
+            (*result).work += s.iterations + 1u;
             if s.inside {
                 (*result).found = true;
                 (*result).uvw = s.uvw;
@@ -175,6 +181,7 @@ fn search_all_layers(
     result: ptr<function, Location>,
 ) -> bool {
     let lists = column_lists[column];
+    (*result).work += grid.nk;
     for (var layer = 0u; layer < grid.nk; layer++) {
         if !is_drawn(column, layer) {
             continue;
@@ -188,8 +195,9 @@ fn search_all_layers(
             continue;
         }
         let cell = load_cell(column, layer, interpolation);
-        let s = solve(cell, (point - cell.corner) + low_bits, vec3f(uv, 0.5), LOCATE_ENOUGH);
+        let s = solve(cell, relative_to(cell, point) + low_bits, vec3f(uv, 0.5), LOCATE_ENOUGH);
         (*result).iterations += s.iterations;
+        (*result).work += s.iterations;
         if s.inside {
             (*result).found = true;
             (*result).uvw = s.uvw;

@@ -2,12 +2,13 @@
 
 use std::time::{Duration, Instant};
 
+use bytemuck::Zeroable;
 use glam::DVec3;
 
 use super::device::{Gpu, GpuError};
 use super::grid_upload::GpuGrid;
 use super::layout::{Frame, INTERPOLATION_CELL, INTERPOLATION_VERTEX, LUT_SIZE, Tile};
-use super::tiles::{Rect, Tiles};
+use super::tiles::{self, Rect, Tiles};
 use crate::picture::Image;
 use crate::scene::{Interpolation, View};
 use crate::strategies::RenderStrategy;
@@ -20,6 +21,8 @@ pub struct FrameStats {
     pub frame: Duration,
     /// Wall time of the frame with readback.
     pub wall: Duration,
+    /// CPU time of the process meanwhile, filled in by who measures it.
+    pub cpu: Duration,
     /// Longest single submission.
     pub longest_submission: Duration,
     /// Lattice samples inside drawn cells.
@@ -30,6 +33,10 @@ pub struct FrameStats {
     pub topological_steps: u64,
     /// Point locations through the acceleration grid.
     pub grid_fallbacks: u64,
+    /// Rays that have reached their end.
+    pub finished_rays: u64,
+    /// Number of submissions.
+    pub submissions: u32,
     /// Bytes of the picture on the device.
     pub target_bytes: u64,
 }
@@ -40,12 +47,22 @@ pub struct FrameRenderer {
     tiles: Tiles,
 }
 
+/// Loop iterations after which a ray pauses: within what llvmpipe allows a group of eight rays, and
+/// for others what surely ends within the time of a submission.
+const WORK_LIMIT: [u32; 2] = [6_000, 100_000];
+/// Counters of the shader: low and high words.
+const COUNTERS: u64 = 10 * 4;
+/// Bytes of two timestamps, in front of the counters in the staging buffer.
+const TICKS: u64 = 16;
+
 /// Objects of one frame.
 struct Bound<'a> {
     gpu: &'a Gpu,
     groups: [wgpu::BindGroup; 3],
     tile: wgpu::Buffer,
-    queries: Option<(wgpu::QuerySet, wgpu::Buffer, wgpu::Buffer)>,
+    counters: wgpu::Buffer,
+    staging: wgpu::Buffer,
+    queries: Option<(wgpu::QuerySet, wgpu::Buffer)>,
 }
 
 impl FrameRenderer {
@@ -71,17 +88,12 @@ impl FrameRenderer {
         }
         let pipeline = &strategy.pipeline().pipeline;
         let target = create_target(gpu, view.size);
-        let counters = gpu.storage("counters", &[0u32; 8])?;
-        let counters = copyable(gpu, &counters);
+        let counters = device_buffer(gpu, "counters", COUNTERS);
+        let pixels = u64::from(view.size[0]) * u64::from(view.size[1]);
+        let states = device_buffer(gpu, "ray states", 32 * pixels.min(tiles::MAX_AREA));
         let table = gpu.storage("transfer table", &transfer_table(&view.transfer))?;
-        let frame = gpu.uniform("frame", &frame_uniform(grid, view));
-        let tile = gpu.uniform(
-            "tile",
-            &Tile {
-                origin: [0; 2],
-                size: [0; 2],
-            },
-        );
+        let frame = gpu.uniform("frame", &frame_uniform(grid, view, gpu.is_software()));
+        let tile = gpu.uniform("tile", &Tile::zeroed());
         let texture = target.create_view(&wgpu::TextureViewDescriptor::default());
         let bound = Bound {
             gpu,
@@ -94,16 +106,19 @@ impl FrameRenderer {
                         tile.as_entire_binding(),
                         wgpu::BindingResource::TextureView(&texture),
                         counters.as_entire_binding(),
+                        states.as_entire_binding(),
                     ],
                 ),
                 grid.bind(gpu, pipeline),
                 gpu.bind(pipeline, 2, &[table.as_entire_binding()]),
             ],
             tile,
+            counters,
+            staging: gpu.staging(TICKS + COUNTERS),
             queries: queries(gpu),
         };
         let mut stats = FrameStats {
-            target_bytes: 16 * u64::from(view.size[0]) * u64::from(view.size[1]),
+            target_bytes: 16 * pixels + states.size(),
             ..FrameStats::default()
         };
         let draw = |rect| bound.draw(strategy, rect, &mut stats);
@@ -111,12 +126,6 @@ impl FrameRenderer {
             return Ok(None);
         }
         let pixels = read_target(gpu, &target, view.size)?;
-        let counts: Vec<u32> = bytemuck::pod_collect_to_vec(&gpu.read(&counters, 32)?);
-        let count = |n: usize| u64::from(counts[2 * n]) | u64::from(counts[2 * n + 1]) << 32;
-        stats.samples = count(0);
-        stats.newton_iterations = count(1);
-        stats.topological_steps = count(2);
-        stats.grid_fallbacks = count(3);
         stats.wall = start.elapsed();
         Ok(Some((
             Image {
@@ -129,73 +138,93 @@ impl FrameRenderer {
 }
 
 impl Bound<'_> {
-    /// Submits one tile and waits for it.
+    /// Makes one tile, in as many submissions as its rays need; gives the time of the longest.
     fn draw(
         &self,
         strategy: &dyn RenderStrategy,
         rect: Rect,
         stats: &mut FrameStats,
     ) -> Result<Duration, GpuError> {
-        let Self {
-            gpu,
-            groups,
-            tile,
-            queries,
-        } = self;
-        let uniform = Tile {
+        let mut uniform = Tile {
             origin: rect.origin,
             size: rect.size,
+            ..Tile::zeroed()
         };
+        let goal = stats.finished_rays + rect.area();
+        let mut longest = Duration::ZERO;
+        while stats.finished_rays < goal {
+            longest = longest.max(self.submit(strategy, &uniform, stats)?);
+            uniform.resume = 1;
+        }
+        Ok(longest)
+    }
+
+    /// Submits one dispatch, waits for it and brings the statistics up to date.
+    fn submit(
+        &self,
+        strategy: &dyn RenderStrategy,
+        uniform: &Tile,
+        stats: &mut FrameStats,
+    ) -> Result<Duration, GpuError> {
+        let gpu = self.gpu;
         gpu.queue
-            .write_buffer(tile, 0, bytemuck::bytes_of(&uniform));
-        let mut encoder = gpu
-            .device
-            .create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+            .write_buffer(&self.tile, 0, bytemuck::bytes_of(uniform));
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
         {
-            let timestamp_writes =
-                queries
-                    .as_ref()
-                    .map(|(set, ..)| wgpu::ComputePassTimestampWrites {
-                        query_set: set,
-                        beginning_of_pass_write_index: Some(0),
-                        end_of_pass_write_index: Some(1),
-                    });
+            let queries = self.queries.as_ref();
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
                 label: Some("tile"),
-                timestamp_writes,
+                timestamp_writes: queries.map(|(set, _)| wgpu::ComputePassTimestampWrites {
+                    query_set: set,
+                    beginning_of_pass_write_index: Some(0),
+                    end_of_pass_write_index: Some(1),
+                }),
             });
-            for (n, group) in (0..).zip(groups) {
+            for (n, group) in (0..).zip(&self.groups) {
                 pass.set_bind_group(n, group, &[]);
             }
-            strategy.encode(&mut pass, rect.size);
+            strategy.encode(&mut pass, uniform.size);
         }
-        if let Some((set, resolve, staging)) = queries {
+        if let Some((set, resolve)) = &self.queries {
             encoder.resolve_query_set(set, 0..2, resolve, 0);
-            encoder.copy_buffer_to_buffer(resolve, 0, staging, 0, 16);
+            encoder.copy_buffer_to_buffer(resolve, 0, &self.staging, 0, TICKS);
         }
+        encoder.copy_buffer_to_buffer(&self.counters, 0, &self.staging, TICKS, COUNTERS);
         let start = Instant::now();
         gpu.queue.submit([encoder.finish()]);
-        let by_adapter = match (queries, gpu.timestamp_period_ns) {
-            (Some((_, _, staging)), Some(period)) => {
-                let ticks: Vec<u64> = bytemuck::pod_collect_to_vec(&gpu.map(staging)?);
-                let ns = ticks[1].saturating_sub(ticks[0]) as f64 * f64::from(period);
-                Some(Duration::from_nanos(ns as u64))
-            }
-            _ => {
-                gpu.wait()?;
-                None
-            }
-        };
+        let content = gpu.map(&self.staging)?;
         let wall = start.elapsed();
+        let (ticks, counters) = content.split_at(TICKS as usize);
+        stats.count(&bytemuck::pod_collect_to_vec(counters));
+        let ticks: Vec<u64> = bytemuck::pod_collect_to_vec(ticks);
+        let by_adapter = gpu.timestamp_period_ns.map(|period| {
+            Duration::from_nanos(
+                (ticks[1].saturating_sub(ticks[0]) as f64 * f64::from(period)) as u64,
+            )
+        });
+        // Some drivers give zero or nonsense: then the host's clock has to do.
         stats.frame += by_adapter
             .filter(|t| !t.is_zero() && *t < wall)
             .unwrap_or(wall);
+        stats.submissions += 1;
         stats.longest_submission = stats.longest_submission.max(wall);
         Ok(wall)
     }
 }
 
-fn queries(gpu: &Gpu) -> Option<(wgpu::QuerySet, wgpu::Buffer, wgpu::Buffer)> {
+impl FrameStats {
+    /// Takes over the shader's counters, pairs of low and high words.
+    fn count(&mut self, words: &[u32]) {
+        let count = |n: usize| u64::from(words[2 * n]) | u64::from(words[2 * n + 1]) << 32;
+        self.samples = count(0);
+        self.newton_iterations = count(1);
+        self.topological_steps = count(2);
+        self.grid_fallbacks = count(3);
+        self.finished_rays = count(4);
+    }
+}
+
+fn queries(gpu: &Gpu) -> Option<(wgpu::QuerySet, wgpu::Buffer)> {
     gpu.timestamp_period_ns?;
     let set = gpu.device.create_query_set(&wgpu::QuerySetDescriptor {
         label: Some("tile times"),
@@ -204,18 +233,18 @@ fn queries(gpu: &Gpu) -> Option<(wgpu::QuerySet, wgpu::Buffer, wgpu::Buffer)> {
     });
     let resolve = gpu.device.create_buffer(&wgpu::BufferDescriptor {
         label: Some("tile times"),
-        size: 16,
+        size: TICKS,
         usage: wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC,
         mapped_at_creation: false,
     });
-    Some((set, resolve, gpu.staging(16)))
+    Some((set, resolve))
 }
 
-/// A zeroed copy of a storage buffer that can also be read back.
-fn copyable(gpu: &Gpu, like: &wgpu::Buffer) -> wgpu::Buffer {
+/// A zeroed buffer that shaders write and the host can copy from.
+fn device_buffer(gpu: &Gpu, label: &str, size: u64) -> wgpu::Buffer {
     gpu.device.create_buffer(&wgpu::BufferDescriptor {
-        label: Some("counters"),
-        size: like.size(),
+        label: Some(label),
+        size,
         usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
         mapped_at_creation: false,
     })
@@ -294,7 +323,7 @@ fn transfer_table(transfer: &TransferFunction) -> Vec<[f32; 4]> {
         .collect()
 }
 
-fn frame_uniform(grid: &GpuGrid, view: &View) -> Frame {
+fn frame_uniform(grid: &GpuGrid, view: &View, software: bool) -> Frame {
     let camera = &view.camera;
     let aspect = f64::from(view.size[0]) / f64::from(view.size[1]);
     let f32s = |v: DVec3| v.as_vec3().to_array();
@@ -324,8 +353,8 @@ fn frame_uniform(grid: &GpuGrid, view: &View) -> Frame {
             Interpolation::Vertex => INTERPOLATION_VERTEX,
         },
         box_low: f32s(grid.bounds[0]),
-        reserved0: 0,
+        work_limit: WORK_LIMIT[usize::from(!software)],
         box_high: f32s(grid.bounds[1]),
-        reserved1: 0,
+        reserved: 0,
     }
 }

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use super::accel::AccelGrid;
 use super::device::{Gpu, GpuError};
-use super::layout::{COLUMN_CROSSED, GridInfo, LIST_GAPPED, LIST_OFFSET};
+use super::layout::{COLUMN_FLAG, GridInfo, LIST_GAPPED, LIST_OFFSET};
 use crate::model::{CellField, Grid, Ijk, VertexField};
 use crate::scene::Interpolation;
 
@@ -65,18 +65,19 @@ impl GpuGrid {
             nk: dims.nk as u32,
             bins_x: accel.size[0],
             bins_y: accel.size[1],
-            uv_margin: uv_margin(grid) as f32,
+            reserved: 0,
             bin_origin: accel.origin.as_vec2().to_array(),
             bin_size: accel.bin.as_vec2().to_array(),
             depth_low: accel.depth[0] as f32,
             depth_scale: accel.depth[1] as f32,
         };
-        let pillars: Vec<[f32; 4]> = grid
+        let pillars: Vec<[[f32; 2]; 3]> = grid
             .pillars()
             .iter()
             .map(|p| {
-                let (at, slope) = (p.at(origin.z) - origin, p.slope());
-                [at.x as f32, at.y as f32, slope.x as f32, slope.y as f32]
+                let at = (p.at(origin.z) - origin).truncate();
+                let low_bits = at - at.as_vec2().as_dvec2();
+                [at, low_bits, p.slope()].map(|v| v.as_vec2().to_array())
             })
             .collect();
         let depths: Vec<f32> = grid
@@ -176,7 +177,13 @@ fn column_lists(grid: &Grid) -> Vec<[u32; 4]> {
                 .column_lists(column)
                 .map(|list| list.offset() as u32 | if list.gapped() { LIST_GAPPED } else { 0 });
             if layers_cross(grid, column) {
-                lists[0] |= COLUMN_CROSSED;
+                lists[0] |= COLUMN_FLAG;
+            }
+            let level = margin_level(column_margin(grid, column));
+            for bit in 0..3 {
+                if level >> bit & 1 == 1 {
+                    lists[bit + 1] |= COLUMN_FLAG;
+                }
             }
             lists
         })
@@ -192,14 +199,30 @@ fn layers_cross(grid: &Grid, column: usize) -> bool {
     })
 }
 
+/// Margins that a column can have; the shader has the same list.
+const COLUMN_MARGINS: [f64; 8] = [0.002, 0.01, 0.03, 0.08, 0.2, 0.5, 1.0, 2.0];
+
+/// The smallest level that covers a margin with half as much again to spare.
+fn margin_level(margin: f64) -> usize {
+    let wanted = 1.5 * margin + 1e-3;
+    COLUMN_MARGINS
+        .iter()
+        .position(|m| *m >= wanted)
+        .unwrap_or(COLUMN_MARGINS.len() - 1)
+}
+
 /// How far outside the column's horizontal section, in cell widths, a point of a cell may lie: pillars
 /// that are not parallel meet a dipping layer at different depths.
-fn uv_margin(grid: &Grid) -> f64 {
+fn column_margin(grid: &Grid, column: usize) -> f64 {
     let dims = grid.dims();
+    let (i, j) = (column % dims.ni, column / dims.ni);
+    let slopes: [DVec2; 4] = std::array::from_fn(|c| grid.pillar(i, j, c).slope());
+    let mean = slopes.iter().sum::<DVec2>() / 4.0;
+    let spread = slopes.iter().map(|s| s.distance(mean)).fold(0.0, f64::max);
+    if spread == 0.0 {
+        return 0.0;
+    }
     let margin = |ijk: Ijk| {
-        let slopes: [DVec2; 4] = std::array::from_fn(|c| grid.pillar(ijk.i, ijk.j, c).slope());
-        let mean = slopes.iter().sum::<DVec2>() / 4.0;
-        let spread = slopes.iter().map(|s| s.distance(mean)).fold(0.0, f64::max);
         let corners = grid.hexahedron(ijk).0;
         let dip = |c: [usize; 4]| {
             let depths = c.map(|c| corners[c].z);
@@ -210,19 +233,13 @@ fn uv_margin(grid: &Grid) -> f64 {
             .iter()
             .map(|&[a, b]| corners[a].truncate().distance(corners[b].truncate()))
             .fold(f64::MAX, f64::min);
-        let shift = spread * dip([0, 1, 2, 3]).max(dip([4, 5, 6, 7]));
-        if shift > 0.0 {
-            shift / width.max(1e-9)
-        } else {
-            0.0
-        }
+        spread * dip([0, 1, 2, 3]).max(dip([4, 5, 6, 7])) / width.max(1e-9)
     };
-    let largest = grid
-        .active_cells()
-        .par_iter()
-        .map(|&cell| margin(dims.ijk(cell)))
-        .reduce(|| 0.0, f64::max);
-    (1.5 * largest + 1e-3).min(2.0)
+    let cells = (0..dims.nk).map(|k| Ijk { i, j, k });
+    cells
+        .filter(|&c| grid.is_active(c))
+        .map(margin)
+        .fold(0.0, f64::max)
 }
 
 /// Slots column by column, layers fastest: bits of the drawn cells and the count before each word.

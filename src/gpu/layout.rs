@@ -22,9 +22,9 @@ pub struct Frame {
     pub grid_from_world_z: [f32; 3],
     pub interpolation: u32,
     pub box_low: [f32; 3],
-    pub reserved0: u32,
+    pub work_limit: u32,
     pub box_high: [f32; 3],
-    pub reserved1: u32,
+    pub reserved: u32,
 }
 
 /// The part of the picture that one dispatch makes.
@@ -34,6 +34,10 @@ pub struct Frame {
 pub struct Tile {
     pub origin: [u32; 2],
     pub size: [u32; 2],
+    pub resume: u32,
+    pub reserved0: u32,
+    pub reserved1: u32,
+    pub reserved2: u32,
 }
 
 /// Sizes of the grid and its acceleration grid.
@@ -46,7 +50,7 @@ pub struct GridInfo {
     pub nk: u32,
     pub bins_x: u32,
     pub bins_y: u32,
-    pub uv_margin: f32,
+    pub reserved: u32,
     pub bin_origin: [f32; 2],
     pub bin_size: [f32; 2],
     pub depth_low: f32,
@@ -76,7 +80,7 @@ pub const LUT_SIZE: u32 = 4096;
 pub const NOT_FOUND: u32 = u32::MAX;
 /// Flag of a depth list with gaps.
 pub const LIST_GAPPED: u32 = 0x8000_0000;
-/// Flag of a column whose layers cross, in its first list reference.
-pub const COLUMN_CROSSED: u32 = 0x4000_0000;
+/// Flag of a column: in its first list reference that layers cross, in the others the margin's level.
+pub const COLUMN_FLAG: u32 = 0x4000_0000;
 /// Mask of the offset in a list reference.
 pub const LIST_OFFSET: u32 = 0x3fff_ffff;

@@ -12,7 +12,8 @@ pub struct Rect {
 }
 
 impl Rect {
-    fn area(self) -> u64 {
+    /// Number of pixels.
+    pub fn area(self) -> u64 {
         u64::from(self.size[0]) * u64::from(self.size[1])
     }
 
@@ -28,6 +29,8 @@ impl Rect {
 
 /// Time that one submission should take at most.
 pub const BUDGET: Duration = Duration::from_millis(80);
+/// Pixels of a tile at most: each has a state of 32 bytes on the device.
+pub const MAX_AREA: u64 = 1 << 20;
 /// First tile on an adapter of unknown speed, in pixels.
 const FIRST_AREA: u64 = 16 * 16;
 
@@ -85,7 +88,7 @@ impl Tiles {
         } else if area * 2 > self.area {
             // A tile of the full allowance that was fast enough: grow, but not beyond what is sure.
             let grown = (area as f64 * (ratio * 0.5).clamp(1.0, 4.0)) as u64;
-            self.area = self.area.max(grown);
+            self.area = self.area.max(grown).min(MAX_AREA);
         }
     }
 }

@@ -1,1 +1,17 @@
-//! x
+//! The truth that pictures are measured against: the same integral on the CPU, in plain f64.
+//!
+//! Nothing here is shared with the device: cells are found by a tree of boxes and Newton's method,
+//! every sample of the lattice inside the model's box is located anew, and nothing is remembered
+//! from one sample to the next.
+
+mod cell;
+mod integrate;
+mod locate;
+mod render;
+#[cfg(test)]
+mod tests;
+mod tree;
+
+pub use integrate::{Integrator, Ray, value_at};
+pub use locate::{Located, Locator};
+pub use render::render;

@@ -1,0 +1,174 @@
+//! `strataray info`: what a case holds, for people or as JSON.
+
+use std::path::PathBuf;
+
+use rayon::prelude::*;
+use serde_json::{Value, json};
+use strataray::case::{Case, Kind};
+use strataray::load;
+use strataray::model::{MapAxes, Spaces};
+
+use super::Verbosity;
+use super::progress::Reporter;
+
+#[derive(clap::Args)]
+#[command(
+    after_help = "Example:\n  strataray info REEK.EGRID --json --stats PORO --stats SWAT@last"
+)]
+pub struct Arguments {
+    /// Any file of the case, or its base name.
+    case: PathBuf,
+    /// Print JSON.
+    #[arg(long)]
+    json: bool,
+    /// Statistics of a property, of dynamic ones at a step (default last).
+    #[arg(long, value_name = "NAME[@STEP]")]
+    stats: Vec<String>,
+    #[command(flatten)]
+    verbosity: Verbosity,
+}
+
+pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    let reporter = Reporter::new(arguments.verbosity);
+    let case = load::open(&arguments.case)?;
+    for note in &case.about.notes {
+        reporter.note(note);
+    }
+    let facts = facts(&case, &arguments.stats)?;
+    if arguments.json {
+        println!("{}", serde_json::to_string_pretty(&facts)?);
+    } else {
+        print_text(&case, &facts);
+    }
+    Ok(())
+}
+
+fn facts(case: &Case, stats: &[String]) -> anyhow::Result<Value> {
+    let grid = &case.grid;
+    let dims = grid.dims();
+    let faults = grid.fault_faces();
+    let active = || grid.active_cells().par_iter().map(|&c| dims.ijk(c));
+    let signed: f64 = active().map(|c| grid.hexahedron(c).signed_volume()).sum();
+    let mut facts = json!({
+        "case": case.about.name,
+        "files": case.about.files.iter().map(|f| f.display().to_string()).collect::<Vec<_>>(),
+        "dims": [dims.ni, dims.nj, dims.nk],
+        "cells": dims.cells(),
+        "active": grid.active_cells().len(),
+        "units": case.about.length_unit,
+        "map_axes": case.about.map_axes,
+        "handedness": if signed < 0.0 { "left" } else { "right" },
+        "bounds": grid.bounds().map(|[a, b]| json!({"min": a.to_array(), "max": b.to_array()})),
+        "bulk_volume": signed.abs(),
+        "thin_cells": active().filter(|&c| !grid.has_thickness(c)).count(),
+        "fault_faces": {
+            "i": faults[0],
+            "j": faults[1],
+            "named": case.about.named_faults.iter().map(|f| json!({"name": f.name, "faces": f.faces})).collect::<Vec<_>>(),
+        },
+        "nnc": case.about.nnc,
+        "lgr": case.about.local_grids.iter().map(|g| json!({"name": g.name, "dims": g.dims, "active": g.active})).collect::<Vec<_>>(),
+        "porosity_model": case.about.porosity_model,
+        "properties": case.properties.iter().map(|p| {
+            let mut entry = json!({"name": p.name, "kind": p.kind, "unit": p.unit, "values": "active"});
+            if p.kind == Kind::Dynamic {
+                entry["steps"] = json!(p.steps);
+            }
+            entry
+        }).collect::<Vec<_>>(),
+        "steps": case.steps.iter().enumerate().map(|(index, s)| {
+            json!({"index": index, "report": s.report, "date": s.date, "days": s.days})
+        }).collect::<Vec<_>>(),
+        "wells": case.about.wells,
+        "notes": case.about.notes,
+    });
+    if let Some(axes) = grid.map_axes() {
+        facts["map_bounds"] = map_bounds(case, axes);
+    }
+    let mut statistics = serde_json::Map::new();
+    for asked in stats {
+        let (name, step) = match asked.rsplit_once('@').filter(|_| !asked.contains('-')) {
+            Some((name, step)) => (name, case.step(step)?),
+            None => (asked.as_str(), case.step("last")?),
+        };
+        statistics.insert(asked.clone(), json!(case.field(name, step)?.statistics()));
+    }
+    if !statistics.is_empty() {
+        facts["stats"] = Value::Object(statistics);
+    }
+    Ok(facts)
+}
+
+/// Bounds of the active cells in map coordinates; depth stays positive down.
+fn map_bounds(case: &Case, axes: MapAxes) -> Value {
+    let spaces = Spaces::new(Some(axes), 1.0);
+    let grid = &case.grid;
+    let corners = grid.active_cells().par_iter().flat_map_iter(|&cell| {
+        let corners = grid.hexahedron(grid.dims().ijk(cell)).0;
+        corners.map(|c| {
+            let world = spaces.world_from_grid.transform_point3(c);
+            [world.x, world.y, -world.z]
+        })
+    });
+    let bounds = corners.map(|c| [c, c]).reduce_with(|a, b| {
+        [
+            std::array::from_fn(|n| a[0][n].min(b[0][n])),
+            std::array::from_fn(|n| a[1][n].max(b[1][n])),
+        ]
+    });
+    bounds.map_or(Value::Null, |[a, b]| json!({"min": a, "max": b}))
+}
+
+fn print_text(case: &Case, facts: &Value) {
+    let dims = case.grid.dims();
+    println!("{}", case.about.name);
+    println!(
+        "  {} x {} x {} = {} cells, {} active",
+        dims.ni,
+        dims.nj,
+        dims.nk,
+        dims.cells(),
+        facts["active"]
+    );
+    println!(
+        "  length unit {}, bulk volume {:.6e}, {}-handed",
+        case.about.length_unit,
+        facts["bulk_volume"].as_f64().unwrap_or_default(),
+        facts["handedness"].as_str().unwrap_or_default()
+    );
+    println!(
+        "  fault faces {} along i, {} along j; {} non-neighbor connections; {} local grids",
+        facts["fault_faces"]["i"],
+        facts["fault_faces"]["j"],
+        case.about.nnc,
+        case.about.local_grids.len()
+    );
+    for kind in [Kind::Static, Kind::Dynamic, Kind::Derived] {
+        let names: Vec<_> = case
+            .properties
+            .iter()
+            .filter(|p| p.kind == kind)
+            .map(|p| p.name.as_str())
+            .collect();
+        if !names.is_empty() {
+            println!("  {kind:?}: {}", names.join(" "));
+        }
+    }
+    for (index, step) in case.steps.iter().enumerate() {
+        println!(
+            "  step {index}: report {}, {}, {} days",
+            step.report, step.date, step.days
+        );
+    }
+    if !case.about.wells.is_empty() {
+        println!("  wells: {}", case.about.wells.join(" "));
+    }
+    if let Some(stats) = facts.get("stats").and_then(Value::as_object) {
+        for (name, s) in stats {
+            println!(
+                "  {name}: min {} max {} mean {} undefined {}",
+                s["min"], s["max"], s["mean"], s["undefined"]
+            );
+        }
+    }
+}

@@ -1,0 +1,95 @@
+//! The command line: one file per command.
+
+mod info;
+mod probe;
+mod progress;
+mod render;
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+const EXAMPLES: &str = "Examples:
+  strataray info samples/scissor/SCISSOR.EGRID
+  strataray render samples/scissor/SCISSOR.EGRID --property SWAT --step last -o swat.png
+  strataray probe samples/scissor/SCISSOR.EGRID --property PORO --points points.csv";
+
+/// Sees oil and gas reservoirs from the inside: volume ray casting of corner-point grids.
+#[derive(Parser)]
+#[command(version, about, after_help = EXAMPLES, args_conflicts_with_subcommands = true)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Option<Command>,
+    /// Cases to open in the viewer.
+    cases: Vec<PathBuf>,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// What a case holds.
+    Info(info::Arguments),
+    /// One picture, no window needed.
+    Render(render::Arguments),
+    /// Finds the cell, its parameters and the value at given points.
+    Probe(probe::Arguments),
+    /// Films over time steps or a camera turn (not in this version).
+    Animate(Later),
+    /// Strategies side by side (not in this version).
+    Compare(Later),
+    /// Times loading and rendering (not in this version).
+    Bench(Later),
+    /// Writes a synthetic model (not in this version).
+    Sample(Later),
+}
+
+/// Arguments of a command that a later version brings.
+#[derive(clap::Args)]
+struct Later {
+    #[arg(trailing_var_arg = true, allow_hyphen_values = true, hide = true)]
+    ignored: Vec<String>,
+}
+
+/// How much to say on standard error.
+#[derive(clap::Args, Clone, Copy)]
+pub struct Verbosity {
+    /// Say more, such as the time of each stage.
+    #[arg(long, global = true)]
+    verbose: bool,
+    /// Say nothing but errors.
+    #[arg(long, global = true, conflicts_with = "verbose")]
+    quiet: bool,
+}
+
+/// Runs the command line and turns an error into one sentence and exit code 1.
+pub fn run() -> ExitCode {
+    let arguments = Arguments::parse();
+    let result = match arguments.command {
+        Some(Command::Info(a)) => info::run(&a),
+        Some(Command::Render(a)) => render::run(&a),
+        Some(Command::Probe(a)) => probe::run(&a),
+        Some(Command::Animate(a)) => later("animate", &a),
+        Some(Command::Compare(a)) => later("compare", &a),
+        Some(Command::Bench(a)) => later("bench", &a),
+        Some(Command::Sample(a)) => later("sample", &a),
+        None => Err(anyhow::anyhow!(
+            "the viewer is not part of this version; use `strataray render {}` for a picture, or `strataray --help`",
+            arguments
+                .cases
+                .first()
+                .map_or("CASE".into(), |c| c.display().to_string())
+        )),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("strataray: {error:#}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn later(command: &str, arguments: &Later) -> anyhow::Result<()> {
+    let _ = &arguments.ignored;
+    anyhow::bail!("`{command}` is not part of this version")
+}

@@ -1,0 +1,181 @@
+//! `strataray probe`: point location as a tool.
+
+use std::io::Write;
+use std::path::PathBuf;
+
+use anyhow::Context;
+use glam::DVec3;
+use strataray::case::Case;
+use strataray::gpu::{Gpu, GpuGrid, probe};
+use strataray::load;
+use strataray::model::{CellField, Ijk, Spaces, VertexField};
+use strataray::reference::{self, Locator};
+use strataray::scene::Interpolation;
+
+use super::Verbosity;
+use super::progress::Reporter;
+
+#[derive(Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum On {
+    Gpu,
+    Cpu,
+}
+
+#[derive(clap::Args)]
+#[command(
+    after_help = "Points are lines of x,y,depth (a first line of names is allowed).
+Example:
+  strataray probe REEK.EGRID --property PORO --points wells.csv --on cpu -o values.csv"
+)]
+pub struct Arguments {
+    /// Any file of the case, or its base name.
+    case: PathBuf,
+    /// Property whose value to give.
+    #[arg(long)]
+    property: String,
+    /// Time step: number from 0, date, first or last.
+    #[arg(long, default_value = "last")]
+    step: String,
+    /// CSV of map x, map y and depth (positive down).
+    #[arg(long)]
+    points: PathBuf,
+    /// The points are raw grid coordinates, MAPAXES not applied.
+    #[arg(long)]
+    grid_coordinates: bool,
+    /// Values within a cell.
+    #[arg(long, value_enum, default_value = "cell")]
+    interpolation: Interpolation,
+    /// Where to compute.
+    #[arg(long, value_enum, default_value = "gpu")]
+    on: On,
+    /// Part of the name of the GPU adapter to use.
+    #[arg(long)]
+    adapter: Option<String>,
+    /// Where to write; standard output by default.
+    #[arg(short, long)]
+    output: Option<PathBuf>,
+    #[command(flatten)]
+    verbosity: Verbosity,
+}
+
+/// A found point: cell, (s, t, r), value.
+type Answer = Option<(Ijk, DVec3, f64)>;
+
+pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    let reporter = Reporter::new(arguments.verbosity);
+    let case = load::open(&arguments.case)?;
+    for note in &case.about.notes {
+        reporter.note(note);
+    }
+    let step = case.step(&arguments.step)?;
+    let field = case.field(&arguments.property, step)?;
+    let given = read_points(arguments)?;
+    let axes = case.grid.map_axes().filter(|_| !arguments.grid_coordinates);
+    let spaces = Spaces::new(axes, 1.0);
+    let in_grid: Vec<DVec3> = given
+        .iter()
+        .map(|p| {
+            spaces
+                .grid_from_world
+                .transform_point3(DVec3::new(p.x, p.y, -p.z))
+        })
+        .collect();
+    let answers = match arguments.on {
+        On::Cpu => on_cpu(&case, &field, &in_grid, arguments.interpolation),
+        On::Gpu => on_gpu(arguments, &case, &field, &in_grid)?,
+    };
+    match &arguments.output {
+        Some(path) => {
+            let file = std::fs::File::create(path)
+                .with_context(|| format!("cannot write {}", path.display()))?;
+            write_answers(std::io::BufWriter::new(file), &given, &answers)
+        }
+        None => write_answers(std::io::stdout().lock(), &given, &answers),
+    }
+}
+
+fn on_cpu(
+    case: &Case,
+    field: &CellField,
+    points: &[DVec3],
+    interpolation: Interpolation,
+) -> Vec<Answer> {
+    use rayon::prelude::*;
+    let locator = Locator::new(&case.grid);
+    let vertices =
+        (interpolation == Interpolation::Vertex).then(|| VertexField::new(&case.grid, field));
+    let answer = |&point: &DVec3| {
+        let located = locator.locate(point)?;
+        let value = reference::value_at(&case.grid, &located, field, vertices.as_ref())?;
+        Some((located.ijk, located.str, value))
+    };
+    points.par_iter().map(answer).collect()
+}
+
+fn on_gpu(
+    arguments: &Arguments,
+    case: &Case,
+    field: &CellField,
+    points: &[DVec3],
+) -> anyhow::Result<Vec<Answer>> {
+    let gpu = Gpu::new(arguments.adapter.as_deref())?;
+    let mut grid = GpuGrid::new(&gpu, &case.grid)?;
+    let cells = case.grid.active_cells().iter().zip(field.values());
+    let drawn: Vec<bool> = cells
+        .map(|(&c, v)| !v.is_nan() && case.grid.has_thickness(case.grid.dims().ijk(c)))
+        .collect();
+    grid.show(&gpu, &case.grid, field, &drawn, arguments.interpolation)?;
+    let located = probe::locate(&gpu, &grid, &case.grid, points, arguments.interpolation)?;
+    Ok(located
+        .into_iter()
+        .map(|l| l.map(|l| (l.ijk, l.parameters, l.value)))
+        .collect())
+}
+
+fn read_points(arguments: &Arguments) -> anyhow::Result<Vec<DVec3>> {
+    let path = &arguments.points;
+    let mut reader = csv::ReaderBuilder::new()
+        .has_headers(false)
+        .flexible(true)
+        .trim(csv::Trim::All)
+        .comment(Some(b'#'))
+        .from_path(path)
+        .with_context(|| format!("cannot read {}", path.display()))?;
+    let mut points = Vec::new();
+    for (row, record) in reader.records().enumerate() {
+        let record = record.with_context(|| format!("cannot read {}", path.display()))?;
+        let numbers: Option<Vec<f64>> = record.iter().take(3).map(|f| f.parse().ok()).collect();
+        match numbers.as_deref() {
+            Some(&[x, y, z]) if x.is_finite() && y.is_finite() && z.is_finite() => {
+                points.push(DVec3::new(x, y, z))
+            }
+            _ if row == 0 && record.iter().all(|f| f.parse::<f64>().is_err()) => {}
+            _ => anyhow::bail!(
+                "{}:{}: expected x,y,depth, found {}",
+                path.display(),
+                record.position().map_or(0, csv::Position::line),
+                record.iter().collect::<Vec<_>>().join(",")
+            ),
+        }
+    }
+    Ok(points)
+}
+
+fn write_answers(mut out: impl Write, points: &[DVec3], answers: &[Answer]) -> anyhow::Result<()> {
+    writeln!(out, "x,y,depth,i,j,k,s,t,r,value")?;
+    for (p, answer) in points.iter().zip(answers) {
+        match answer {
+            Some((ijk, parameters, value)) => {
+                let [i, j, k] = ijk.one_based();
+                let [s, t, r] = parameters.to_array();
+                writeln!(
+                    out,
+                    "{},{},{},{i},{j},{k},{s},{t},{r},{value}",
+                    p.x, p.y, p.z
+                )?;
+            }
+            None => writeln!(out, "{},{},{},,,,,,,", p.x, p.y, p.z)?,
+        }
+    }
+    Ok(out.flush()?)
+}

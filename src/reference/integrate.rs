@@ -1,0 +1,129 @@
+//! The emission-absorption integral along one ray.
+
+use glam::DVec3;
+
+use super::locate::{Located, Locator};
+use crate::model::corner_point::weights;
+use crate::model::{CellField, Grid, VertexField};
+use crate::scene::{Interpolation, View};
+
+/// A ray in world space.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ray {
+    /// Where it starts.
+    pub origin: DVec3,
+    /// Where it goes, unit length.
+    pub direction: DVec3,
+}
+
+impl Ray {
+    /// The ray through the middle of a pixel; row 0 is at the top.
+    pub fn through_pixel(view: &View, x: u32, y: u32) -> Self {
+        let [width, height] = view.size.map(f64::from);
+        let camera = &view.camera;
+        let right = (2.0 * (f64::from(x) + 0.5) / width - 1.0) * width / height;
+        let up = 1.0 - 2.0 * (f64::from(y) + 0.5) / height;
+        let direction = camera.forward
+            + right * camera.tan_half_fovy * camera.right
+            + up * camera.tan_half_fovy * camera.up;
+        Self {
+            origin: camera.eye,
+            direction: direction.normalize(),
+        }
+    }
+
+    /// Distances at which the ray enters and leaves a box, none behind its origin.
+    fn within(&self, [low, high]: [DVec3; 2]) -> Option<[f64; 2]> {
+        let (mut enter, mut leave) = (0.0f64, f64::INFINITY);
+        for axis in 0..3 {
+            let to = |plane: DVec3| (plane[axis] - self.origin[axis]) / self.direction[axis];
+            let (a, b) = (to(low), to(high));
+            // A ray along a face gives 0 / 0, which `max` and `min` pass over.
+            enter = enter.max(a.min(b));
+            leave = leave.min(a.max(b));
+        }
+        (enter <= leave).then_some([enter, leave])
+    }
+}
+
+/// Integrates rays through one view of a grid.
+#[derive(Debug)]
+pub struct Integrator<'a> {
+    grid: &'a Grid,
+    view: &'a View,
+    locator: Locator,
+    vertices: Option<VertexField>,
+}
+
+impl<'a> Integrator<'a> {
+    /// Prepares the search for cells and, where asked for, the averages at the vertices.
+    pub fn new(grid: &'a Grid, view: &'a View) -> Self {
+        let by_vertex = view.interpolation == Interpolation::Vertex;
+        Self {
+            grid,
+            view,
+            locator: Locator::new(grid),
+            vertices: by_vertex.then(|| VertexField::new(grid, &view.field)),
+        }
+    }
+
+    /// Linear red, green, blue, each times alpha, and alpha of what a ray passes through.
+    pub fn ray(&self, ray: Ray) -> [f64; 4] {
+        let Some([enter, leave]) = ray.within(self.view.world_bounds) else {
+            return [0.0; 4];
+        };
+        let step = self.view.sampling_step;
+        let mut color = [0.0; 3];
+        let mut transmittance = 1.0;
+        let mut number = (enter / step - 0.5).ceil().max(0.0);
+        while (number + 0.5) * step <= leave && transmittance >= self.view.early_termination {
+            let position = ray.origin + (number + 0.5) * step * ray.direction;
+            if let Some(value) = self.value(position) {
+                let position = self.view.transfer.position(value);
+                let alpha = 1.0 - (-self.view.transfer.extinction(position) * step).exp();
+                let rgb = self.view.transfer.linear_rgb(position);
+                for (sum, channel) in color.iter_mut().zip(rgb) {
+                    *sum += transmittance * alpha * channel;
+                }
+                transmittance *= 1.0 - alpha;
+            }
+            number += 1.0;
+        }
+        let [red, green, blue] = color;
+        [red, green, blue, 1.0 - transmittance]
+    }
+
+    /// The value at a point of world space; `None` where nothing is drawn.
+    fn value(&self, position: DVec3) -> Option<f64> {
+        let point = self.view.spaces.grid_from_world.transform_point3(position);
+        let located = self.locator.locate(point)?;
+        let cell = self.grid.dims().cell(located.ijk);
+        let active = self.grid.active_index(cell)?;
+        if !self.view.drawn[active.0 as usize] {
+            return None;
+        }
+        value_at(
+            self.grid,
+            &located,
+            &self.view.field,
+            self.vertices.as_ref(),
+        )
+    }
+}
+
+/// The value at a place in a cell: interpolated between the vertices where these are given, else
+/// the cell's own. `None` in a cell without a value.
+pub fn value_at(
+    grid: &Grid,
+    located: &Located,
+    field: &CellField,
+    vertices: Option<&VertexField>,
+) -> Option<f64> {
+    let own = f64::from(field.value(grid, grid.dims().cell(located.ijk))?);
+    let value = vertices.map_or(own, |vertices| {
+        let corners = vertices.corners(grid, located.ijk);
+        let weights = weights(located.str);
+        corners.iter().zip(weights).map(|(v, w)| v * w).sum()
+    });
+    value.is_finite().then_some(value)
+}

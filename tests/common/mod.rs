@@ -1,0 +1,53 @@
+//! Helpers of the tests: where the data is, whether there is a GPU, how to compare.
+#![allow(dead_code, reason = "each test file uses its own part")]
+#![allow(
+    missing_docs,
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    reason = "tests"
+)]
+
+use std::path::{Path, PathBuf};
+
+use strataray::gpu::Gpu;
+
+/// The folder of real models, or `None` with a sentence where it is absent.
+pub fn data(file: &str) -> Option<PathBuf> {
+    let Some(folder) = std::env::var_os("STRATARAY_DATA") else {
+        eprintln!("SKIPPED: STRATARAY_DATA is not set, so {file} is not there");
+        return None;
+    };
+    let path = Path::new(&folder).join(file);
+    assert!(path.exists(), "{} is missing", path.display());
+    Some(path)
+}
+
+/// The bundled sample.
+pub fn sample() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("samples/scissor/SCISSOR.EGRID")
+}
+
+/// The sample and the real models that pictures are compared on.
+pub fn models() -> Vec<PathBuf> {
+    let real = [
+        "reek/REEK.EGRID",
+        "brugge/BRUGGE_0000.EGRID",
+        "editnnc/9_EDITNNC.EGRID",
+    ];
+    let mut models = vec![sample()];
+    models.extend(real.iter().filter_map(|f| data(f)));
+    models
+}
+
+/// An adapter; without one the test is skipped, or fails where REQUIRE_GPU is 1.
+pub fn gpu() -> Option<Gpu> {
+    match Gpu::new(None) {
+        Ok(gpu) => Some(gpu),
+        Err(error) if std::env::var("REQUIRE_GPU").is_ok_and(|v| v == "1") => panic!("{error}"),
+        Err(error) => {
+            eprintln!("SKIPPED: {error}");
+            None
+        }
+    }
+}

@@ -1,0 +1,127 @@
+//! Host mirrors against `shaders/shared/layout.wgsl`: names, offsets, spans, constants.
+#![allow(missing_docs, clippy::unwrap_used, clippy::panic, reason = "tests")]
+
+use std::mem::{offset_of, size_of};
+
+use strataray::gpu::layout::{self, Found, Frame, GridInfo, Tile};
+use strataray::gpu::shader;
+use wgpu::naga::{Expression, Literal, Module, TypeInner, front::wgsl};
+
+fn module() -> Module {
+    wgsl::parse_str(&shader::compose("layout").unwrap()).unwrap()
+}
+
+/// Member names with offsets, and the span, of a WGSL struct.
+fn members(module: &Module, name: &str) -> (Vec<(String, usize)>, usize) {
+    let found = module
+        .types
+        .iter()
+        .find(|(_, t)| t.name.as_deref() == Some(name));
+    let Some((_, ty)) = found else {
+        panic!("{name} is not in layout.wgsl")
+    };
+    let TypeInner::Struct { members, span } = &ty.inner else {
+        panic!("{name} is no struct")
+    };
+    let list = members
+        .iter()
+        .map(|m| (m.name.clone().unwrap(), m.offset as usize));
+    (list.collect(), *span as usize)
+}
+
+macro_rules! agrees {
+    ($module:expr, $type:ident, $($field:ident),*) => {{
+        let host = vec![$((stringify!($field).to_owned(), offset_of!($type, $field))),*];
+        let (wgsl, span) = members($module, stringify!($type));
+        assert_eq!(wgsl, host, stringify!($type));
+        // A uniform's span is rounded up; the host may end earlier by trailing padding only.
+        assert_eq!(span, size_of::<$type>(), stringify!($type));
+    }};
+}
+
+#[test]
+fn structs_agree() {
+    let m = &module();
+    agrees!(
+        m,
+        Frame,
+        eye,
+        step,
+        forward,
+        early_termination,
+        right,
+        value_low,
+        up,
+        value_scale,
+        grid_from_world_x,
+        width,
+        grid_from_world_y,
+        height,
+        grid_from_world_z,
+        interpolation,
+        box_low,
+        work_limit,
+        box_high,
+        reserved
+    );
+    agrees!(
+        m, Tile, origin, size, resume, reserved0, reserved1, reserved2
+    );
+    agrees!(
+        m,
+        GridInfo,
+        ni,
+        nj,
+        nk,
+        bins_x,
+        bins_y,
+        reserved,
+        bin_origin,
+        bin_size,
+        depth_low,
+        depth_scale
+    );
+    agrees!(
+        m, Found, column, layer, reserved0, reserved1, parameters, value
+    );
+}
+
+#[test]
+fn constants_agree() {
+    let m = module();
+    for (name, host) in [
+        ("INTERPOLATION_CELL", layout::INTERPOLATION_CELL),
+        ("INTERPOLATION_VERTEX", layout::INTERPOLATION_VERTEX),
+        ("LUT_SIZE", layout::LUT_SIZE),
+        ("NOT_FOUND", layout::NOT_FOUND),
+        ("LIST_GAPPED", layout::LIST_GAPPED),
+        ("COLUMN_FLAG", layout::COLUMN_FLAG),
+        ("LIST_OFFSET", layout::LIST_OFFSET),
+    ] {
+        let (_, constant) = m
+            .constants
+            .iter()
+            .find(|(_, c)| c.name.as_deref() == Some(name))
+            .unwrap();
+        let Expression::Literal(Literal::U32(value)) = m.global_expressions[constant.init] else {
+            panic!("{name} is no u32")
+        };
+        assert_eq!(value, host, "{name}");
+    }
+}
+
+#[test]
+fn every_shader_is_valid() {
+    for name in shader::ENTRIES {
+        let text = shader::compose(name).unwrap();
+        let module = wgsl::parse_str(&text)
+            .unwrap_or_else(|e| panic!("{name}: {}", e.emit_to_string(&text)));
+        wgpu::naga::valid::Validator::new(
+            wgpu::naga::valid::ValidationFlags::all(),
+            wgpu::naga::valid::Capabilities::default(),
+        )
+        .validate(&module)
+        .unwrap_or_else(|e| panic!("{name}: {e:?}"));
+    }
+    assert!(shader::compose("no_such_shader").is_err());
+}
