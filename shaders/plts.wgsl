@@ -6,7 +6,7 @@
 // result overshoots most, and through the acceleration grid again where the cells do not join.
 // Departure from the paper: the start value is extrapolated with the last inverse Jacobian, so that
 // one iteration usually does, and empty bins are skipped instead of rasterizing the hull. A ray that
-// has done frame.work_limit loop iterations pauses: drivers end long loops without a word (llvmpipe
+// has done tile.work_limit loop iterations pauses: drivers end long loops without a word (llvmpipe
 // after 65,535 iterations of all loops together), and no submission may run for long.
 #import locate
 #import transfer
@@ -40,7 +40,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     var topological_steps = 0u;
     var fallbacks = 0u;
     var work = 0u;
-    while n < ray.count && sum.transmittance >= frame.early_termination && work < frame.work_limit {
+    while n < ray.count && sum.transmittance >= frame.early_termination && work < tile.work_limit {
         work += 1u;
         let point = ray.base + n * ray.advance;
         var found = false;
@@ -96,6 +96,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     count(COUNT_ITERATIONS, iterations);
     count(COUNT_STEPS, topological_steps);
     count(COUNT_FALLBACKS, fallbacks);
+    count(COUNT_WORK, work);
 }
 
 // Loads the drawn cell that shares the whole face which `uvw` overshoots most; `uvw` becomes a start

@@ -191,7 +191,7 @@ impl Case {
                 Err(self.unknown_step(&step.to_string()))
             }
             Kind::Derived => self.derived(property, step),
-            _ => self.from_source(&property.name, step),
+            _ => self.file_values(&property.name, step),
         }
     }
 
@@ -239,7 +239,7 @@ impl Case {
         }
     }
 
-    fn from_source(&self, name: &str, step: usize) -> Result<CellField, CaseError> {
+    fn file_values(&self, name: &str, step: usize) -> Result<CellField, CaseError> {
         match self.source.values(name, step)? {
             Some(values) => Ok(CellField::new(values)),
             None => Err(CaseError::NotAtStep {
@@ -258,7 +258,7 @@ impl Case {
                 let mut soil = vec![1.0; self.grid.active_cells().len()];
                 for phase in ["SWAT", "SGAS"] {
                     if self.properties.iter().any(|p| p.name == phase) {
-                        let field = self.from_source(phase, step)?;
+                        let field = self.file_values(phase, step)?;
                         for (s, v) in soil.iter_mut().zip(field.values()) {
                             *s -= v;
                         }
@@ -268,9 +268,9 @@ impl Case {
             }
             _ => {
                 let thickness = self.derived_thickness()?;
-                let poro = self.from_source("PORO", step)?;
+                let poro = self.file_values("PORO", step)?;
                 let ntg = match self.properties.iter().any(|p| p.name == "NTG") {
-                    true => self.from_source("NTG", step)?.values().to_vec(),
+                    true => self.file_values("NTG", step)?.values().to_vec(),
                     false => vec![1.0; thickness.len()],
                 };
                 let terms = poro.values().iter().zip(&ntg).zip(&thickness);

@@ -60,12 +60,12 @@ fn structs_agree() {
         grid_from_world_z,
         interpolation,
         box_low,
-        work_limit,
+        reserved0,
         box_high,
-        reserved
+        reserved1
     );
     agrees!(
-        m, Tile, origin, size, resume, reserved0, reserved1, reserved2
+        m, Tile, origin, size, resume, work_limit, reserved0, reserved1
     );
     agrees!(
         m,

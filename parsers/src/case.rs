@@ -67,6 +67,8 @@ fn role(path: &Path) -> Option<Role> {
         "UNRST" => Role::Unified,
         "DATA" => Role::Deck,
         "GRDECL" => Role::Text,
+        // Text grids are called .grid too; a binary file starts with the length of its first record.
+        "GRID" if !starts_binary(path) => Role::Text,
         "GRID" => Role::NotRead("the legacy GRID format is not read yet"),
         "FEGRID" | "FINIT" | "FUNRST" | "FGRID" => {
             Role::NotRead("formatted files are not read yet")
@@ -74,6 +76,13 @@ fn role(path: &Path) -> Option<Role> {
         _ if numbered('F').is_some() => Role::NotRead("formatted files are not read yet"),
         _ => Role::Separate(numbered('X')?),
     })
+}
+
+fn starts_binary(path: &Path) -> bool {
+    let mut start = [0; 4];
+    let read =
+        std::fs::File::open(path).and_then(|mut f| std::io::Read::read_exact(&mut f, &mut start));
+    read.is_ok() && start == 16i32.to_be_bytes()
 }
 
 /// Finds the case that `path` names: one of its files, or its base name without extension.

@@ -5,7 +5,7 @@
 @group(0) @binding(1) var<uniform> tile: Tile;
 @group(0) @binding(2) var target_image: texture_storage_2d<rgba32float, write>;
 // Pairs of low and high words, see the COUNT constants.
-@group(0) @binding(3) var<storage, read_write> counters: array<atomic<u32>, 10>;
+@group(0) @binding(3) var<storage, read_write> counters: array<atomic<u32>, 12>;
 // Two a pixel of the tile: color and transmittance so far; next sample, or DONE.
 @group(0) @binding(4) var<storage, read_write> ray_states: array<vec4f>;
 
@@ -14,6 +14,7 @@ const COUNT_ITERATIONS: u32 = 1u;
 const COUNT_STEPS: u32 = 2u;
 const COUNT_FALLBACKS: u32 = 3u;
 const COUNT_FINISHED: u32 = 4u;
+const COUNT_WORK: u32 = 5u;
 const DONE: f32 = -1.0;
 
 struct Ray {

@@ -22,10 +22,9 @@ struct Frame {
     interpolation: u32,
     // Box of the active cells, grid space relative to the origin.
     box_low: vec3f,
-    // Loop iterations after which a ray pauses until the next dispatch.
-    work_limit: u32,
+    reserved0: u32,
     box_high: vec3f,
-    reserved: u32,
+    reserved1: u32,
 }
 
 // The part of the picture that one dispatch makes, in pixels.
@@ -34,9 +33,10 @@ struct Tile {
     size: vec2u,
     // 1 where rays go on from their states.
     resume: u32,
+    // Loop iterations after which a ray pauses until the next dispatch.
+    work_limit: u32,
     reserved0: u32,
     reserved1: u32,
-    reserved2: u32,
 }
 
 struct GridInfo {

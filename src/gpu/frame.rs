@@ -8,7 +8,7 @@ use glam::DVec3;
 use super::device::{Gpu, GpuError};
 use super::grid_upload::GpuGrid;
 use super::layout::{Frame, INTERPOLATION_CELL, INTERPOLATION_VERTEX, LUT_SIZE, Tile};
-use super::tiles::{self, Rect, Tiles};
+use super::tiles::{self, Pace, Rect};
 use crate::picture::Image;
 use crate::scene::{Interpolation, View};
 use crate::strategies::RenderStrategy;
@@ -35,6 +35,8 @@ pub struct FrameStats {
     pub grid_fallbacks: u64,
     /// Rays that have reached their end.
     pub finished_rays: u64,
+    /// Loop iterations of all rays, about.
+    pub work: u64,
     /// Number of submissions.
     pub submissions: u32,
     /// Bytes of the picture on the device.
@@ -44,14 +46,14 @@ pub struct FrameStats {
 /// Makes frames with one strategy.
 #[derive(Default)]
 pub struct FrameRenderer {
-    tiles: Tiles,
+    pace: Pace,
 }
 
-/// Loop iterations after which a ray pauses: within what llvmpipe allows a group of eight rays, and
-/// for others what surely ends within the time of a submission.
+/// Loop iterations after which a ray pauses at the latest: on software adapters within what llvmpipe
+/// allows a group of eight rays.
 const WORK_LIMIT: [u32; 2] = [6_000, 100_000];
 /// Counters of the shader: low and high words.
-const COUNTERS: u64 = 10 * 4;
+const COUNTERS: u64 = 12 * 4;
 /// Bytes of two timestamps, in front of the counters in the staging buffer.
 const TICKS: u64 = 16;
 
@@ -92,7 +94,7 @@ impl FrameRenderer {
         let pixels = u64::from(view.size[0]) * u64::from(view.size[1]);
         let states = device_buffer(gpu, "ray states", 32 * pixels.min(tiles::MAX_AREA));
         let table = gpu.storage("transfer table", &transfer_table(&view.transfer))?;
-        let frame = gpu.uniform("frame", &frame_uniform(grid, view, gpu.is_software()));
+        let frame = gpu.uniform("frame", &frame_uniform(grid, view));
         let tile = gpu.uniform("tile", &Tile::zeroed());
         let texture = target.create_view(&wgpu::TextureViewDescriptor::default());
         let bound = Bound {
@@ -121,8 +123,8 @@ impl FrameRenderer {
             target_bytes: 16 * pixels + states.size(),
             ..FrameStats::default()
         };
-        let draw = |rect| bound.draw(strategy, rect, &mut stats);
-        if !self.tiles.cover(view.size, draw, progress)? {
+        let draw = |rect, pace: &mut Pace| bound.draw(strategy, rect, pace, &mut stats);
+        if !tiles::cover(view.size, &mut self.pace, draw, progress)? {
             return Ok(None);
         }
         let pixels = read_target(gpu, &target, view.size)?;
@@ -138,25 +140,29 @@ impl FrameRenderer {
 }
 
 impl Bound<'_> {
-    /// Makes one tile, in as many submissions as its rays need; gives the time of the longest.
+    /// Makes one tile, in as many submissions as its rays need.
     fn draw(
         &self,
         strategy: &dyn RenderStrategy,
         rect: Rect,
+        pace: &mut Pace,
         stats: &mut FrameStats,
-    ) -> Result<Duration, GpuError> {
+    ) -> Result<(), GpuError> {
         let mut uniform = Tile {
             origin: rect.origin,
             size: rect.size,
             ..Tile::zeroed()
         };
         let goal = stats.finished_rays + rect.area();
-        let mut longest = Duration::ZERO;
+        let most = WORK_LIMIT[usize::from(!self.gpu.is_software())];
         while stats.finished_rays < goal {
-            longest = longest.max(self.submit(strategy, &uniform, stats)?);
+            uniform.work_limit = pace.work_limit(rect.area(), most);
+            let before = stats.work;
+            let took = self.submit(strategy, &uniform, stats)?;
+            pace.learn(took, stats.work - before);
             uniform.resume = 1;
         }
-        Ok(longest)
+        Ok(())
     }
 
     /// Submits one dispatch, waits for it and brings the statistics up to date.
@@ -221,6 +227,7 @@ impl FrameStats {
         self.topological_steps = count(2);
         self.grid_fallbacks = count(3);
         self.finished_rays = count(4);
+        self.work = count(5);
     }
 }
 
@@ -323,7 +330,7 @@ fn transfer_table(transfer: &TransferFunction) -> Vec<[f32; 4]> {
         .collect()
 }
 
-fn frame_uniform(grid: &GpuGrid, view: &View, software: bool) -> Frame {
+fn frame_uniform(grid: &GpuGrid, view: &View) -> Frame {
     let camera = &view.camera;
     let aspect = f64::from(view.size[0]) / f64::from(view.size[1]);
     let f32s = |v: DVec3| v.as_vec3().to_array();
@@ -353,8 +360,8 @@ fn frame_uniform(grid: &GpuGrid, view: &View, software: bool) -> Frame {
             Interpolation::Vertex => INTERPOLATION_VERTEX,
         },
         box_low: f32s(grid.bounds[0]),
-        work_limit: WORK_LIMIT[usize::from(!software)],
+        reserved0: 0,
         box_high: f32s(grid.bounds[1]),
-        reserved: 0,
+        reserved1: 0,
     }
 }

@@ -22,9 +22,9 @@ pub struct Frame {
     pub grid_from_world_z: [f32; 3],
     pub interpolation: u32,
     pub box_low: [f32; 3],
-    pub work_limit: u32,
+    pub reserved0: u32,
     pub box_high: [f32; 3],
-    pub reserved: u32,
+    pub reserved1: u32,
 }
 
 /// The part of the picture that one dispatch makes.
@@ -35,9 +35,9 @@ pub struct Tile {
     pub origin: [u32; 2],
     pub size: [u32; 2],
     pub resume: u32,
+    pub work_limit: u32,
     pub reserved0: u32,
     pub reserved1: u32,
-    pub reserved2: u32,
 }
 
 /// Sizes of the grid and its acceleration grid.

@@ -28,69 +28,84 @@ impl Rect {
 }
 
 /// Time that one submission should take at most.
-pub const BUDGET: Duration = Duration::from_millis(80);
+pub const BUDGET: Duration = Duration::from_millis(70);
 /// Pixels of a tile at most: each has a state of 32 bytes on the device.
 pub const MAX_AREA: u64 = 1 << 20;
-/// First tile on an adapter of unknown speed, in pixels.
-const FIRST_AREA: u64 = 16 * 16;
+/// Loop iterations of a ray in one submission, at least; fewer would mostly pay for the pause.
+const LEAST_WORK: u64 = 500;
 
-/// Tile sizes that follow the adapter's speed; kept from frame to frame.
+/// How fast an adapter is, learned from its submissions and kept from frame to frame. As a ray pauses
+/// after a number of loop iterations, the time of a submission has a bound that is known beforehand.
 #[derive(Debug)]
-pub struct Tiles {
-    area: u64,
+pub struct Pace {
+    seconds_per_work: f64,
 }
 
-impl Default for Tiles {
+impl Default for Pace {
     fn default() -> Self {
-        Self { area: FIRST_AREA }
+        // Slower than any adapter that was met, so that the first submissions are short.
+        Self {
+            seconds_per_work: 1e-6,
+        }
     }
 }
 
-impl Tiles {
-    /// Calls `draw` for tiles that cover a picture; `draw` gives the time that it took.
-    ///
-    /// `progress` is told the fraction done and returns false to cancel; the result is false then.
-    ///
-    /// # Errors
-    /// The first error of `draw`.
-    pub fn cover<E>(
-        &mut self,
-        size: [u32; 2],
-        mut draw: impl FnMut(Rect) -> Result<Duration, E>,
-        progress: &dyn Fn(f64) -> bool,
-    ) -> Result<bool, E> {
-        let whole = Rect {
-            origin: [0, 0],
-            size,
-        };
-        let (mut done, mut left) = (0, vec![whole]);
-        while let Some(rect) = left.pop() {
-            if rect.area() > self.area.max(1) {
-                let [first, second] = rect.halves();
-                left.extend([second, first]);
-                continue;
-            }
-            let took = draw(rect)?;
-            self.adapt(rect.area(), took);
-            done += rect.area();
-            if !progress(done as f64 / whole.area() as f64) {
-                return Ok(false);
-            }
-        }
-        Ok(true)
+impl Pace {
+    /// Loop iterations of all rays that fit into a submission.
+    fn budget(&self) -> u64 {
+        (BUDGET.as_secs_f64() / self.seconds_per_work) as u64
     }
 
-    fn adapt(&mut self, area: u64, took: Duration) {
-        let ratio = BUDGET.as_secs_f64() / took.as_secs_f64().max(1e-6);
-        if ratio < 1.0 {
-            // Too slow: shrink at once.
-            self.area = ((area as f64 * ratio * 0.8) as u64).max(1);
-        } else if area * 2 > self.area {
-            // A tile of the full allowance that was fast enough: grow, but not beyond what is sure.
-            let grown = (area as f64 * (ratio * 0.5).clamp(1.0, 4.0)) as u64;
-            self.area = self.area.max(grown).min(MAX_AREA);
+    /// Pixels of the next tile, at most.
+    fn area(&self) -> u64 {
+        (self.budget() / (2 * LEAST_WORK)).clamp(64, MAX_AREA)
+    }
+
+    /// Loop iterations after which each ray of a tile pauses.
+    pub fn work_limit(&self, area: u64, most: u32) -> u32 {
+        (self.budget() / area.max(1)).clamp(LEAST_WORK, u64::from(most)) as u32
+    }
+
+    /// Learns from a submission: what it took and the loop iterations that it made.
+    pub fn learn(&mut self, took: Duration, work: u64) {
+        if work > 0 {
+            let now = took.as_secs_f64() / work as f64;
+            // Slower counts at once, faster by and by: neighboring tiles differ.
+            self.seconds_per_work = now.clamp(0.6 * self.seconds_per_work, 1e-5).max(1e-12);
         }
     }
+}
+
+/// Calls `draw` for tiles that cover a picture, as large as the pace allows.
+///
+/// `progress` is told the fraction done and returns false to cancel; the result is false then.
+///
+/// # Errors
+/// The first error of `draw`.
+pub fn cover<E>(
+    size: [u32; 2],
+    pace: &mut Pace,
+    mut draw: impl FnMut(Rect, &mut Pace) -> Result<(), E>,
+    progress: &dyn Fn(f64) -> bool,
+) -> Result<bool, E> {
+    let whole = Rect {
+        origin: [0, 0],
+        size,
+    };
+    let (mut done, mut left) = (0, vec![whole]);
+    while let Some(rect) = left.pop() {
+        if rect.area() > pace.area() {
+            let [first, second] = rect.halves();
+            left.extend([second, first]);
+            continue;
+        }
+        draw(rect, pace)?;
+        done += rect.area();
+        if !progress(done as f64 / whole.area() as f64) {
+            return Ok(false);
+        }
+    }
+    Ok(true)
 }
 
 #[cfg(test)]
@@ -102,29 +117,40 @@ mod tests {
         for size in [[1, 1], [1000, 3], [333, 257]] {
             let mut hits = vec![0u8; (size[0] * size[1]) as usize];
             let mut n = 0u32;
-            let draw = |r: Rect| -> Result<Duration, ()> {
+            let draw = |r: Rect, pace: &mut Pace| -> Result<(), ()> {
                 n += 1;
+                pace.learn(Duration::from_millis(u64::from(n % 5) * 50), 100_000);
                 for y in r.origin[1]..r.origin[1] + r.size[1] {
                     for x in r.origin[0]..r.origin[0] + r.size[0] {
                         hits[(x + size[0] * y) as usize] += 1;
                     }
                 }
-                Ok(Duration::from_millis(u64::from(n % 5) * 50))
+                Ok(())
             };
-            assert_eq!(Tiles::default().cover(size, draw, &|_| true), Ok(true));
+            assert_eq!(cover(size, &mut Pace::default(), draw, &|_| true), Ok(true));
             assert!(hits.iter().all(|&h| h == 1));
         }
     }
 
     #[test]
-    fn tiles_shrink_when_slow_and_stop_when_cancelled() {
-        let mut tiles = Tiles::default();
-        let mut areas = Vec::new();
-        let slow = |r: Rect| -> Result<Duration, ()> {
-            areas.push(r.area());
-            Ok(Duration::from_millis(r.area() * 10))
+    fn submissions_stay_within_the_budget_and_cancel_works() {
+        // An adapter of 50 ns a loop iteration, on which the rays of the right half never rest.
+        let mut longest = Duration::ZERO;
+        let slow = |r: Rect, pace: &mut Pace| -> Result<(), ()> {
+            let limit = u64::from(pace.work_limit(r.area(), 6000));
+            let each = if r.origin[0] < 500 { 3 } else { limit };
+            let took = Duration::from_nanos(50 * each * r.area());
+            pace.learn(took, each * r.area());
+            longest = longest.max(took);
+            Ok(())
         };
-        assert_eq!(tiles.cover([64, 64], slow, &|f| f < 0.5), Ok(false));
-        assert!(areas[1..].iter().all(|&a| a <= 8), "{areas:?}");
+        assert_eq!(
+            cover([1000, 500], &mut Pace::default(), slow, &|f| f < 0.9),
+            Ok(false)
+        );
+        assert!(
+            longest <= Duration::from_millis(100) && longest > Duration::from_millis(20),
+            "{longest:?}"
+        );
     }
 }

@@ -102,12 +102,42 @@ impl VertexField {
     }
 }
 
+/// A cell's corner on a pillar.
+struct Touch {
+    depth: f64,
+    entry: usize,
+    cell: u32,
+    value: f64,
+}
+
 /// Means at the distinct depths of one pillar, by depth-pool position.
 fn average_on_pillar(grid: &Grid, field: &CellField, pillar: usize) -> Vec<(usize, f32)> {
+    let mut touching = touching(grid, field, pillar);
+    touching.sort_by(|a, b| a.depth.total_cmp(&b.depth));
+    let mut means = Vec::with_capacity(touching.len());
+    let mut rest = touching.as_slice();
+    while let Some(first) = rest.first() {
+        let count = rest.partition_point(|t| t.depth - first.depth <= COINCIDENT);
+        let (vertex, next) = rest.split_at(count);
+        let (mut sum, mut n) = (0.0, 0.0);
+        for (at, touch) in vertex.iter().enumerate() {
+            // A cell collapsed on this pillar touches the vertex once, not twice.
+            if !vertex[..at].iter().any(|t| t.cell == touch.cell) {
+                sum += touch.value;
+                n += 1.0;
+            }
+        }
+        means.extend(vertex.iter().map(|t| (t.entry, (sum / n) as f32)));
+        rest = next;
+    }
+    means
+}
+
+/// Top and bottom corners on a pillar of the active cells around it that have a value.
+fn touching(grid: &Grid, field: &CellField, pillar: usize) -> Vec<Touch> {
     let dims = grid.dims();
     let (pi, pj) = (pillar % (dims.ni + 1), pillar / (dims.ni + 1));
-    // (depth, pool position, value of the active cell that touches there)
-    let mut touching: Vec<(f64, usize, f64)> = Vec::new();
+    let mut touching = Vec::new();
     for corner in 0..4 {
         let (i, j) = (pi.wrapping_sub(corner & 1), pj.wrapping_sub(corner >> 1));
         if i >= dims.ni || j >= dims.nj {
@@ -115,32 +145,87 @@ fn average_on_pillar(grid: &Grid, field: &CellField, pillar: usize) -> Vec<(usiz
         }
         for k in 0..dims.nk {
             let ijk = Ijk { i, j, k };
-            let Some(value) = field.value(grid, dims.cell(ijk)) else {
+            let cell = dims.cell(ijk);
+            let Some(value) = field.value(grid, cell) else {
                 continue;
             };
-            let ends = [corner, corner + 4].map(|c| grid.corner_entry(ijk, c));
-            let coincide = (grid.depths()[ends[0]] - grid.depths()[ends[1]]).abs() <= COINCIDENT;
-            // A cell collapsed on this pillar touches the vertex once, not twice.
-            for (n, &entry) in ends.iter().enumerate() {
-                let value = if n == 1 && coincide {
-                    f64::NAN
-                } else {
-                    f64::from(value)
-                };
-                touching.push((grid.depths()[entry], entry, value));
+            for entry in [corner, corner + 4].map(|c| grid.corner_entry(ijk, c)) {
+                touching.push(Touch {
+                    depth: grid.depths()[entry],
+                    entry,
+                    cell: cell.0,
+                    value: f64::from(value),
+                });
             }
         }
     }
-    touching.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let mut means = Vec::with_capacity(touching.len());
-    let mut rest = touching.as_slice();
-    while let Some(&(first, ..)) = rest.first() {
-        let count = rest.partition_point(|t| t.0 - first <= COINCIDENT);
-        let (vertex, next) = rest.split_at(count);
-        let defined = vertex.iter().map(|t| t.2).filter(|v| !v.is_nan());
-        let (sum, n) = defined.fold((0.0, 0.0), |(sum, n), v| (sum + v, n + 1.0));
-        means.extend(vertex.iter().map(|t| (t.1, (sum / n) as f32)));
-        rest = next;
+    touching
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::{Dims, GridInput};
+
+    /// Two columns of two layers; the second displaced downwards by `throw`.
+    fn stack(throw: f64) -> Grid {
+        let mut coord = Vec::new();
+        for j in 0..2 {
+            for i in 0..3 {
+                let (x, y) = (f64::from(i), f64::from(j));
+                coord.extend([x, y, 0.0, x, y, 10.0]);
+            }
+        }
+        let depths = [0.0, 1.0, 1.0, 2.0];
+        let zcorn: Vec<f64> = (0..32)
+            .map(|at| depths[at / 8] + if at % 4 >= 2 { throw } else { 0.0 })
+            .collect();
+        let dims = Dims {
+            ni: 2,
+            nj: 1,
+            nk: 2,
+        };
+        Grid::new(&GridInput {
+            dims,
+            coord: &coord,
+            zcorn: &zcorn,
+            actnum: None,
+            map_axes: None,
+        })
+        .unwrap()
     }
-    means
+
+    #[test]
+    fn vertices_average_the_cells_that_share_them() {
+        let field = CellField::new(vec![1.0, 2.0, 4.0, 8.0]);
+        let grid = stack(0.0);
+        let corners = VertexField::new(&grid, &field).corners(&grid, Ijk { i: 0, j: 0, k: 0 });
+        // Outer pillar: cell 1 alone above, 1 and 4 below; inner pillar: 1 and 2, then all four.
+        assert_eq!(corners, [1.0, 1.5, 1.0, 1.5, 2.5, 3.75, 2.5, 3.75]);
+    }
+
+    #[test]
+    fn nothing_is_averaged_across_a_fault() {
+        let field = CellField::new(vec![0.0, 1.0, 0.0, 1.0]);
+        let grid = stack(0.4);
+        assert_eq!(grid.fault_faces(), [2, 0]);
+        let vertices = VertexField::new(&grid, &field);
+        for cell in grid.active_cells() {
+            let ijk = grid.dims().ijk(*cell);
+            assert_eq!(vertices.corners(&grid, ijk), [ijk.i as f64; 8]);
+        }
+    }
+
+    #[test]
+    fn undefined_values_are_left_out() {
+        let field = CellField::new(vec![1e20, 2.0, f32::NAN, 8.0]);
+        let statistics = field.statistics().unwrap();
+        assert_eq!(
+            (statistics.min, statistics.max, statistics.undefined),
+            (2.0, 8.0, 2)
+        );
+        let grid = stack(0.0);
+        let corners = VertexField::new(&grid, &field).corners(&grid, Ijk { i: 1, j: 0, k: 0 });
+        assert_eq!(corners, [2.0, 2.0, 2.0, 2.0, 5.0, 5.0, 5.0, 5.0]);
+    }
 }

@@ -117,10 +117,7 @@ pub fn resolve(scene: &Scene, case: &Case) -> Result<View, SceneError> {
         strategy,
         step,
         transfer: transfer(scene, range, edges)?,
-        sampling_step: match scene.sampling_step {
-            Some(v) => positive("sampling_step", v)?,
-            None => edges.min_element() / 8.0,
-        },
+        sampling_step: sampling_step(scene, edges, world_bounds)?,
         early_termination: scene.early_termination,
         interpolation: scene.interpolation,
         property,
@@ -129,6 +126,19 @@ pub fn resolve(scene: &Scene, case: &Case) -> Result<View, SceneError> {
         show_box: scene.show.r#box,
         show_legend: scene.show.legend,
     })
+}
+
+fn sampling_step(scene: &Scene, edges: DVec3, bounds: [DVec3; 2]) -> Result<f64, SceneError> {
+    let Some(step) = scene.sampling_step else {
+        return Ok(edges.min_element() / 8.0);
+    };
+    // Below this a ray would take more samples than f32 can count.
+    let least = bounds[0].distance(bounds[1]) * 1e-6;
+    if step.is_finite() && step >= least {
+        return Ok(step);
+    }
+    let problem = format!("{step} is too small; use at least {least:.3e}");
+    Err(wrong("sampling_step", problem))
 }
 
 fn refuse_later_work(scene: &Scene) -> Result<(), SceneError> {

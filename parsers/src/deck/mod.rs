@@ -4,9 +4,20 @@
 //! SCHEDULE section. It works in two steps: a scan over all files that notes where each array
 //! lies, and, once the dimensions are known, the parallel conversion of the arrays.
 
+mod array;
+mod assemble;
+mod faults;
+mod header;
+mod lexer;
+mod numbers;
+mod scan;
+mod skip;
+mod source;
+
 use std::path::{Path, PathBuf};
 
 use crate::error::{ParseError, Warnings};
+use crate::units::UnitSystem;
 
 /// A corner-point grid as its deck gives it, without any geometry computed from it.
 ///
@@ -48,19 +59,6 @@ pub struct GridUnit {
     pub is_map: bool,
 }
 
-/// The unit systems of full decks.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum UnitSystem {
-    /// METRIC: meters, bars, degrees Celsius.
-    Metric,
-    /// FIELD: feet, psi, degrees Fahrenheit.
-    Field,
-    /// LAB: centimeters, atmospheres, hours.
-    Lab,
-    /// PVT-M: meters, atmospheres, degrees Celsius.
-    PvtM,
-}
-
 /// A keyword with one number a cell.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DeckProperty {
@@ -96,7 +94,7 @@ impl Grdecl {
     /// radial, damaged or of the wrong length, when numbers are not numbers, or when files include
     /// each other in a loop.
     pub fn read(path: &Path, warnings: &mut Warnings) -> Result<Self, ParseError> {
-        let _ = warnings;
-        Err(ParseError::new(path, crate::At::File, "", "not written yet"))
+        let found = scan::scan(path, warnings)?;
+        assemble::assemble(path, found, warnings)
     }
 }

@@ -4,7 +4,10 @@
 //! multiplied or divided by another, so the one rounding of that operation is the correct one
 //! (Clinger 1990). All other numbers go through the standard library.
 
-use std::ops::Neg;
+use nom::character::complete::{digit0, digit1, one_of};
+use nom::combinator::{all_consuming, opt};
+use nom::sequence::preceded;
+use nom::{IResult, Parser};
 
 /// Powers of ten that `f64` holds exactly.
 const POWERS: [f64; 23] = [
@@ -46,7 +49,7 @@ pub(super) fn leading_number(text: &[u8]) -> Option<(f64, usize)> {
     }
     #[allow(clippy::cast_precision_loss, reason = "digits are at most 2^53")]
     let magnitude = digits as f64 / POWERS.get(fraction_digits)?;
-    Some((if negative { magnitude.neg() } else { magnitude }, at))
+    Some((if negative { -magnitude } else { magnitude }, at))
 }
 
 /// Value and count of the digits at `at`, eight at most.
@@ -86,4 +89,76 @@ pub(super) fn eight_bytes(text: &[u8], at: usize) -> u64 {
         *to = *from;
     }
     u64::from_le_bytes(word)
+}
+
+/// The parts of a decimal number: minus sign, digits before and after the point, power of ten.
+struct Decimal<'a> {
+    negative: bool,
+    whole: &'a [u8],
+    fraction: &'a [u8],
+    exponent: Option<(bool, &'a [u8])>,
+}
+
+/// The value of a whole token in Fortran or C notation; `None` where it is no decimal number.
+///
+/// A number beyond the range of `f64` is infinite, as the standard library has it.
+pub(super) fn number(token: &[u8]) -> Option<f64> {
+    let (_, decimal) = all_consuming(decimal).parse(token).ok()?;
+    if decimal.whole.is_empty() && decimal.fraction.is_empty() {
+        return None;
+    }
+    exact(&decimal).or_else(|| {
+        let text = std::str::from_utf8(token).ok()?;
+        text.replace(['d', 'D'], "e").parse().ok()
+    })
+}
+
+fn decimal(input: &[u8]) -> IResult<&[u8], Decimal<'_>> {
+    let exponent = (one_of("eEdD"), opt(one_of("+-")), digit1);
+    let parts = (
+        opt(one_of("+-")),
+        digit0,
+        opt(preceded(nom::character::complete::char('.'), digit0)),
+        opt(exponent),
+    );
+    parts
+        .map(|(sign, whole, fraction, exponent)| Decimal {
+            negative: sign == Some('-'),
+            whole,
+            fraction: fraction.unwrap_or_default(),
+            exponent: exponent.map(|(_, sign, digits)| (sign == Some('-'), digits)),
+        })
+        .parse(input)
+}
+
+/// The value where one exact multiplication or division gives it.
+fn exact(decimal: &Decimal) -> Option<f64> {
+    let whole = joined_digits(0, decimal.whole)?;
+    let digits = joined_digits(whole, decimal.fraction)?;
+    if digits > EXACT {
+        return None;
+    }
+    let (down, power) = decimal.exponent.unwrap_or_default();
+    let power = i64::try_from(joined_digits(0, power)?).ok()?;
+    let scale = if down { -power } else { power } - i64::try_from(decimal.fraction.len()).ok()?;
+    let factor = *POWERS.get(usize::try_from(scale.unsigned_abs()).ok()?)?;
+    #[allow(clippy::cast_precision_loss, reason = "digits are at most 2^53")]
+    let digits = digits as f64;
+    let magnitude = if scale < 0 {
+        digits / factor
+    } else {
+        digits * factor
+    };
+    Some(if decimal.negative {
+        -magnitude
+    } else {
+        magnitude
+    })
+}
+
+/// `start` followed by `digits`; `None` beyond 18 of them, which surely fit in 64 bits.
+fn joined_digits(start: u64, digits: &[u8]) -> Option<u64> {
+    digits.iter().try_fold(start, |sum, digit| {
+        (sum < 10_u64.pow(17)).then(|| sum * 10 + u64::from(digit - b'0'))
+    })
 }

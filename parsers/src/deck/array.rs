@@ -1,0 +1,172 @@
+//! Long arrays of numbers, converted in parallel.
+//!
+//! The text is cut at line ends, so that no piece starts inside a comment. Each piece becomes
+//! values with repeat counts beside them; only when the sum of all counts is known to be right
+//! is the array itself allocated, so no repeat count can ask for memory on its own.
+
+use rayon::prelude::*;
+
+use super::lexer::{Mistake, is_undefined, line_end, repeat, shown, token_end};
+use super::numbers::{eight_bytes, leading_number, number};
+
+/// Bytes of text a thread converts at a time: small against the caches, large against the cost of a task.
+const PIECE: usize = 1 << 18;
+/// Shortest usual token with its blank, for sizing a piece's values.
+const BYTES_A_VALUE: usize = 8;
+
+/// What stands for a defaulted value (`*`, `3*`) and for one that is no finite number; `None` refuses it.
+#[derive(Clone, Copy)]
+pub(super) struct Rule {
+    pub(super) default: Option<f64>,
+    pub(super) undefined: Option<f64>,
+}
+
+/// An array as written, repeat counts not yet expanded.
+pub(super) struct Runs {
+    pieces: Vec<Piece>,
+    /// Number of values after expansion, saturating.
+    pub(super) count: usize,
+}
+
+#[derive(Default)]
+struct Piece {
+    values: Vec<f64>,
+    /// Index into `values` and how many times that value stands there, for those that are repeated.
+    repeats: Vec<(usize, usize)>,
+    /// Number of values after expansion; while reading, what repeats add to the values.
+    count: usize,
+}
+
+/// Reads all numbers of `data`; a mistake's place counts from the start of `data`.
+pub(super) fn runs(data: &[u8], rule: Rule) -> Result<Runs, Mistake> {
+    let pieces = cut(data)
+        .into_par_iter()
+        .map(|(start, text)| piece(text, rule).map_err(|mistake| mistake.moved(start)))
+        .collect::<Vec<_>>()
+        .into_iter()
+        .collect::<Result<Vec<Piece>, _>>()?;
+    let count = pieces
+        .iter()
+        .fold(0, |sum: usize, piece| sum.saturating_add(piece.count));
+    Ok(Runs { pieces, count })
+}
+
+impl Runs {
+    /// The array with repeat counts expanded; `None` where there is not enough memory.
+    pub(super) fn expand(self) -> Option<Vec<f64>> {
+        // A plain allocation would end the process where memory is short, so ask first.
+        Vec::<f64>::new().try_reserve_exact(self.count).ok()?;
+        let mut array = vec![0.0; self.count];
+        let mut rest = array.as_mut_slice();
+        let mut parts = Vec::with_capacity(self.pieces.len());
+        for piece in &self.pieces {
+            let (part, behind) = rest.split_at_mut(piece.count);
+            parts.push(part);
+            rest = behind;
+        }
+        parts
+            .into_par_iter()
+            .zip(self.pieces)
+            .for_each(|(part, piece)| piece.expand_into(part));
+        Some(array)
+    }
+}
+
+impl Piece {
+    fn expand_into(&self, part: &mut [f64]) {
+        let (mut from, mut to) = (0, 0);
+        for &(index, count) in &self.repeats {
+            let plain = index - from;
+            part[to..to + plain].copy_from_slice(&self.values[from..index]);
+            part[to + plain..to + plain + count].fill(self.values[index]);
+            (from, to) = (index + 1, to + plain + count);
+        }
+        part[to..].copy_from_slice(&self.values[from..]);
+    }
+
+    fn push(&mut self, value: f64, count: usize) {
+        if count > 1 {
+            self.repeats.push((self.values.len(), count));
+            self.count = self.count.saturating_add(count - 1);
+        }
+        self.values.push(value);
+    }
+}
+
+/// Pieces of about [`PIECE`] bytes, each ending at a line end, with their offsets.
+fn cut(data: &[u8]) -> Vec<(usize, &[u8])> {
+    let mut pieces = Vec::with_capacity(data.len() / PIECE + 1);
+    let mut start = 0;
+    while start < data.len() {
+        let end = line_end(data, (start + PIECE).min(data.len()));
+        pieces.push((start, &data[start..end]));
+        start = end;
+    }
+    pieces
+}
+
+fn piece(text: &[u8], rule: Rule) -> Result<Piece, Mistake> {
+    let mut piece = Piece::default();
+    piece.values.reserve(text.len() / BYTES_A_VALUE);
+    let mut at = 0;
+    while let Some(start) = next_token(text, at) {
+        if let Some((value, length)) = leading_number(&text[start..]) {
+            piece.values.push(value);
+            at = start + length;
+        } else {
+            at = unusual_token(text, start, rule, &mut piece)?;
+        }
+    }
+    piece.count = piece.count.saturating_add(piece.values.len());
+    Ok(piece)
+}
+
+/// The first byte at or behind `at` that is no blank.
+#[inline]
+fn next_token(text: &[u8], mut at: usize) -> Option<usize> {
+    while at < text.len() {
+        let word = eight_bytes(text, at);
+        let visible = (((word & 0x7f7f_7f7f_7f7f_7f7f) + 0x5f5f_5f5f_5f5f_5f5f) | word)
+            & 0x8080_8080_8080_8080;
+        at += (visible.trailing_zeros() / 8) as usize;
+        if visible != 0 {
+            return Some(at);
+        }
+    }
+    None
+}
+
+/// Reads a comment, a repeat count, a number in another notation; returns the offset behind it.
+#[cold]
+fn unusual_token(
+    text: &[u8],
+    start: usize,
+    rule: Rule,
+    piece: &mut Piece,
+) -> Result<usize, Mistake> {
+    if text[start..].starts_with(b"--") {
+        return Ok(line_end(text, start));
+    }
+    let end = token_end(text, start);
+    let token = &text[start..end];
+    let (count, written) = repeat(token).map_err(|mistake| mistake.moved(start))?;
+    let value = if written.is_empty() {
+        rule.default
+            .ok_or_else(|| Mistake::new(start, "a defaulted value (*) is not allowed here"))?
+    } else {
+        value(written, rule).map_err(|message| Mistake::new(start, message))?
+    };
+    piece.push(value, count);
+    Ok(end)
+}
+
+fn value(token: &[u8], rule: Rule) -> Result<f64, String> {
+    let shown = shown(token);
+    match number(token) {
+        Some(value) if value.is_finite() => Ok(value),
+        None if !is_undefined(token) => Err(format!("'{shown}' is not a number")),
+        _ => rule
+            .undefined
+            .ok_or_else(|| format!("'{shown}' is not a finite number")),
+    }
+}

@@ -1,0 +1,104 @@
+//! The short keywords of a grid: dimensions, map axes, units, orientation.
+
+use super::GridUnit;
+use super::lexer::{Item, Mistake, shown};
+use super::numbers::number;
+
+/// Most cells of a grid, so that cell numbers fit in 32 bits with room to spare.
+const MOST_CELLS: usize = 1 << 31;
+
+/// SPECGRID or DIMENS: three counts, for SPECGRID also coordinate systems and `T` for a radial grid.
+pub(super) fn dims(items: &[Item], at: usize) -> Result<[usize; 3], Mistake> {
+    let mut dims = [0; 3];
+    for (axis, dim) in dims.iter_mut().enumerate() {
+        let item = items
+            .get(axis)
+            .ok_or_else(|| Mistake::new(at, "expected three numbers of cells"))?;
+        *dim = positive(item)?;
+    }
+    if let Some(item) = items.get(3).filter(|item| item.text.is_some())
+        && positive(item)? != 1
+    {
+        return Err(Mistake::new(
+            item.at,
+            "grids with more than one coordinate system (NUMRES) are not read",
+        ));
+    }
+    if let Some(item) = items.get(4)
+        && item.text.is_some_and(|text| {
+            text.first()
+                .is_some_and(|first| first.eq_ignore_ascii_case(&b'T'))
+        })
+    {
+        return Err(Mistake::new(item.at, RADIAL));
+    }
+    let cells = dims
+        .iter()
+        .try_fold(1_usize, |cells, &dim| cells.checked_mul(dim));
+    if cells.is_none_or(|cells| cells >= MOST_CELLS) {
+        let [ni, nj, nk] = dims;
+        return Err(Mistake::new(
+            at,
+            format!("{ni} x {nj} x {nk} cells are more than a grid can have (2^31)"),
+        ));
+    }
+    Ok(dims)
+}
+
+const RADIAL: &str = "the grid is radial (T); only Cartesian corner-point grids are read from text";
+
+/// A whole number of at least 1.
+pub(super) fn positive(item: &Item) -> Result<usize, Mistake> {
+    let text = item.text.unwrap_or(b"*");
+    std::str::from_utf8(text)
+        .ok()
+        .and_then(|text| text.parse::<usize>().ok())
+        .filter(|&number| number > 0)
+        .ok_or_else(|| {
+            Mistake::new(
+                item.at,
+                format!(
+                    "expected a whole number of at least 1, found '{}'",
+                    shown(text)
+                ),
+            )
+        })
+}
+
+/// MAPAXES: six finite numbers.
+pub(super) fn map_axes(items: &[Item], at: usize) -> Result<[f64; 6], Mistake> {
+    if items.len() != 6 {
+        return Err(Mistake::new(
+            at,
+            format!("expected 6 values, found {}", items.len()),
+        ));
+    }
+    let mut axes = [0.0; 6];
+    for (axis, item) in axes.iter_mut().zip(items) {
+        let text = item.text.unwrap_or(b"*");
+        *axis = number(text)
+            .filter(|value| value.is_finite())
+            .ok_or_else(|| Mistake::new(item.at, format!("'{}' is not a number", shown(text))))?;
+    }
+    Ok(axes)
+}
+
+/// The first item in upper case, if it is not left to its default.
+pub(super) fn name(items: &[Item], index: usize) -> Option<String> {
+    let text = items.get(index)?.text?;
+    Some(shown(text).to_ascii_uppercase()).filter(|name| !name.is_empty())
+}
+
+/// GRIDUNIT: the unit, and `MAP` where coordinates are map coordinates; METRES where defaulted.
+pub(super) fn grid_unit(items: &[Item]) -> GridUnit {
+    GridUnit {
+        name: name(items, 0).unwrap_or_else(|| "METRES".to_owned()),
+        is_map: name(items, 1).is_some_and(|system| system == "MAP"),
+    }
+}
+
+/// GDORIENT: five words with their defaults.
+pub(super) fn gdorient(items: &[Item]) -> [String; 5] {
+    let defaults = ["INC", "INC", "INC", "DOWN", "RIGHT"];
+    std::array::from_fn(|index| name(items, index).unwrap_or_else(|| defaults[index].to_owned()))
+}
