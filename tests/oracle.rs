@@ -1,5 +1,12 @@
 //! `info --json` against facts about the same files from independent programs.
-#![allow(missing_docs, clippy::unwrap_used, clippy::panic, reason = "tests")]
+#![allow(
+    missing_docs,
+    clippy::unwrap_used,
+    clippy::panic,
+    clippy::too_many_lines,
+    clippy::cmp_owned,
+    reason = "tests"
+)]
 
 mod common;
 

@@ -147,7 +147,7 @@ fn read_points(arguments: &Arguments) -> anyhow::Result<Vec<DVec3>> {
         let numbers: Option<Vec<f64>> = record.iter().take(3).map(|f| f.parse().ok()).collect();
         match numbers.as_deref() {
             Some(&[x, y, z]) if x.is_finite() && y.is_finite() && z.is_finite() => {
-                points.push(DVec3::new(x, y, z))
+                points.push(DVec3::new(x, y, z));
             }
             _ if row == 0 && record.iter().all(|f| f.parse::<f64>().is_err()) => {}
             _ => anyhow::bail!(

@@ -119,7 +119,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
     match format {
         picture::Format::Exr => picture::write_exr(&arguments.output, &image)?,
         picture::Format::Png => {
-            write_png(&arguments.output, &image, &case, &view, arguments.plain)?
+            write_png(&arguments.output, &image, &case, &view, arguments.plain)?;
         }
     }
     Ok(())

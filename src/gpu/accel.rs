@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use crate::model::{Grid, Ijk};
 
 /// Bytes of acceleration that an active cell may cost; the number of bins follows from it.
-const BYTES_PER_ACTIVE_CELL: f64 = 4.0;
+const BYTES_PER_ACTIVE_CELL: f64 = 3.0;
 /// The paper's refinement of the grid: bins a column and direction, at most.
 const MAX_REFINEMENT: f64 = 1.75;
 /// Columns are widened by this part of their extent against rounding to f32.

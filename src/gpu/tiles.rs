@@ -31,6 +31,8 @@ impl Rect {
 pub const BUDGET: Duration = Duration::from_millis(70);
 /// Pixels of a tile at most: each has a state of 32 bytes on the device.
 pub const MAX_AREA: u64 = 1 << 20;
+/// Time of a submission that does nothing: counted in, tiles of empty sky would look slow.
+const OVERHEAD: Duration = Duration::from_millis(2);
 /// Loop iterations of a ray in one submission, at least; fewer would mostly pay for the pause.
 const LEAST_WORK: u64 = 500;
 
@@ -58,7 +60,7 @@ impl Pace {
 
     /// Pixels of the next tile, at most.
     fn area(&self) -> u64 {
-        (self.budget() / (2 * LEAST_WORK)).clamp(64, MAX_AREA)
+        (self.budget() / LEAST_WORK).clamp(256, MAX_AREA)
     }
 
     /// Loop iterations after which each ray of a tile pauses.
@@ -68,8 +70,9 @@ impl Pace {
 
     /// Learns from a submission: what it took and the loop iterations that it made.
     pub fn learn(&mut self, took: Duration, work: u64) {
-        if work > 0 {
-            let now = took.as_secs_f64() / work as f64;
+        let now = took.saturating_sub(OVERHEAD).as_secs_f64() / work.max(1) as f64;
+        // A submission with little to do says nothing of a full one, unless it was slow.
+        if now > self.seconds_per_work || work > self.budget() / 3 {
             // Slower counts at once, faster by and by: neighboring tiles differ.
             self.seconds_per_work = now.clamp(0.6 * self.seconds_per_work, 1e-5).max(1e-12);
         }

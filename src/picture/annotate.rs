@@ -154,10 +154,7 @@ impl Pen<'_> {
         let [width, height] = image.size;
         let aspect = f64::from(width) / f64::from(height);
         let corners: [_; 8] = std::array::from_fn(|c| {
-            let pick = |axis: usize| view.world_bounds[c >> axis & 1][axis];
-            let at = view
-                .camera
-                .project(DVec3::new(pick(0), pick(1), pick(2)), aspect)?;
+            let at = view.camera.project(view.box_corners[c], aspect)?;
             Some([at.x * f64::from(width), at.y * f64::from(height)])
         });
         let alpha = |x: i64, y: i64| {

@@ -98,6 +98,10 @@ fn view(grid: &Grid, field: CellField, extinction: f64, sampling_step: f64) -> V
         spaces,
         vertical_exaggeration: 2.0,
         world_bounds,
+        box_corners: std::array::from_fn(|c| {
+            let pick = |axis: usize| world_bounds[c >> axis & 1][axis];
+            DVec3::new(pick(0), pick(1), pick(2))
+        }),
         strategy: StrategyKind::ALL[0],
         property: "TEST".into(),
         step: 0,
@@ -342,7 +346,7 @@ fn picture_does_not_depend_on_where_the_model_is_nor_on_its_axes() {
         let mut view = view(grid, field, 0.01, 3.0);
         view.transfer.opacity = vec![(0.0, 0.0), (1.0, 0.05)];
         view.interpolation = Interpolation::Vertex;
-        view.camera = Camera::framing(view.world_bounds, 1.0, 0.5, 1.0, 1.0).unwrap();
+        view.camera = Camera::framing(&view.box_corners, 1.0, 0.5, 1.0, 1.0).unwrap();
         render(grid, &view, &|_| true).unwrap()
     };
     let at_home = picture(&near);

@@ -31,19 +31,19 @@ impl Camera {
         })
     }
 
-    /// A camera that frames a box of world space from a direction.
+    /// A camera that frames a box, given by its corners in world space, from a direction.
     ///
     /// `azimuth` is the compass direction of the camera as seen from the box (0 north, 90 east),
     /// `aspect` width over height; a `zoom` above 1 comes closer.
     pub fn framing(
-        bounds: [DVec3; 2],
+        corners: &[DVec3; 8],
         azimuth_radians: f64,
         elevation_radians: f64,
         zoom: f64,
         aspect: f64,
     ) -> Option<Self> {
         let fovy = 30f64.to_radians();
-        let center = 0.5 * (bounds[0] + bounds[1]);
+        let center = corners.iter().sum::<DVec3>() / 8.0;
         let (sin_a, cos_a) = azimuth_radians.sin_cos();
         let (sin_e, cos_e) = elevation_radians.sin_cos();
         let towards_eye = DVec3::new(sin_a * cos_e, cos_a * cos_e, sin_e);
@@ -56,10 +56,10 @@ impl Camera {
         let mut camera = Self::look_at(center + towards_eye, center, up, fovy)?;
         let tan = DVec2::new(camera.tan_half_fovy * aspect, camera.tan_half_fovy) / 1.08;
         // The nearest distance at which all corners of the box are inside the picture.
-        let distance = (0..8)
-            .map(|c| {
-                let pick = |axis: usize| bounds[c >> axis & 1][axis] - center[axis];
-                let corner = DVec3::new(pick(0), pick(1), pick(2));
+        let distance = corners
+            .iter()
+            .map(|corner| {
+                let corner = corner - center;
                 let (x, y) = (corner.dot(camera.right).abs(), corner.dot(camera.up).abs());
                 (x / tan.x).max(y / tan.y) - corner.dot(camera.forward)
             })

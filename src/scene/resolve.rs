@@ -51,6 +51,8 @@ pub struct View {
     pub vertical_exaggeration: f64,
     /// Box of the active cells in world space.
     pub world_bounds: [DVec3; 2],
+    /// Corners of the model's box in world space; bit n of the index is the end along axis n.
+    pub box_corners: [DVec3; 8],
     /// The strategy asked for.
     pub strategy: StrategyKind,
     /// Name of the property shown.
@@ -87,7 +89,10 @@ pub fn resolve(scene: &Scene, case: &Case) -> Result<View, SceneError> {
         None => automatic_exaggeration(grid_bounds),
     };
     let spaces = Spaces::new(case.grid.map_axes(), exaggeration);
-    let world_bounds = world_bounds(&spaces, grid_bounds);
+    let box_corners = box_corners(&spaces, grid_bounds);
+    let start = [DVec3::INFINITY, DVec3::NEG_INFINITY];
+    let bounds = box_corners.iter();
+    let world_bounds = bounds.fold(start, |[a, b], p| [a.min(*p), b.max(*p)]);
     let edges = mean_world_edges(case, exaggeration);
     let property = match &scene.property {
         Some(name) => name.clone(),
@@ -110,10 +115,11 @@ pub fn resolve(scene: &Scene, case: &Case) -> Result<View, SceneError> {
         size,
         background: presets::parse_color(&scene.background)
             .ok_or_else(|| wrong("background", "must be a color like #ffffff"))?,
-        camera: camera(scene, world_bounds)?,
+        camera: camera(scene, &box_corners)?,
         spaces,
         vertical_exaggeration: exaggeration,
         world_bounds,
+        box_corners,
         strategy,
         step,
         transfer: transfer(scene, range, edges)?,
@@ -206,8 +212,9 @@ fn automatic_exaggeration(bounds: [DVec3; 2]) -> f64 {
         .unwrap_or(1.0)
 }
 
-fn world_bounds(spaces: &Spaces, [low, high]: [DVec3; 2]) -> [DVec3; 2] {
-    let corners = (0..8).map(|c| {
+/// Corners of the model's box, whose sides follow the grid's axes, in world space.
+fn box_corners(spaces: &Spaces, [low, high]: [DVec3; 2]) -> [DVec3; 8] {
+    std::array::from_fn(|c| {
         let pick = |axis: usize| {
             if c >> axis & 1 == 1 {
                 high[axis]
@@ -215,12 +222,9 @@ fn world_bounds(spaces: &Spaces, [low, high]: [DVec3; 2]) -> [DVec3; 2] {
                 low[axis]
             }
         };
-        spaces
-            .world_from_grid
-            .transform_point3(DVec3::new(pick(0), pick(1), pick(2)))
-    });
-    let start = [DVec3::INFINITY, DVec3::NEG_INFINITY];
-    corners.fold(start, |[a, b], p| [a.min(p), b.max(p)])
+        let corner = DVec3::new(pick(0), pick(1), pick(2));
+        spaces.world_from_grid.transform_point3(corner)
+    })
 }
 
 /// Mean edge lengths of the drawn cells along s, t and r, in world space.
@@ -309,7 +313,7 @@ fn drawn(
     Ok(drawn)
 }
 
-fn camera(scene: &Scene, bounds: [DVec3; 2]) -> Result<Camera, SceneError> {
+fn camera(scene: &Scene, corners: &[DVec3; 8]) -> Result<Camera, SceneError> {
     let aspect = f64::from(scene.size[0]) / f64::from(scene.size[1]);
     let camera = match &scene.camera {
         CameraSpec::Explicit(c) => {
@@ -325,7 +329,7 @@ fn camera(scene: &Scene, bounds: [DVec3; 2]) -> Result<Camera, SceneError> {
                 c.elevation_degrees.to_radians(),
             );
             Camera::framing(
-                bounds,
+                corners,
                 azimuth,
                 elevation,
                 positive("camera.zoom", c.zoom)?,

@@ -39,11 +39,8 @@ pub(super) fn assemble(
     mut found: Found,
     warnings: &mut Warnings,
 ) -> Result<Grdecl, ParseError> {
-    let missing = missing(path, &found);
-    let (Some(dims), Some(coord), Some(zcorn)) =
-        (found.dims, found.coord.take(), found.zcorn.take())
-    else {
-        return Err(missing);
+    let (Some(dims), Some(coord), Some(zcorn)) = (found.dims, &found.coord, &found.zcorn) else {
+        return Err(swallowed(&found).unwrap_or_else(|| missing(path, &found)));
     };
     let [ni, nj, nk] = dims;
     let cells = ni * nj * nk;
@@ -56,8 +53,8 @@ pub(super) fn assemble(
         return Err(ParseError::new(path, At::File, "SPECGRID", message));
     }
     let pillars = (ni + 1).saturating_mul(nj + 1);
-    let coord = array(&coord, GEOMETRY, pillars.saturating_mul(6))?;
-    let zcorn = array(&zcorn, GEOMETRY, cells.saturating_mul(8))?;
+    let coord = array(coord, GEOMETRY, pillars.saturating_mul(6))?;
+    let zcorn = array(zcorn, GEOMETRY, cells.saturating_mul(8))?;
     let actnum = found
         .actnum
         .take()
@@ -101,6 +98,16 @@ fn missing(path: &Path, found: &Found) -> ParseError {
         format!("no corner-point grid: {} missing", absent.join(" and "))
     };
     ParseError::new(path, At::File, "", message)
+}
+
+/// The array without a closing `/` that took a missing keyword for its own data, if there is one.
+fn swallowed(found: &Found) -> Option<ParseError> {
+    let arrays = [&found.coord, &found.zcorn, &found.actnum];
+    let blocks = arrays.into_iter().flatten().chain(&found.candidates);
+    blocks.into_iter().find_map(|block| {
+        let mistake = numbers(block, PROPERTY).err()?;
+        is_swallowed_keyword(block, &mistake).then(|| error(block, mistake))
+    })
 }
 
 /// Reads an array that must have `expected` values.

@@ -8,8 +8,10 @@ mod array;
 mod assemble;
 mod faults;
 mod header;
+mod include;
 mod lexer;
 mod numbers;
+mod operations;
 mod scan;
 mod skip;
 mod source;
@@ -17,7 +19,7 @@ mod source;
 use std::path::{Path, PathBuf};
 
 use crate::error::{ParseError, Warnings};
-use crate::units::UnitSystem;
+pub use crate::units::UnitSystem;
 
 /// A corner-point grid as its deck gives it, without any geometry computed from it.
 ///

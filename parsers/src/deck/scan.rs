@@ -1,20 +1,18 @@
 //! The first step: walks through all files, reads the short keywords and notes where the arrays lie.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
-use super::lexer::{Cursor, Item, Keyword, Token, keyword, line_end, record_end};
-use super::skip::{Skipped, is_operation, operation, skip_records};
+use super::include::canonical;
+use super::lexer::{Cursor, Item, Keyword, keyword, line_end, record_end};
+use super::operations::Operation;
+use super::skip::{Skipped, is_operation, skip_records};
 use super::source::{Places, Source};
 use super::{FaultFaces, GridUnit, faults, header};
 use crate::error::{ParseError, Warnings};
 use crate::units::UnitSystem;
-
-/// Deepest nesting and largest number of included files.
-const DEEPEST: usize = 64;
-const MOST_FILES: usize = 2000;
 
 /// An array that is still text.
 pub(super) struct Block {
@@ -60,29 +58,21 @@ enum Scope {
 
 /// How reading goes on after a keyword.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Flow {
+pub(super) enum Flow {
     On,
     EndOfFile,
     EndOfDeck,
 }
 
-/// An operation that is not evaluated: where first met, how often, which arrays it changes.
-struct Operation {
-    source: Rc<Source>,
-    at: usize,
-    count: usize,
-    targets: BTreeSet<String>,
-}
-
-struct Scan<'w> {
+pub(super) struct Scan<'w> {
     warnings: &'w mut Warnings,
-    places: Places,
+    pub(super) places: Places,
     found: Found,
     scope: Scope,
     /// Canonical paths of the files being read, outermost first.
-    open: Vec<PathBuf>,
-    opened: usize,
-    operations: BTreeMap<String, Operation>,
+    pub(super) open: Vec<PathBuf>,
+    pub(super) opened: usize,
+    pub(super) operations: BTreeMap<String, Operation>,
 }
 
 /// Reads the deck at `path` up to its arrays.
@@ -102,7 +92,7 @@ pub(super) fn scan(path: &Path, warnings: &mut Warnings) -> Result<Found, ParseE
 }
 
 impl Scan<'_> {
-    fn file(
+    pub(super) fn file(
         &mut self,
         path: &Path,
         included_from: Vec<(PathBuf, usize)>,
@@ -208,7 +198,7 @@ impl Scan<'_> {
         let placed = |mistake| source.mistake(name, mistake);
         match name {
             "MAPAXES" => {
-                self.found.map_axes = Some(header::map_axes(items, keyword.at).map_err(placed)?)
+                self.found.map_axes = Some(header::map_axes(items, keyword.at).map_err(placed)?);
             }
             "MAPUNITS" => self.found.map_units = header::name(items, 0),
             "GRIDUNIT" => self.found.grid_unit = Some(header::grid_unit(items)),
@@ -294,10 +284,10 @@ impl Scan<'_> {
         }
         match name {
             "DX" | "DY" | "DZ" | "DXV" | "DYV" | "DZV" | "DR" | "DRV" | "TOPS" => {
-                self.found.block_centered = true
+                self.found.block_centered = true;
             }
             "RUNSPEC" | "GRID" | "EDIT" | "PROPS" | "REGIONS" | "SOLUTION" => {
-                self.scope = Scope::Whole
+                self.scope = Scope::Whole;
             }
             "GDFILE" | "IMPORT" => {
                 self.warn(
@@ -346,121 +336,6 @@ impl Scan<'_> {
         Ok(())
     }
 
-    fn operation(
-        &mut self,
-        source: &Rc<Source>,
-        cursor: &mut Cursor,
-        keyword: &Keyword,
-    ) -> Result<(), ParseError> {
-        let targets = operation(cursor, &keyword.name)
-            .map_err(|mistake| source.mistake(&keyword.name, mistake))?;
-        self.note_operation(source, keyword, targets);
-        Ok(())
-    }
-
-    fn note_operation(&mut self, source: &Rc<Source>, keyword: &Keyword, targets: Vec<String>) {
-        let noted = self
-            .operations
-            .entry(keyword.name.clone())
-            .or_insert_with(|| Operation {
-                source: Rc::clone(source),
-                at: keyword.at,
-                count: 0,
-                targets: BTreeSet::new(),
-            });
-        noted.count += 1;
-        noted.targets.extend(targets);
-    }
-
-    /// One warning for each operation keyword, at its first place.
-    fn report_operations(&mut self) {
-        for (name, noted) in std::mem::take(&mut self.operations) {
-            let times = if noted.count > 1 {
-                format!(" (here first, {} times in all)", noted.count)
-            } else {
-                String::new()
-            };
-            let targets = noted
-                .targets
-                .into_iter()
-                .take(20)
-                .collect::<Vec<_>>()
-                .join(", ");
-            let targets = if targets.is_empty() {
-                targets
-            } else {
-                format!("; it concerns {targets}")
-            };
-            self.warn(
-                &noted.source,
-                noted.at,
-                &format!("{name} is not evaluated{times}{targets}"),
-            );
-        }
-    }
-
-    fn paths(&mut self, source: &Source, cursor: &mut Cursor) -> Result<(), ParseError> {
-        loop {
-            let items = cursor
-                .record()
-                .map_err(|mistake| source.mistake("PATHS", mistake))?;
-            if items.is_empty() {
-                return Ok(());
-            }
-            let text = |index: usize| {
-                items
-                    .get(index)?
-                    .text
-                    .map(|text| String::from_utf8_lossy(text).into_owned())
-            };
-            if let (Some(alias), Some(path)) = (text(0), text(1)) {
-                self.places.aliases.insert(alias, path);
-            }
-        }
-    }
-
-    fn include(
-        &mut self,
-        source: &Rc<Source>,
-        cursor: &mut Cursor,
-        keyword: &Keyword,
-    ) -> Result<Flow, ParseError> {
-        let (at, written) = included_path(cursor).ok_or_else(|| {
-            source.error(
-                keyword.at,
-                "INCLUDE",
-                "expected the path of a file, in quotes",
-            )
-        })?;
-        let path = self
-            .places
-            .find(&written, source.path())
-            .map_err(|places| {
-                let places: Vec<_> = places
-                    .iter()
-                    .map(|place| place.display().to_string())
-                    .collect();
-                let message = format!(
-                    "'{written}' is not found; looked for {}",
-                    places.join(" and ")
-                );
-                source.error(at, "INCLUDE", message)
-            })?;
-        if self.open.contains(&canonical(&path)) {
-            let message = format!(
-                "'{written}' is being read already: the files include each other in a loop"
-            );
-            return Err(source.error(at, "INCLUDE", message));
-        }
-        if self.open.len() >= DEEPEST || self.opened >= MOST_FILES {
-            let message = format!("more than {DEEPEST} nested or {MOST_FILES} included files");
-            return Err(source.error(at, "INCLUDE", message));
-        }
-        let mut chain = vec![(source.path().to_owned(), source.line(keyword.at))];
-        chain.extend_from_slice(&source.included_from);
-        self.file(&path, chain)
-    }
-
     fn skip_region(
         &mut self,
         source: &Source,
@@ -477,7 +352,7 @@ impl Scan<'_> {
         Err(source.error(skip.at, &skip.name, "no ENDSKIP follows in this file"))
     }
 
-    fn warn(&mut self, source: &Source, at: usize, message: &str) {
+    pub(super) fn warn(&mut self, source: &Source, at: usize, message: &str) {
         self.warnings.push(source.path(), source.at(at), message);
     }
 }
@@ -496,43 +371,9 @@ fn block(source: &Rc<Source>, keyword: &Keyword, end: usize) -> Block {
     }
 }
 
-fn canonical(path: &Path) -> PathBuf {
-    path.canonicalize().unwrap_or_else(|_| path.to_owned())
-}
-
 /// The title is the next line with text.
 fn skip_title(cursor: &mut Cursor) {
     if cursor.skip_blank() {
         cursor.at = line_end(cursor.text, cursor.at);
     }
-}
-
-/// The path behind INCLUDE, in quotes or bare up to a blank, and moves behind its record.
-fn included_path(cursor: &mut Cursor) -> Option<(usize, String)> {
-    cursor.skip_blank();
-    let at = cursor.at;
-    let quoted = matches!(cursor.text.get(at), Some(b'\'' | b'"'));
-    let path = if quoted {
-        match cursor.token() {
-            Ok(Some((_, Token::Text(path)))) => path,
-            _ => return None,
-        }
-    } else {
-        let behind = cursor.text.get(at..)?;
-        let length = behind
-            .iter()
-            .position(|&byte| byte <= b' ')
-            .unwrap_or(behind.len());
-        let path = &behind[..length];
-        let ended = path.strip_suffix(b"/");
-        cursor.at = at + ended.unwrap_or(path).len();
-        ended.unwrap_or(path)
-    };
-    // Sloppy decks leave the closing slash out; nothing else can follow, so that is harmless.
-    let mut behind = cursor.clone();
-    if let Ok(Some((_, Token::Slash))) = behind.token() {
-        cursor.at = line_end(cursor.text, behind.at);
-    }
-    let path = String::from_utf8_lossy(path.trim_ascii()).into_owned();
-    (!path.is_empty()).then_some((at, path))
 }

@@ -27,7 +27,18 @@ pub(super) fn index(file: &MappedFile) -> (Vec<Entry>, Option<ParseError>) {
     while at < bytes.len() as u64 {
         let header = match header(bytes, at) {
             Ok(header) => header,
-            Err(message) => return (entries, wrong(at, "", message)),
+            // The array before it is to blame as often as the header itself.
+            Err(message) => {
+                let before = entries
+                    .last()
+                    .map_or(String::new(), |e: &Entry| e.name().to_owned());
+                let place = if before.is_empty() {
+                    message
+                } else {
+                    format!("behind it: {message}")
+                };
+                return (entries, wrong(at, &before, place));
+            }
         };
         let (name, count, kind) = header;
         let text = String::from_utf8_lossy(name).trim_end().to_owned();

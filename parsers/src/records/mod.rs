@@ -166,7 +166,7 @@ pub(crate) mod tests {
     pub(crate) fn array(name: &str, kind: &str, size: usize, data: &[u8], block: usize) -> Vec<u8> {
         let mut bytes = 16i32.to_be_bytes().to_vec();
         bytes.extend(format!("{name:<8}").bytes());
-        let count = if size == 0 { 0 } else { data.len() / size };
+        let count = data.len().checked_div(size).unwrap_or(0);
         bytes.extend((count as i32).to_be_bytes());
         bytes.extend(kind.bytes());
         bytes.extend(16i32.to_be_bytes());

@@ -1,0 +1,941 @@
+//! The reader of text decks: real files against independent facts, hand-written ones, and broken ones.
+#![allow(
+    missing_docs,
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    reason = "tests"
+)]
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use strataray_parsers::deck::{Grdecl, UnitSystem};
+use strataray_parsers::{ParseError, Warnings};
+
+/// One cell, with all corners at depth 0 or 1.
+const CELL: &str = "SPECGRID\n1 1 1 1 F /\nCOORD\n0 0 0 0 0 1  1 0 0 1 0 1  0 1 0 0 1 1  1 1 0 1 1 1 /\nZCORN\n4*0 4*1 /\n";
+
+fn read(path: &Path) -> (Result<Grdecl, ParseError>, Vec<String>) {
+    let mut warnings = Warnings::default();
+    let grid = Grdecl::read(path, &mut warnings);
+    (grid, warnings.iter().map(ToString::to_string).collect())
+}
+
+fn read_bytes(text: &[u8]) -> (Result<Grdecl, ParseError>, Vec<String>) {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("TEST.GRDECL");
+    fs::write(&path, text).unwrap();
+    read(&path)
+}
+
+fn ok(text: &str) -> Grdecl {
+    let (grid, warnings) = read_bytes(text.as_bytes());
+    assert_eq!(warnings, Vec::<String>::new(), "{text}");
+    grid.unwrap_or_else(|error| panic!("{error}\n{text}"))
+}
+
+fn warned(text: &str) -> (Grdecl, String) {
+    let (grid, warnings) = read_bytes(text.as_bytes());
+    (grid.unwrap(), warnings.join("\n"))
+}
+
+#[track_caller]
+fn err(text: &str, expected: &str) {
+    let message = read_bytes(text.as_bytes()).0.unwrap_err().to_string();
+    assert!(message.contains(expected), "{message}\nlacks: {expected}");
+}
+
+/// `CELL` with `text` behind it.
+fn cell(text: &str) -> String {
+    format!("{CELL}{text}")
+}
+
+fn property<'a>(grid: &'a Grdecl, name: &str) -> &'a [f64] {
+    let property = grid
+        .properties
+        .iter()
+        .find(|property| property.name == name);
+    &property.unwrap_or_else(|| panic!("no {name}")).values
+}
+
+fn names(grid: &Grdecl) -> Vec<&str> {
+    grid.properties
+        .iter()
+        .map(|property| property.name.as_str())
+        .collect()
+}
+
+fn data() -> Option<PathBuf> {
+    let path = std::env::var_os("STRATARAY_DATA").map(PathBuf::from);
+    if path.is_none() {
+        println!("STRATARAY_DATA is not set: the test on real decks is left out");
+    }
+    path
+}
+
+// --- notation ---
+
+#[test]
+fn ok_one_cell() {
+    let grid = ok(CELL);
+    assert_eq!(grid.dims, [1, 1, 1]);
+    assert_eq!(grid.coord.len(), 24);
+    assert_eq!(grid.zcorn, [0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0]);
+    assert_eq!(grid.actnum, None);
+    assert_eq!(grid.files.len(), 1);
+}
+
+#[test]
+fn ok_numbers_in_every_notation() {
+    for (token, value) in [
+        ("1.0D+3", 1000.0),
+        ("1d3", 1000.0),
+        ("1E+03", 1000.0),
+        (".5", 0.5),
+        ("5.", 5.0),
+        ("-.5e-1", -0.05),
+        ("+7", 7.0),
+        ("1*0.25", 0.25),
+        ("0.1", 0.1),
+        (
+            "123456789012345678901234567890",
+            123456789012345678901234567890.0,
+        ),
+        ("-0", 0.0),
+        ("0.54950006E+06", 549500.06),
+        ("00000000012.5", 12.5),
+        ("1e-400", 0.0),
+    ] {
+        let grid = ok(&cell(&format!("PORO\n{token}/\n")));
+        assert_eq!(property(&grid, "PORO"), [value], "{token}");
+    }
+}
+
+#[test]
+fn ok_undefined_values_in_properties() {
+    for token in ["*", "1*", "nan", "NaN", "-inf", "Infinity", "1e999"] {
+        let grid = ok(&cell(&format!("PORO\n{token} /\n")));
+        assert!(property(&grid, "PORO")[0].is_nan(), "{token}");
+    }
+    assert_eq!(ok(&cell("ACTNUM\n1* /\n")).actnum, Some(vec![1]));
+}
+
+#[test]
+fn ok_comments_line_ends_and_case() {
+    let plain = ok(&cell("PORO\n0.25 /\n"));
+    let texts = [
+        cell("PORO -- porosity / of 'it\n0.25-- a / and a ' here\n/ the rest is / comment\n"),
+        cell("poro\n\t0.25/ ZCORN\n"),
+        cell("  PORO\n0.25\n/\n"),
+        cell("PORO 0.25 /\n"),
+        cell("NOECHO\nPORO 0.25 /\n"),
+        cell("PORO--x\n\x0c 0.25 /\n"),
+    ];
+    for text in texts {
+        for line_end in ["\n", "\r\n", "\r"] {
+            let text = text.replace('\n', line_end);
+            let grid = ok(&text);
+            assert_eq!(
+                (grid.coord, grid.zcorn, grid.properties),
+                (
+                    plain.coord.clone(),
+                    plain.zcorn.clone(),
+                    plain.properties.clone()
+                ),
+                "{text:?}"
+            );
+        }
+    }
+    let different = ok(&cell("PORO\n0.26 /\n"));
+    assert_ne!(different.properties, plain.properties);
+}
+
+#[test]
+fn ok_bytes_beyond_utf8_in_comments() {
+    let mut text = cell("PORO -- d\n0.25 /\n").into_bytes();
+    let at = text.len() - 9;
+    text.splice(at..at, *b"\xe6\xf8\xe5\xff");
+    assert_eq!(property(&read_bytes(&text).0.unwrap(), "PORO"), [0.25]);
+}
+
+#[test]
+fn ok_arrays_before_dimensions() {
+    let (spec, arrays) = CELL.split_at(CELL.find("COORD").unwrap());
+    assert_eq!(
+        ok(&format!("PORO\n0.5 /\n{arrays}{spec}")).properties,
+        ok(&cell("PORO\n0.5 /\n")).properties
+    );
+}
+
+// --- short keywords ---
+
+#[test]
+fn ok_map_keywords() {
+    let grid = ok(&cell(
+        "MAPAXES\n1 2 3\n4 5 6 / \nMAPUNITS\n'METRES  ' /\nGRIDUNIT\nFEET 'MAP     ' /\nGDORIENT\nINC DEC INC DOWN LEFT /\nFIELD\n",
+    ));
+    assert_eq!(grid.map_axes, Some([1.0, 2.0, 3.0, 4.0, 5.0, 6.0]));
+    assert_eq!(grid.map_units.as_deref(), Some("METRES"));
+    let unit = grid.grid_unit.unwrap();
+    assert_eq!((unit.name.as_str(), unit.is_map), ("FEET", true));
+    assert_eq!(
+        grid.gdorient.unwrap(),
+        ["INC", "DEC", "INC", "DOWN", "LEFT"]
+    );
+    assert_eq!(grid.unit_system, Some(UnitSystem::Field));
+}
+
+#[test]
+fn ok_faults() {
+    let grid = ok(&cell(
+        "FAULTS\n'A/B -- C' 1 1 1 1\n 1 1 'x-' / why\n F2 6*1 J /\n/\nPORO\n0.5/\n",
+    ));
+    assert_eq!(grid.faults.len(), 2);
+    assert_eq!(
+        (grid.faults[0].name.as_str(), grid.faults[0].face.as_str()),
+        ("A/B -- C", "X-")
+    );
+    assert_eq!(
+        (
+            grid.faults[1].i,
+            grid.faults[1].k,
+            grid.faults[1].face.as_str()
+        ),
+        ([1, 1], [1, 1], "J")
+    );
+    assert_eq!(names(&grid), ["PORO"]);
+}
+
+#[test]
+fn err_faults() {
+    err(&cell("FAULTS\nA 1 1 1 1 1 1 W /\n/\n"), "'W' is not a face");
+    err(
+        &cell("FAULTS\nA 1 1 1 1 1 1 /\n/\n"),
+        "TEST.GRDECL:8:1: FAULTS: expected 8 items",
+    );
+    err(&cell("FAULTS\nA 2 1 1 1 1 1 X /\n/\n"), "runs backwards");
+    err(&cell("FAULTS\nA 0 1 1 1 1 1 X /\n/\n"), "found '0'");
+    err(
+        &cell("FAULTS\n'A 1 1 1 1 1 1 X /\n/\n"),
+        "quote is not closed",
+    );
+    let (grid, warning) = warned(&cell("FAULTS\nA 1 2 1 1 1 1 X /\n/\n"));
+    assert!(
+        grid.faults.is_empty() && warning.contains("outside the grid (I 2 of 1)"),
+        "{warning}"
+    );
+}
+
+// --- what is skipped ---
+
+#[test]
+fn ok_unknown_keywords_are_skipped() {
+    for skipped in [
+        "RUNSPEC\nTITLE\n COORD is not a keyword here / 'x\nOIL\nWATER\n\nGRID\nINIT\nNOECHO\n",
+        "PINCH\n",
+        "PINCH\n/\n",
+        "PINCH\n 0.4 NOGAP 1* TOPBOT TOP /\n",
+        "START\n 1 JAN 2000 /\n",
+        "START\n 1 'JAN' 2000 /\n",
+        "RPTGRID\n ALLNNC PORO /\n",
+        "RPTSOL\n FIP=2 RESTART=2 /\n",
+        "SCALECRS\nYES /\n",
+        "GRIDOPTS\n 'YES' 1* /\n",
+        "PVTO\n0 14.7 1 1.2 /\n1.5 4000 1.12 0.94\n 4600 1.1 0.94 /\n/\n",
+        "ROCK\n 3600 4e-6 /\n",
+        "EQUIL\n1 2 3 0 8800 0 1 0 0 /\n2 3 4 5 6 7 8 /\n",
+        "TABDIMS\n/\nEQLDIMS\n2 100 20 /\n",
+        "AQUCON\n 1 1 1 1 1 1 1 'I-' /\n/\n",
+        "GDUMMY\n'a/b' 'c -- d' 12 / comment\n",
+        "SKIP\nZCORN\n1 2 3 /\nENDSKIP\n",
+        "ECHO\nNOSUCHKEYWORD\n",
+    ] {
+        let grid = ok(&format!("{skipped}{CELL}{skipped}PORO\n0.5 /\n{skipped}"));
+        assert_eq!(
+            (grid.zcorn.len(), names(&grid)),
+            (8, vec!["PORO"]),
+            "{skipped}"
+        );
+    }
+}
+
+#[test]
+fn ok_reading_stops_before_summary_schedule_and_end() {
+    for end in ["SUMMARY", "SCHEDULE", "END", "ENDINC"] {
+        let grid = ok(&cell(&format!(
+            "{end}\nWOPR\n'A\n/\nPORO\n0.5 /\nZCORN 1 2"
+        )));
+        assert!(grid.properties.is_empty(), "{end}");
+    }
+}
+
+#[test]
+fn ok_operations_are_named() {
+    let (grid, warning) = warned(&cell(
+        "EQUALS\n PORO 0.2 /\n 'ACTNUM' 0 1 1 1 1 1 1 / shut\n/\nCOPY\n PERMX PERMY /\n/\nEQUALS\nNTG 1 /\n/\nMULTFLT\n'F/1' 0.1 /\n/\nPERMX\n5 /\n",
+    ));
+    assert!(warning.contains("TEST.GRDECL:7:1: EQUALS is not evaluated (here first, 2 times in all); it concerns ACTNUM, NTG, PORO"), "{warning}");
+    assert!(
+        warning.contains("COPY is not evaluated; it concerns PERMY"),
+        "{warning}"
+    );
+    assert!(warning.contains("MULTFLT is not evaluated"), "{warning}");
+    assert_eq!(names(&grid), ["PERMX"]);
+}
+
+#[test]
+fn ok_boxes_and_refinements_are_left_out_with_a_warning() {
+    let (grid, warning) = warned(&cell("BOX\n1 1 1 1 1 1 /\nPORO\n0.5 /\nENDBOX\nNTG\n1 /\n"));
+    assert_eq!(names(&grid), ["NTG"]);
+    assert!(
+        warning.contains("PORO inside a BOX is not read")
+            && warning.contains("BOX is not evaluated"),
+        "{warning}"
+    );
+    let (grid, warning) = warned(&cell(
+        "CARFIN\n'L' 1 1 1 1 1 1 2 2 2 /\nPORO\n0.5 /\nENDFIN\nNTG\n1 /\n",
+    ));
+    assert_eq!(names(&grid), ["NTG"]);
+    assert!(warning.contains("local refinements"), "{warning}");
+}
+
+#[test]
+fn ok_odd_decks_are_warned_about() {
+    for (text, expected) in [
+        (
+            "PORO\n2*0.5 /\n",
+            "PORO has 2 values where the grid has 1 cells",
+        ),
+        ("PORO\n0.5 /\nPORO\n0.6 /\n", "PORO is given again"),
+        ("NOECHO\n12 abc\n", "belongs to no keyword"),
+        ("GDFILE\n'X.EGRID' /\n", "GDFILE names is not read"),
+        ("some text at the end", "no closing /"),
+        ("DIMENS\n2 2 2 /\n", "SPECGRID is followed"),
+    ] {
+        let (grid, warning) = warned(&cell(text));
+        assert_eq!(grid.dims, [1, 1, 1]);
+        assert!(warning.contains(expected), "{warning}");
+    }
+}
+
+// --- errors ---
+
+#[test]
+fn err_wrong_counts() {
+    err(
+        &CELL.replace("4*0 4*1", "4*0 3*1"),
+        "TEST.GRDECL:6:9: ZCORN: expected 8 values, found 7",
+    );
+    err(
+        &CELL.replace("4*0 4*1", "4*0 5*1"),
+        "ZCORN: expected 8 values, found 9",
+    );
+    err(
+        &CELL.replace("4*0 4*1", "999999999999999*1"),
+        "expected 8 values, found 999999999999999",
+    );
+    err(
+        &CELL.replace("4*0 4*1", "18446744073709551615*1 18446744073709551615*1"),
+        "expected 8 values, found 18446744073709551615",
+    );
+    err(
+        &CELL.replace("4*0 4*1", "99999999999999999999*1"),
+        "impossible repeat count",
+    );
+    err(&CELL.replace("4*0 4*1", "0*1"), "impossible repeat count");
+}
+
+#[test]
+fn err_wrong_values() {
+    err(
+        &CELL.replace("4*0 4*1", "4*0 4*1x"),
+        "TEST.GRDECL:6:5: ZCORN: '1x' is not a number",
+    );
+    err(
+        &CELL.replace("4*0 4*1", "4*0 4*"),
+        "a defaulted value (*) is not allowed here",
+    );
+    err(
+        &CELL.replace("4*0 4*1", "7*0 nan"),
+        "'nan' is not a finite number",
+    );
+    err(
+        &CELL.replace("4*0 4*1", "7*0 1e999"),
+        "'1e999' is not a finite number",
+    );
+    err(
+        &cell("PORO\n0.2x5 /\n"),
+        "TEST.GRDECL:8:1: PORO: '0.2x5' is not a number",
+    );
+    err(
+        &cell("ACTNUM\n0.5 /\n"),
+        "ACTNUM: the value 0.5 of cell 1 is not 0",
+    );
+    err(
+        &cell("MAPAXES\n1 2 3 4 5 /\n"),
+        "MAPAXES: expected 6 values, found 5",
+    );
+    err(&cell("MAPAXES\n1 2 3 4 5 z /\n"), "'z' is not a number");
+}
+
+#[test]
+fn err_missing_slash() {
+    err(
+        &CELL.replace("1 1 1 /\nZCORN", "1 1 1\nZCORN"),
+        "TEST.GRDECL:5:1: COORD: 'ZCORN' is not a number; is the closing / of COORD missing?",
+    );
+    err(
+        CELL.trim_end().trim_end_matches('/'),
+        "ZCORN: the file ends before the closing /",
+    );
+    err(
+        &cell("PORO\n0.5\n"),
+        "PORO: the file ends before the closing /",
+    );
+    err(
+        &cell("MYPROP\n0.5\nACTNUM\n1 /\n"),
+        "is the closing / of MYPROP missing?",
+    );
+}
+
+#[test]
+fn err_missing_keywords() {
+    let parts: Vec<&str> = CELL.split_inclusive("/\n").collect();
+    let without = |index: usize| {
+        parts
+            .iter()
+            .enumerate()
+            .filter(|part| part.0 != index)
+            .map(|part| *part.1)
+            .collect::<String>()
+    };
+    err(
+        &without(0),
+        "no corner-point grid: SPECGRID (or DIMENS) missing",
+    );
+    err(&without(1), "no corner-point grid: COORD missing");
+    err(&without(2), "no corner-point grid: ZCORN missing");
+    err("", "SPECGRID (or DIMENS) and COORD and ZCORN missing");
+    err(
+        "DIMENS\n1 1 1 /\nDX\n100 /\nDY\n100 /\nDZ\n1 /\nTOPS\n1000 /\n",
+        "the grid is given by DX, DY, DZ and TOPS",
+    );
+}
+
+#[test]
+fn err_dimensions() {
+    let with = |dims: &str| CELL.replace("1 1 1 1 F", dims);
+    err(
+        &with("-1 1 1"),
+        "TEST.GRDECL:2:1: SPECGRID: expected a whole number of at least 1, found '-1'",
+    );
+    err(&with("1 0 1"), "found '0'");
+    err(&with("1 1"), "expected three numbers of cells");
+    err(&with("1* 1 1"), "found '*'");
+    err(&with("1 1 1 2 F"), "NUMRES");
+    err(&with("1 1 1 1 T"), "radial");
+    err(&with("99999 99999 99999"), "more than a grid can have");
+    err(
+        &with("18446744073709551615 2 2"),
+        "more than a grid can have",
+    );
+    err(&with("18446744073709551616 2 2"), "whole number");
+    err(&with("1290 1290 1290"), "cannot be described by 1");
+    err(&with("2 1 1"), "COORD: expected 36 values, found 24");
+}
+
+#[test]
+fn err_binary_file() {
+    let error = read_bytes(b"\0\0\0\x10FILEHEAD").0.unwrap_err().to_string();
+    assert!(error.contains("binary"), "{error}");
+}
+
+// --- includes ---
+
+fn write_all(files: &[(&str, String)]) -> tempfile::TempDir {
+    let directory = tempfile::tempdir().unwrap();
+    for (name, text) in files {
+        let path = directory.path().join(name);
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(path, text).unwrap();
+    }
+    directory
+}
+
+#[test]
+fn ok_includes_quoted_bare_aliased_and_nested() {
+    let directory = write_all(&[
+        ("model/MAIN.DATA", "PATHS\n'GRIDS' '../include/grid' /\n/\nINCLUDE\n '$GRIDS/cell.grid' /\nINCLUDE\n../include/poro.inc /\nINCLUDE ..\\include\\ntg.inc/ comment\n".into()),
+        ("include/grid/cell.grid", format!("{CELL}INCLUDE\n beside.inc /\n")),
+        ("include/grid/beside.inc", "PERMX\n7 /\nENDINC\nnot read".into()),
+        ("include/poro.inc", "PORO\n0.5 /".into()),
+        ("include/ntg.inc", "NTG\n1 /".into()),
+    ]);
+    let (grid, warnings) = read(&directory.path().join("model/MAIN.DATA"));
+    let grid = grid.unwrap();
+    assert!(warnings.is_empty(), "{warnings:?}");
+    assert_eq!(names(&grid), ["PERMX", "PORO", "NTG"]);
+    let files: Vec<_> = grid
+        .files
+        .iter()
+        .map(|file| file.file_name().unwrap().to_str().unwrap())
+        .collect();
+    assert_eq!(
+        files,
+        [
+            "MAIN.DATA",
+            "cell.grid",
+            "beside.inc",
+            "poro.inc",
+            "ntg.inc"
+        ]
+    );
+}
+
+#[test]
+fn err_includes() {
+    let directory = write_all(&[
+        ("A", "\nINCLUDE\n 'B' /\n".into()),
+        ("B", "INCLUDE\n 'A' /\n".into()),
+        ("C", "INCLUDE\n 'no such' /\n".into()),
+        ("D", "INCLUDE\n 'E' /\n".into()),
+        ("E", format!("{CELL}PORO\nx5 0.x /\nPERMX\n 1x /\n")),
+        ("F", "INCLUDE\n /\n".into()),
+    ]);
+    let message = |name: &str| {
+        read(&directory.path().join(name))
+            .0
+            .unwrap_err()
+            .to_string()
+    };
+    assert!(
+        message("A").contains("loop") && message("A").contains("A:2)"),
+        "{}",
+        message("A")
+    );
+    assert!(
+        message("C").contains("C:2:2: INCLUDE: 'no such' is not found; looked for "),
+        "{}",
+        message("C")
+    );
+    assert!(
+        message("D").contains("E:10:2: PERMX: '1x' is not a number (included from ")
+            && message("D").ends_with("D:1)"),
+        "{}",
+        message("D")
+    );
+    assert!(
+        message("F").contains("expected the path"),
+        "{}",
+        message("F")
+    );
+    assert!(message("no such").contains("cannot open"));
+}
+
+// --- numbers ---
+
+#[test]
+fn numbers_equal_the_standard_library_bit_by_bit() {
+    let mut random = fastrand::Rng::with_seed(20_240_229);
+    let (mut text, mut expected) = (String::new(), Vec::new());
+    let count = 1_000_000;
+    for index in 0..count {
+        let token = random_number(&mut random);
+        expected.push(token.replace(['d', 'D'], "e").parse::<f64>().unwrap());
+        text.push_str(&token);
+        text.push_str(if index % 6 == 5 { "\n" } else { "  " });
+    }
+    let spec = CELL
+        .replace("1 1 1 1 F", &format!("{count} 1 1"))
+        .replace("4*0 4*1", "8000000*1");
+    let coord = format!("COORD\n{}*1 /", 12 * (count + 1));
+    let start = spec.find("COORD").unwrap();
+    let end = spec.find("ZCORN").unwrap();
+    let deck = format!("{}{coord}\n{}PROP\n{text}/\n", &spec[..start], &spec[end..]);
+    let grid = ok(&deck);
+    let values = property(&grid, "PROP");
+    let equal = |(value, expected): (&f64, &f64)| value.to_bits() == expected.to_bits();
+    assert!(values.iter().zip(&expected).all(equal));
+    // The comparison sees a difference in the last bit.
+    assert!(!equal((
+        &values[0],
+        &f64::from_bits(expected[0].to_bits() ^ 1)
+    )));
+}
+
+fn random_number(random: &mut fastrand::Rng) -> String {
+    let digits = |random: &mut fastrand::Rng, most: usize| -> String {
+        let count = random.usize(1..=most);
+        (0..count)
+            .map(|_| char::from(random.u8(b'0'..=b'9')))
+            .collect()
+    };
+    let sign = ["", "", "-", "+"][random.usize(..4)];
+    let whole = digits(random, 9);
+    let fraction = digits(random, 8);
+    match random.u8(..8) {
+        0 => format!("{sign}{whole}"),
+        1 => format!("{sign}.{fraction}"),
+        2 => format!("{sign}{whole}."),
+        3 => format!("{sign}0.{}{fraction}", digits(random, 16)),
+        4 => format!("{sign}{whole}.{fraction}E{:+03}", random.i32(-30..30)),
+        5 => format!(
+            "{sign}{whole}.{fraction}{}{}",
+            ["D", "d", "e"][random.usize(..3)],
+            random.i32(-280..280)
+        ),
+        6 => format!("{:e}", f64::from_bits(random.u64(..0x7ff0_0000_0000_0000))),
+        _ => format!("{sign}{whole}.{fraction}"),
+    }
+}
+
+// --- broken files ---
+
+fn rich_deck() -> String {
+    let grid = "SPECGRID\n3 2 2 1 F /\nMAPAXES\n0 1 0 0 1 0 /\nGRIDUNIT\n'METRES' ' ' /\nGDORIENT\nINC INC INC DOWN RIGHT /\nCOORD\n";
+    let coord: String = (0..12)
+        .map(|pillar| {
+            format!(
+                " {} {} 0.5 {} {} 9.5\n",
+                pillar % 4,
+                pillar / 4,
+                pillar % 4,
+                pillar / 4
+            )
+        })
+        .collect();
+    let zcorn: String = (0..4)
+        .map(|plane| format!("24*{plane}.25 -- plane\n"))
+        .collect();
+    format!(
+        "{grid}{coord}/\nZCORN\n{zcorn}/\nACTNUM\n6*1 0 5*1 /\nPORO\n12*0.25 /\nFAULTS\n'F1' 1 1 1 2 1 2 'X' /\n/\nEQUALS\n PORO 0.2 /\n/\nPINCH\n/\nSATNUM\n 1 2 3 4 5 6\n 1 2 3 4 5 6 /\n"
+    )
+}
+
+#[test]
+fn truncated_decks_are_errors_or_complete() {
+    let deck = rich_deck();
+    let whole = read_bytes(deck.as_bytes()).0.unwrap();
+    let needed = deck.find("ACTNUM").unwrap();
+    for part in 1..20 {
+        let length = deck.len() * part / 20;
+        let (grid, _) = read_bytes(&deck.as_bytes()[..length]);
+        if length + 8 < needed {
+            assert!(grid.is_err(), "{length}");
+        } else if let Ok(grid) = grid {
+            assert_eq!(grid.zcorn, whole.zcorn, "{length}");
+        }
+    }
+}
+
+#[test]
+fn flipped_bytes_never_panic() {
+    let deck = rich_deck().into_bytes();
+    let mut random = fastrand::Rng::with_seed(7);
+    let (mut errors, rounds) = (0, 2000);
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("FLIPPED.GRDECL");
+    for _ in 0..rounds {
+        let mut bytes = deck.clone();
+        for _ in 0..random.usize(1..6) {
+            let at = random.usize(..bytes.len());
+            bytes[at] = if random.bool() {
+                random.u8(..)
+            } else {
+                b"/*'-\n\r1\"$."[random.usize(..10)]
+            };
+        }
+        fs::write(&path, &bytes).unwrap();
+        if let Err(error) = read(&path).0 {
+            assert!(!error.to_string().contains('\n'), "{error}");
+            errors += 1;
+        }
+    }
+    assert!(errors > rounds / 10 && errors < rounds, "{errors}");
+}
+
+// --- real decks ---
+
+/// Compares a deck with `oracle.json`: dimensions, activity, map axes, units, orientation, properties.
+fn check_facts(grid: &Grdecl, facts: &serde_json::Value) -> Result<(), String> {
+    let same = |what: &str, found: String, expected: String| {
+        if found == expected {
+            Ok(())
+        } else {
+            Err(format!("{what}: {found} instead of {expected}"))
+        }
+    };
+    let words = |value: &serde_json::Value| -> Option<Vec<String>> {
+        Some(
+            value
+                .as_array()?
+                .iter()
+                .map(|word| word.as_str().unwrap().to_owned())
+                .collect(),
+        )
+    };
+    let dims = ["ni", "nj", "nk"]
+        .map(|axis| usize::try_from(facts["grid"][axis].as_u64().unwrap()).unwrap());
+    same("dims", format!("{:?}", grid.dims), format!("{dims:?}"))?;
+    same(
+        "pillars",
+        grid.coord.len().to_string(),
+        (6 * (dims[0] + 1) * (dims[1] + 1)).to_string(),
+    )?;
+    same(
+        "corners",
+        grid.zcorn.len().to_string(),
+        (8 * dims.iter().product::<usize>()).to_string(),
+    )?;
+    let total = dims.iter().product::<usize>();
+    let active = grid.actnum.as_ref().map_or(total, |actnum| {
+        actnum.iter().filter(|&&active| active == 1).count()
+    });
+    same(
+        "active",
+        active.to_string(),
+        facts["grid"]["actnum_value_counts"]["1"].to_string(),
+    )?;
+    same(
+        "ACTNUM",
+        grid.actnum.is_some().to_string(),
+        facts["grid"]["actnum_present"].to_string(),
+    )?;
+    let axes = words(&facts["mapaxes"]).map(|axes| {
+        axes.iter()
+            .map(|axis| axis.parse::<f64>().unwrap())
+            .collect::<Vec<_>>()
+    });
+    same(
+        "MAPAXES",
+        format!("{:?}", grid.map_axes.map(|axes| axes.to_vec())),
+        format!("{axes:?}"),
+    )?;
+    let unit = grid.grid_unit.as_ref().map(|unit| {
+        vec![
+            unit.name.clone(),
+            if unit.is_map { "MAP" } else { "" }.to_owned(),
+        ]
+    });
+    same(
+        "GRIDUNIT",
+        format!("{unit:?}"),
+        format!("{:?}", words(&facts["gridunit"])),
+    )?;
+    same(
+        "MAPUNITS",
+        format!("{:?}", grid.map_units.clone().map(|unit| vec![unit])),
+        format!("{:?}", words(&facts["mapunits"])),
+    )?;
+    same(
+        "GDORIENT",
+        format!("{:?}", grid.gdorient.clone().map(Vec::from)),
+        format!("{:?}", words(&facts["gdorient"])),
+    )?;
+    check_properties(grid, &facts["properties_active"])?;
+    check_cell(grid, &facts["cells"][0])
+}
+
+fn check_properties(grid: &Grdecl, facts: &serde_json::Value) -> Result<(), String> {
+    for (name, facts) in facts.as_object().unwrap() {
+        let active = |cell: usize| grid.actnum.as_ref().is_none_or(|actnum| actnum[cell] != 0);
+        let values: Vec<f64> = property(grid, name)
+            .iter()
+            .enumerate()
+            .filter(|value| active(value.0))
+            .map(|value| *value.1)
+            .collect();
+        #[allow(clippy::cast_precision_loss, reason = "a few thousand cells")]
+        let mean = values.iter().sum::<f64>() / values.len() as f64;
+        let expected = facts["mean"].as_f64().unwrap();
+        if (mean - expected).abs() > 1e-8 * expected.abs()
+            || values.len() as u64 != facts["count"].as_u64().unwrap()
+        {
+            return Err(format!("{name}: mean {mean} instead of {expected}"));
+        }
+    }
+    Ok(())
+}
+
+/// The first listed cell's corner depths, through the index of ZCORN.
+fn check_cell(grid: &Grdecl, cell: &serde_json::Value) -> Result<(), String> {
+    let [i, j, k] =
+        [0, 1, 2].map(|axis| usize::try_from(cell["ijk"][axis].as_u64().unwrap()).unwrap() - 1);
+    let [ni, nj, _] = grid.dims;
+    for corner in 0..8 {
+        let (di, dj, dk) = (corner % 2, corner / 2 % 2, corner / 4);
+        let depth = grid.zcorn[2 * i + di + 2 * ni * (2 * j + dj) + 4 * ni * nj * (2 * k + dk)];
+        let expected = cell["corners"][corner][2].as_f64().unwrap();
+        if (depth - expected).abs() > 1e-6 * expected.abs() {
+            return Err(format!(
+                "corner {corner}: depth {depth} instead of {expected}"
+            ));
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn real_decks_have_the_facts_of_the_oracle() {
+    let Some(data) = data() else { return };
+    let oracle: serde_json::Value =
+        serde_json::from_str(&fs::read_to_string(data.join("oracle.json")).unwrap()).unwrap();
+    let mut seen = Vec::new();
+    for (name, facts) in oracle
+        .as_object()
+        .unwrap()
+        .iter()
+        .filter(|case| case.1["grdecl"] == true)
+    {
+        let (grid, warnings) = read(&data.join(name));
+        let grid = grid.unwrap_or_else(|error| panic!("{error}"));
+        check_facts(&grid, facts).unwrap_or_else(|difference| panic!("{name}: {difference}"));
+        assert!(warnings.is_empty(), "{name}: {warnings:?}");
+        seen.push((grid, facts));
+    }
+    assert_eq!(seen.len(), 13);
+    // No deck has the facts of another one.
+    for (index, (grid, _)) in seen.iter().enumerate() {
+        let other = seen[(index + 1) % seen.len()].1;
+        assert!(check_facts(grid, other).is_err());
+    }
+}
+
+#[test]
+fn real_reek_deck_with_includes() {
+    let Some(data) = data() else { return };
+    let (grid, warnings) = read(&data.join("reek/deck/model/REEK.DATA"));
+    let grid = grid.unwrap();
+    assert_eq!(grid.dims, [40, 64, 14]);
+    assert_eq!(grid.unit_system, Some(UnitSystem::Metric));
+    // Counted in the include files: six arrays by keyword, the lines of reek.faults by grep.
+    assert_eq!(
+        names(&grid),
+        [
+            "PORO", "PERMX", "PERMY", "PERMZ", "SWATINIT", "EQLNUM", "FIPNUM"
+        ]
+    );
+    let lines = fs::read_to_string(data.join("reek/deck/include/grid/reek.faults")).unwrap();
+    assert_eq!(
+        grid.faults.len(),
+        lines.lines().filter(|line| line.starts_with("'F")).count()
+    );
+    assert_eq!(warnings.len(), 5, "{warnings:#?}");
+}
+
+#[test]
+fn real_spe9_deck() {
+    let Some(data) = data() else { return };
+    let (grid, warnings) = read(&data.join("spe9/deck/SPE9_CP.DATA"));
+    let grid = grid.unwrap();
+    assert_eq!(grid.dims, [24, 25, 15]);
+    assert_eq!(grid.unit_system, Some(UnitSystem::Field));
+    assert_eq!(names(&grid), ["PORO", "PERMX"]);
+    assert_eq!(property(&grid, "PORO")[8999], 0.157);
+    assert_eq!(warnings.len(), 2, "{warnings:#?}");
+}
+
+#[test]
+fn real_spe1_deck_is_block_centered() {
+    let Some(data) = data() else { return };
+    let message = read(&data.join("spe1/SPE1CASE1.DATA"))
+        .0
+        .unwrap_err()
+        .to_string();
+    assert!(
+        message.contains("the grid is given by DX, DY, DZ and TOPS")
+            || message.contains("cannot open"),
+        "{message}"
+    );
+}
+
+#[test]
+fn real_nested_faults() {
+    let Some(data) = data() else { return };
+    let (grid, warnings) = read(&data.join("grdecl/fault_test/regular27cell.DATA"));
+    let grid = grid.unwrap();
+    let names: Vec<_> = grid
+        .faults
+        .iter()
+        .map(|fault| fault.name.as_str())
+        .collect();
+    assert_eq!(names[0], "grid_C202");
+    assert_eq!(names[4], "mother_grid_C202");
+    assert_eq!(names[8..], ["MAIN", "DATA_FILE_MAIN"]);
+    assert_eq!(grid.files.len(), 5);
+    assert!(warnings.is_empty(), "{warnings:?}");
+}
+
+// --- speed ---
+
+/// A grid of 160 x 160 x 50 cells as exporters write it: about 140 MB.
+fn write_large_deck(path: &Path) {
+    use std::io::Write;
+    let (ni, nj, nk) = (160_usize, 160_usize, 50_usize);
+    let mut random = fastrand::Rng::with_seed(1);
+    let mut out = std::io::BufWriter::new(fs::File::create(path).unwrap());
+    writeln!(out, "SPECGRID\n {ni} {nj} {nk} 1 F /\n\nCOORD").unwrap();
+    for pillar in 0..(ni + 1) * (nj + 1) {
+        let (x, y) = (
+            456_510.61 + 50.37 * (pillar % (ni + 1)) as f64,
+            5_926_880.03 + 50.11 * (pillar / (ni + 1)) as f64,
+        );
+        writeln!(out, " {x:.2} {y:.2} 1700.00 {x:.2} {y:.2} 2100.00").unwrap();
+    }
+    let mut array = |name: &str, count: usize, value: &mut dyn FnMut(usize) -> String| {
+        writeln!(out, "/\n\n{name} -- generated").unwrap();
+        for index in 0..count {
+            let end = if index % 8 == 7 { "\n" } else { " " };
+            write!(out, "{}{end}", value(index)).unwrap();
+        }
+    };
+    let cells = ni * nj * nk;
+    array("ZCORN", 8 * cells, &mut |index| {
+        format!(
+            "{:.4}",
+            1700.0 + 4.0 * (index / (4 * ni * nj)) as f64 + random.f64()
+        )
+    });
+    array("PORO", cells, &mut |index| {
+        format!("0.{:04}", 500 + index % 2500)
+    });
+    array("PERMX", cells, &mut |index| {
+        format!("{:.3}", 0.5 + (index * 7919 % 200_003) as f64 / 100.0)
+    });
+    array("ACTNUM", cells / 20, &mut |index| {
+        if index % 3 == 0 {
+            "20*1".into()
+        } else {
+            "3*0 17*1".into()
+        }
+    });
+    writeln!(out, "/").unwrap();
+}
+
+/// Wall and processor time of a large deck; run with `--ignored --nocapture`, and once more with
+/// `RAYON_NUM_THREADS=1`.
+#[test]
+#[ignore = "writes 140 MB and only measures"]
+fn speed_of_a_large_deck() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("LARGE.GRDECL");
+    write_large_deck(&path);
+    let megabytes = fs::metadata(&path).unwrap().len() as f64 / 1e6;
+    let mut seconds: Vec<f64> = (0..6)
+        .map(|_| {
+            let start = std::time::Instant::now();
+            assert_eq!(read(&path).0.unwrap().properties.len(), 2);
+            start.elapsed().as_secs_f64()
+        })
+        .collect();
+    // The first run warms the file up.
+    seconds.remove(0);
+    seconds.sort_by(f64::total_cmp);
+    println!(
+        "{megabytes:.0} MB: {:.0} MB/s (median of 5; slowest {:.0}, fastest {:.0})",
+        megabytes / seconds[2],
+        megabytes / seconds[4],
+        megabytes / seconds[0]
+    );
+}
