@@ -3,7 +3,7 @@
 //! Modules in the order in which data flows:
 //! [`load`] turns files into a [`case::Case`] (a [`model`] and its results), a [`scene`] says what
 //! to look at and is resolved against the case, [`transfer`] maps values to color and extinction,
-//! [`gpu`] holds the compact grid on the device, [`strategies`] cast the rays, [`reference`] does
+//! [`gpu`] holds the compact grid on the device, [`strategies`] cast the rays, [`mod@reference`] does
 //! the same on the CPU in plain f64, [`metrics`] compare the two, and [`picture`] turns the result
 //! into a file.
 
