@@ -57,7 +57,7 @@ fn role(path: &Path) -> Option<Role> {
     let numbered = |letter: char| {
         extension
             .strip_prefix(letter)
-            .filter(|d| d.len() >= 4)?
+            .filter(|d| d.len() >= 4 && d.bytes().all(|b| b.is_ascii_digit()))?
             .parse()
             .ok()
     };
@@ -85,28 +85,25 @@ fn starts_binary(path: &Path) -> bool {
     read.is_ok() && start == 16i32.to_be_bytes()
 }
 
+/// What the content of the file named by the user shows, where its extension says nothing sure.
+fn sniff(path: &Path) -> Role {
+    match role(path) {
+        None | Some(Role::Text) if starts_binary(path) => Role::Egrid,
+        None => Role::Text,
+        Some(role) => role,
+    }
+}
+
 /// Finds the case that `path` names: one of its files, or its base name without extension.
 ///
-/// A `.grdecl` file named by the user is the grid itself; an unknown extension is taken for such a
-/// text file when the file exists.
+/// A `.grdecl` file named by the user is the grid itself; a file with an unknown extension is taken
+/// for an EGRID or a text grid by its first bytes. EGRID goes before decks, unified before
+/// separate restarts, and what the user named before all.
 ///
 /// # Errors
 /// When no grid is found; the sentence says what was looked for.
 pub fn find(path: &Path) -> Result<CaseFiles, ParseError> {
-    let is_file = path.is_file();
-    let named = if is_file {
-        Some(role(path).unwrap_or(Role::Text))
-    } else {
-        None
-    };
-    if path.is_dir() {
-        return Err(ParseError::new(
-            path,
-            At::File,
-            "",
-            "is a folder; name a file of the case in it",
-        ));
-    }
+    let named = path.is_file().then(|| sniff(path));
     let stem = match named.or_else(|| role(path)) {
         Some(_) => path.file_stem(),
         None => path.file_name(),
@@ -117,24 +114,30 @@ pub fn find(path: &Path) -> Result<CaseFiles, ParseError> {
     let exact = |p: &Path| p.file_stem().and_then(|s| s.to_str()) == Some(&stem);
     files.sort_by_key(|(p, _)| (p.file_name() != path.file_name(), !exact(p), p.clone()));
     let first = |wanted: Role| {
-        files
-            .iter()
-            .find(|(_, r)| *r == wanted)
-            .map(|(p, _)| p.clone())
+        let file = files.iter().find(|(_, r)| *r == wanted);
+        file.map(|(p, _)| p.clone())
     };
-    let text = is_file
-        .then(|| path.to_owned())
-        .filter(|_| named == Some(Role::Text));
-    let grid = match (
-        text,
-        first(Role::Egrid),
-        first(Role::Deck),
-        first(Role::Text),
-    ) {
-        (Some(text), ..) => GridSource::Deck(text),
-        (_, Some(egrid), ..) => GridSource::Egrid(egrid),
-        (_, _, Some(deck), _) | (_, _, None, Some(deck)) => GridSource::Deck(deck),
-        _ => return Err(no_grid(path, &stem, &files)),
+    if path.is_dir() && files.is_empty() {
+        let message = "is a folder; name a file of the case in it";
+        return Err(ParseError::new(path, At::File, "", message));
+    }
+    if !path.exists() && !files.is_empty() && role(path).is_some_and(|r| first(r).is_none()) {
+        let others: Vec<_> = files
+            .iter()
+            .take(3)
+            .map(|(p, _)| p.display().to_string())
+            .collect();
+        let message = format!("there is no such file; the case has {}", others.join(", "));
+        return Err(ParseError::new(path, At::File, "", message));
+    }
+    let grid = match named {
+        Some(Role::Text) => Some(GridSource::Deck(path.to_owned())),
+        Some(Role::Egrid) => Some(GridSource::Egrid(path.to_owned())),
+        _ => first(Role::Egrid).map(GridSource::Egrid),
+    };
+    let deck = || first(Role::Deck).or_else(|| first(Role::Text));
+    let Some(grid) = grid.or_else(|| deck().map(GridSource::Deck)) else {
+        return Err(no_grid(path, &stem, &files));
     };
     let mut separate: Vec<(u32, PathBuf)> = Vec::new();
     for (file, role) in &files {
@@ -199,7 +202,7 @@ fn no_grid(path: &Path, stem: &str, files: &[(PathBuf, Role)]) -> ParseError {
         Role::NotRead(why) => Some(format!("; there is {}, but {why}", p.display())),
         _ => None,
     });
-    let found = if path.exists() {
+    let found = if path.exists() || !files.is_empty() {
         "this case has no grid"
     } else {
         "there is no such case"

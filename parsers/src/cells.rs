@@ -27,6 +27,8 @@ pub struct Head {
     pub phases: i32,
     /// `YYYY-MM-DD` (items 65 to 67); empty where absent.
     pub date: String,
+    /// Hour, minute and microsecond of the minute (items 207, 208, 411); zero where absent.
+    pub clock: [i32; 3],
     /// Number of wells (item 17).
     pub wells: i32,
     /// Strings a well in ZWEL (item 28).
@@ -98,6 +100,7 @@ impl CellArrays {
             } else {
                 String::new()
             },
+            clock: [item(207), item(208), item(411)],
             wells: item(17),
             strings_a_well: item(28),
         })

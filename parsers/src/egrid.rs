@@ -1,7 +1,7 @@
 //! EGRID: the geometry of a case, as written.
 //!
 //! Keywords: FILEHEAD, MAPUNITS, MAPAXES, GRIDUNIT, GRIDHEAD, COORD, ZCORN, ACTNUM, NNC1 with NNC2;
-//! sections of local grids start at LGR and end at ENDLGR.
+//! sections of local grids start at LGR and end at ENDLGR. The README lists what is skipped.
 
 use std::path::Path;
 
@@ -33,10 +33,14 @@ pub enum PorosityModel {
 pub struct LocalGrid {
     /// Name.
     pub name: String,
+    /// Name of the grid it refines; empty for the global grid.
+    pub parent: String,
     /// Cells along i, j and k.
     pub dims: [usize; 3],
     /// Active cells.
     pub active: usize,
+    /// True where COORD holds radii and angles.
+    pub is_radial: bool,
 }
 
 /// The global grid of an EGRID file.
@@ -60,6 +64,8 @@ pub struct Egrid {
     pub porosity_model: PorosityModel,
     /// Non-neighbor connections of the global grid: cell numbers from 1.
     pub nnc: Vec<[i32; 2]>,
+    /// Number of connections within a local grid, to its host or to another one.
+    pub local_connections: u64,
     /// Local grids.
     pub local_grids: Vec<LocalGrid>,
 }
@@ -123,8 +129,24 @@ impl Egrid {
             });
         let map_axes = match find("MAPAXES") {
             None => None,
-            Some(entry) => file.f64s(entry)?.try_into().ok(),
+            Some(entry) if entry.count == 6 => file.f64s(entry)?.try_into().ok(),
+            Some(entry) => {
+                let message = format!("MAPAXES has {} values, not 6: left out", entry.count);
+                warnings.push(path, At::Byte(entry.offset), message);
+                None
+            }
         };
+        if let Some(entry) = find("CORSNUM") {
+            let message = "CORSNUM: coarsened cells are read as the fine cells they were";
+            warnings.push(path, At::Byte(entry.offset), message);
+        }
+        let porosity_model = porosity_model(&file)?;
+        // Fracture cells are numbered on behind the matrix cells.
+        let numbered = match porosity_model {
+            PorosityModel::Single => cells,
+            _ => cells.saturating_mul(2),
+        };
+        let (nnc, local_connections) = connections(&file, numbered, warnings)?;
         Ok(Self {
             dims,
             coord,
@@ -136,8 +158,9 @@ impl Egrid {
                 .and_then(|s| s.into_iter().next()),
             map_axes,
             grid_unit,
-            porosity_model: porosity_model(&file)?,
-            nnc: connections(&file)?,
+            porosity_model,
+            nnc,
+            local_connections,
             local_grids: local_grids(&file)?,
         })
     }
@@ -157,6 +180,10 @@ fn dimensions(file: &RecordFile, head: &Entry) -> Result<[usize; 3], ParseError>
             format!("the grid is of type {kind}; only corner-point grids (type 1) are read"),
         ));
     }
+    if is_radial(&values) {
+        let message = "the grid is radial; only Cartesian corner-point grids are read";
+        return Err(file.error(head, message));
+    }
     let dims = [ni, nj, nk].map(|n| usize::try_from(n).unwrap_or(0));
     let cells = dims
         .iter()
@@ -168,6 +195,11 @@ fn dimensions(file: &RecordFile, head: &Entry) -> Result<[usize; 3], ParseError>
             format!("dimensions {ni} x {nj} x {nk} are not possible"),
         )),
     }
+}
+
+/// Item 27 of GRIDHEAD: sectors around the axis.
+fn is_radial(grid_head: &[i32]) -> bool {
+    grid_head.get(26).is_some_and(|&sectors| sectors > 0)
 }
 
 fn sized(
@@ -200,9 +232,15 @@ fn porosity_model(file: &RecordFile) -> Result<PorosityModel, ParseError> {
     })
 }
 
-/// Connections of the global grid: the NNC1 and NNC2 that follow an NNCHEAD for grid 0.
-fn connections(file: &RecordFile) -> Result<Vec<[i32; 2]>, ParseError> {
+/// Connections of the global grid, the NNC1 and NNC2 that follow an NNCHEAD for grid 0, and the
+/// number of all others.
+fn connections(
+    file: &RecordFile,
+    numbered: usize,
+    warnings: &mut Warnings,
+) -> Result<(Vec<[i32; 2]>, u64), ParseError> {
     let mut global = true;
+    let mut local = 0;
     let mut from = Vec::new();
     let mut pairs = Vec::new();
     for entry in file.entries() {
@@ -212,51 +250,63 @@ fn connections(file: &RecordFile) -> Result<Vec<[i32; 2]>, ParseError> {
             "NNC2" if global => {
                 let to = file.i32s(entry)?;
                 if to.len() != from.len() {
-                    return Err(file.error(
-                        entry,
-                        format!(
-                            "expected {} values as in NNC1, found {}",
-                            from.len(),
-                            to.len()
-                        ),
-                    ));
+                    let (expected, found) = (from.len(), to.len());
+                    let message = format!("expected {expected} values as in NNC1, found {found}");
+                    return Err(file.error(entry, message));
                 }
                 pairs.extend(from.drain(..).zip(to).map(|(a, b)| [a, b]));
             }
+            "NNC1" | "NNCL" | "NNA1" => local += entry.count,
             _ => {}
         }
     }
-    Ok(pairs)
+    let known = |cell: i32| usize::try_from(cell).is_ok_and(|c| (1..=numbered).contains(&c));
+    let all = pairs.len();
+    pairs.retain(|pair| pair.iter().all(|&c| known(c)));
+    if pairs.len() < all {
+        let message = format!(
+            "{} of {all} connections in NNC1 and NNC2 name cells outside the grid: left out",
+            all - pairs.len()
+        );
+        warnings.push(file.path(), At::File, message);
+    }
+    Ok((pairs, local))
 }
 
 fn local_grids(file: &RecordFile) -> Result<Vec<LocalGrid>, ParseError> {
+    let first_string = |entry| {
+        let strings = file.strings(entry)?;
+        Ok(strings.into_iter().next().unwrap_or_default())
+    };
     let mut grids: Vec<LocalGrid> = Vec::new();
     let mut inside = false;
     for entry in file.entries() {
+        if entry.name() == "LGR" {
+            inside = true;
+            grids.push(LocalGrid {
+                name: first_string(entry)?,
+                parent: String::new(),
+                dims: [0; 3],
+                active: 0,
+                is_radial: false,
+            });
+            continue;
+        }
+        let Some(grid) = grids.last_mut().filter(|_| inside) else {
+            continue;
+        };
         match entry.name() {
-            "LGR" => {
-                inside = true;
-                let name = file.strings(entry)?.into_iter().next().unwrap_or_default();
-                grids.push(LocalGrid {
-                    name,
-                    dims: [0; 3],
-                    active: 0,
-                });
-            }
             "ENDLGR" => inside = false,
-            "GRIDHEAD" if inside => {
-                if let (Some(grid), [_, ni, nj, nk, ..]) =
-                    (grids.last_mut(), &file.i32s(entry)?[..])
-                {
-                    grid.dims = [ni, nj, nk].map(|n| usize::try_from(*n).unwrap_or(0));
+            "LGRPARNT" => grid.parent = first_string(entry)?,
+            "GRIDHEAD" => {
+                let head = file.i32s(entry)?;
+                grid.is_radial = is_radial(&head);
+                if let [_, ni, nj, nk, ..] = head[..] {
+                    grid.dims = [ni, nj, nk].map(|n| usize::try_from(n).unwrap_or(0));
                     grid.active = grid.dims.iter().fold(1, |p: usize, &n| p.saturating_mul(n));
                 }
             }
-            "ACTNUM" if inside => {
-                if let Some(grid) = grids.last_mut() {
-                    grid.active = file.i32s(entry)?.iter().filter(|a| **a != 0).count();
-                }
-            }
+            "ACTNUM" => grid.active = file.i32s(entry)?.iter().filter(|a| **a != 0).count(),
             _ => {}
         }
     }

@@ -1,16 +1,17 @@
 //! Restarts: dynamic properties by report step, unified (UNRST) or one file a step (X0000, ...).
 
+use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use crate::cells::{CellArrays, Head};
-use crate::error::{ParseError, Warnings};
+use crate::error::{At, ParseError, Warnings};
 use crate::records::RecordFile;
 
 /// One report step of the global grid.
 #[derive(Debug, Clone)]
 pub struct Step {
-    /// Report number: SEQNUM, or the number in the file's extension.
+    /// Report number, which need not start at 0 nor be without gaps: SEQNUM, or the number in the file's extension.
     pub report: u32,
     /// Days since the start, from DOUBHEAD.
     pub days: f64,
@@ -22,38 +23,98 @@ pub struct Step {
 
 /// Opens a unified restart; every SEQNUM starts a step.
 ///
+/// Steps stay in file order, so that a report that a second run appended is there twice, with a
+/// warning.
+///
 /// # Errors
-/// When the file is damaged before its first complete array. A file that ends within an array is
-/// read up to there, with a warning.
+/// When the file is damaged before its first complete array, or has no step. A file that ends
+/// within an array is read up to there, with a warning.
 pub fn open_unified(path: &Path, warnings: &mut Warnings) -> Result<Vec<Step>, ParseError> {
     let file = Arc::new(RecordFile::open_lenient(path, warnings)?);
     let entries = file.entries();
-    let starts: Vec<usize> = (0..entries.len())
+    let mut starts: Vec<usize> = (0..entries.len())
         .filter(|&n| entries[n].name() == "SEQNUM")
         .collect();
-    let mut steps = Vec::with_capacity(starts.len());
+    if starts.is_empty() {
+        let message = "has no SEQNUM, so it is read as a single step with report number 0";
+        warnings.push(path, At::File, message);
+        starts.push(0);
+    }
+    let mut steps: Vec<Step> = Vec::with_capacity(starts.len());
+    let mut known = HashSet::new();
     for (n, &start) in starts.iter().enumerate() {
         let end = starts.get(n + 1).copied().unwrap_or(entries.len());
-        let report = file.i32s(&entries[start])?.first().copied().unwrap_or(0);
-        steps.push(step(&file, start..end, u32::try_from(report).unwrap_or(0))?);
+        let report = match entries[start].name() {
+            "SEQNUM" => file.i32s(&entries[start])?.first().copied().unwrap_or(0),
+            _ => 0,
+        };
+        let step = step(&file, start..end, u32::try_from(report).unwrap_or(0))?;
+        let at = At::Byte(entries[start].offset);
+        if step.arrays.find("INTEHEAD").is_none() {
+            let message = format!("report {report} has no INTEHEAD and was left out");
+            warnings.push(path, at, message);
+            continue;
+        }
+        if !known.insert(step.report) {
+            let message = format!("report {report} is there more than once; all are kept");
+            warnings.push(path, at, message);
+        }
+        steps.push(step);
     }
-    Ok(steps)
+    match steps.is_empty() {
+        true => Err(ParseError::new(
+            path,
+            At::File,
+            "INTEHEAD",
+            "is missing; this is no restart",
+        )),
+        false => Ok(steps),
+    }
 }
 
-/// Opens separate restart files, with their report numbers, in rising order.
+/// Opens separate restart files, with their report numbers, in the order given.
+///
+/// A file that cannot be read is left out with a warning, as long as another one can.
 ///
 /// # Errors
-/// When a file is damaged before its first complete array.
+/// When none of the files can be read.
 pub fn open_separate(
     files: &[(u32, PathBuf)],
     warnings: &mut Warnings,
 ) -> Result<Vec<Step>, ParseError> {
-    let open = |(report, path): &(u32, PathBuf)| {
-        let file = Arc::new(RecordFile::open_lenient(path, warnings)?);
-        let all = 0..file.entries().len();
-        step(&file, all, *report)
-    };
-    files.iter().map(open).collect()
+    let mut steps = Vec::with_capacity(files.len());
+    let mut failed = None;
+    for (report, path) in files {
+        match open_one(*report, path, warnings) {
+            Ok(step) => steps.push(step),
+            Err(error) => {
+                let keyword = Some(&error.keyword).filter(|k| !k.is_empty());
+                let keyword = keyword.map_or(String::new(), |k| format!("{k}: "));
+                let message = format!("{keyword}{}: report {report} was left out", error.message);
+                warnings.push(path, error.at, message);
+                failed = failed.or(Some(error));
+            }
+        }
+    }
+    match failed {
+        Some(error) if steps.is_empty() => Err(error),
+        _ => Ok(steps),
+    }
+}
+
+fn open_one(report: u32, path: &Path, warnings: &mut Warnings) -> Result<Step, ParseError> {
+    let file = Arc::new(RecordFile::open_lenient(path, warnings)?);
+    let all = 0..file.entries().len();
+    let step = step(&file, all, report)?;
+    match step.arrays.find("INTEHEAD") {
+        Some(_) => Ok(step),
+        None => Err(ParseError::new(
+            path,
+            At::File,
+            "INTEHEAD",
+            "is missing; this is no restart",
+        )),
+    }
 }
 
 fn step(

@@ -27,16 +27,20 @@ impl UnitSystem {
 
     /// Unit of a property; empty for one without dimension or not in the table.
     pub fn unit_of(self, property: &str) -> &'static str {
+        let length = self.length();
         let row: [&'static str; 4] = match property {
-            "PRESSURE" | "PBUB" | "PDEW" | "PPCW" => ["BARSA", "PSIA", "ATMA", "ATMA"],
+            "PRESSURE" | "PBUB" | "PDEW" | "PPCW" | "PWAT" | "PGAS" | "PCOW" | "PCOG" | "PCW"
+            | "PCG" => ["BARSA", "PSIA", "ATMA", "ATMA"],
             "PERMX" | "PERMY" | "PERMZ" => ["MD"; 4],
-            "DX" | "DY" | "DZ" | "DEPTH" | "TOPS" | "THICKNESS" | "PORO_THICKNESS" => {
-                ["M", "FT", "CM", "M"]
-            }
-            "PORV" => ["RM3", "RB", "RCC", "RM3"],
+            "DX" | "DY" | "DZ" | "DEPTH" | "TOPS" | "THICKNESS" | "PORO_THICKNESS" => [length; 4],
+            "PORV" | "RPORV" | "MINPVV" => ["RM3", "RB", "RCC", "RM3"],
             "CELL_VOLUME" => ["M3", "FT3", "CM3", "M3"],
-            "RS" => ["SM3/SM3", "MSCF/STB", "SCC/SCC", "SM3/SM3"],
-            "RV" => ["SM3/SM3", "STB/MSCF", "SCC/SCC", "SM3/SM3"],
+            "RS" | "RSSAT" => ["SM3/SM3", "MSCF/STB", "SCC/SCC", "SM3/SM3"],
+            "RV" | "RVSAT" => ["SM3/SM3", "STB/MSCF", "SCC/SCC", "SM3/SM3"],
+            "FIPOIL" | "FIPWAT" => ["SM3", "STB", "SCC", "SM3"],
+            "FIPGAS" => ["SM3", "MSCF", "SCC", "SM3"],
+            "OIL_DEN" | "WAT_DEN" | "GAS_DEN" => ["KG/M3", "LB/FT3", "GM/CC", "KG/M3"],
+            "OIL_VISC" | "WAT_VISC" | "GAS_VISC" => ["CP"; 4],
             "TRANX" | "TRANY" | "TRANZ" => [
                 "CP.RM3/DAY/BARS",
                 "CP.RB/DAY/PSI",
@@ -47,5 +51,10 @@ impl UnitSystem {
             _ => [""; 4],
         };
         row[self as usize]
+    }
+
+    /// Unit of lengths and depths.
+    pub fn length(self) -> &'static str {
+        ["M", "FT", "CM", "M"][self as usize]
     }
 }

@@ -1,11 +1,9 @@
 //! Title, legend, orientation axes and the model's box, drawn into the 8-bit picture.
 
-use glam::DVec3;
-
-use super::Image;
 use super::canvas::Canvas;
-use super::ticks::{label, ticks};
+use super::{Image, axes, legend};
 use crate::scene::View;
+use crate::transfer::function::linear_from_srgb;
 
 /// What to write and draw.
 #[derive(Debug, Clone, Default)]
@@ -18,7 +16,7 @@ pub struct Annotations {
     pub unit: String,
     /// Draw title and legend.
     pub show_legend: bool,
-    /// Draw the box and the axes.
+    /// Draw the box, the axes and the vertical exaggeration.
     pub show_box: bool,
 }
 
@@ -26,151 +24,229 @@ pub struct Annotations {
 const SMALLEST: [u32; 2] = [200, 150];
 
 /// Draws annotations into a picture that was put over its background.
+///
+/// Pictures narrower than 200 or lower than 150 pixels stay as they are.
 pub fn annotate(rgb: &mut [[u8; 3]], image: &Image, view: &View, annotations: &Annotations) {
     if image.size[0] < SMALLEST[0] || image.size[1] < SMALLEST[1] {
         return;
     }
-    let [r, g, b] = view.background;
-    let dark_background = 0.2126 * r + 0.7152 * g + 0.0722 * b < 0.5;
-    let ink = if dark_background { [235; 3] } else { [40; 3] };
-    let height = (f64::from(image.size[1].min(image.size[0])) / 42.0).clamp(11.0, 80.0);
-    let mut pen = Pen {
-        canvas: Canvas::new(image.size, rgb),
-        ink,
-        height,
-    };
+    let mut pen = Pen::new(Canvas::new(image.size, rgb), view.background);
     if annotations.show_box {
-        pen.model_box(image, view);
-        pen.axes(view);
+        axes::draw_box(&mut pen, image, view);
+        axes::draw_axes(&mut pen, view);
     }
     if annotations.show_legend {
         pen.title(&annotations.title);
-        pen.legend(view, annotations);
+        legend::draw(&mut pen, view, annotations);
     }
 }
 
-struct Pen<'a> {
-    canvas: Canvas<'a>,
-    ink: [u8; 3],
-    /// Text height in pixels.
-    height: f64,
+/// A canvas with the color and sizes that suit its picture.
+pub struct Pen<'a> {
+    pub canvas: Canvas<'a>,
+    /// Color of text and lines.
+    pub ink: [u8; 3],
+    /// The picture's background.
+    pub paper: [u8; 3],
+    pub dark_paper: bool,
+    /// Text height in pixels; the unit of every size here.
+    pub unit: f64,
+    /// Width of thin lines in pixels.
+    pub thin: f64,
 }
 
-impl Pen<'_> {
+impl<'a> Pen<'a> {
+    fn new(canvas: Canvas<'a>, background: [f64; 3]) -> Self {
+        let [r, g, b] = background.map(linear_from_srgb);
+        // At this luminance black and white stand out equally (contrast ratio of WCAG 2).
+        let dark_paper = 0.2126 * r + 0.7152 * g + 0.0722 * b < 0.179;
+        let smaller = f64::from(canvas.size[0].min(canvas.size[1]));
+        let unit = (smaller / 42.0).clamp(11.0, 160.0);
+        Self {
+            canvas,
+            ink: if dark_paper { [238; 3] } else { [28; 3] },
+            paper: background.map(|v| (255.0 * v).round() as u8),
+            dark_paper,
+            unit,
+            thin: (unit / 22.0).max(1.0),
+        }
+    }
+
+    /// Fades what lies under text or legend; on the bare background nothing changes.
+    pub fn plate(&mut self, a: [f64; 2], b: [f64; 2]) {
+        self.canvas.fill(a, b, self.paper, 0.8);
+    }
+
+    /// A line of text in ink.
+    pub fn write(&mut self, text: &str, at: [f64; 2]) {
+        self.canvas.text(text, at, self.unit, self.ink);
+    }
+
     fn title(&mut self, title: &str) {
-        let room = f64::from(self.canvas.size[0]) - 2.0 * self.height;
-        let wanted = 1.25 * self.height;
-        let width = self.canvas.text_width(title, wanted).max(1.0);
-        let height = wanted * (room / width).min(1.0);
-        self.canvas
-            .text(title, self.height, 0.7 * self.height, height, self.ink);
+        let margin = self.unit;
+        let room = f64::from(self.canvas.size[0]) - 2.0 * margin;
+        let wanted = 1.25 * self.unit;
+        let fit = room / self.canvas.text_width(title, wanted).max(1.0);
+        // Long titles become smaller first, then shorter.
+        let height = wanted * fit.clamp(0.7, 1.0);
+        let title = self.canvas.cut(title, height, room);
+        let end = margin + self.canvas.text_width(&title, height);
+        let top = 0.7 * margin;
+        self.plate(
+            [0.5 * margin, 0.5 * top],
+            [end + 0.5 * margin, top + 1.2 * height],
+        );
+        self.canvas.text(&title, [margin, top], height, self.ink);
     }
+}
 
-    /// A bar of the transfer function's colors; its strength beside it is the opacity curve.
-    fn legend(&mut self, view: &View, annotations: &Annotations) {
-        let [w, h] = self.canvas.size.map(f64::from);
-        let unit = self.height;
-        let (bar, top, bottom) = (1.2 * unit, 0.26 * h, 0.74 * h);
-        let [low, high] = view.transfer.range;
-        let labels: Vec<(f64, String)> = ticks([low, high], 5)
-            .into_iter()
-            .map(|v| (v, label(v, high - low)))
-            .collect();
-        let widest = labels
-            .iter()
-            .map(|(_, t)| self.canvas.text_width(t, unit))
-            .fold(0.0, f64::max);
-        let name = annotations.property.as_str();
-        let heading = self
-            .canvas
-            .text_width(name, unit)
-            .max(self.canvas.text_width(&annotations.unit, unit));
-        let left = w - (bar + 0.9 * unit + widest).max(heading).min(0.5 * w) - unit;
-        self.canvas
-            .text(name, left, top - 2.6 * unit, unit, self.ink);
-        self.canvas
-            .text(&annotations.unit, left, top - 1.45 * unit, unit, self.ink);
-        for y in top as i64..bottom as i64 {
-            let position = 1.0 - (y as f64 + 0.5 - top) / (bottom - top);
-            let color = view
-                .transfer
-                .srgb(position)
-                .map(|v| (255.0 * v).round() as u8);
-            for x in 0..bar as i64 {
-                self.canvas.blend(left as i64 + x, y, color, 1.0);
-            }
-        }
-        let ink = self.ink;
-        self.outline([left, top], [left + bar.floor(), bottom]);
-        for (value, text) in labels {
-            let y = bottom - (bottom - top) * view.transfer.position(value);
-            let x = left + bar;
-            self.canvas
-                .line([x, y], [x + 0.35 * unit, y], 1.0, ink, |_, _| 1.0);
-            self.canvas
-                .text(&text, x + 0.55 * unit, y - 0.55 * unit, unit, ink);
-        }
-        let scale = format!("z x {}", label(view.vertical_exaggeration, 1.0));
-        self.canvas
-            .text(&scale, left, bottom + 0.8 * unit, unit, ink);
-    }
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
 
-    fn outline(&mut self, a: [f64; 2], b: [f64; 2]) {
-        let corners = [a, [b[0], a[1]], b, [a[0], b[1]], a];
-        for pair in corners.windows(2) {
-            self.canvas
-                .line(pair[0], pair[1], 1.0, self.ink, |_, _| 0.8);
-        }
-    }
+    use super::*;
+    use crate::model::{CellField, Spaces};
+    use crate::scene::{Camera, Interpolation};
+    use crate::strategies::StrategyKind;
+    use crate::transfer::{TransferFunction, presets};
 
-    /// East, north and up as seen by the camera, in the lower left corner.
-    fn axes(&mut self, view: &View) {
-        let length = 3.0 * self.height;
-        let center = [1.6 * length, f64::from(self.canvas.size[1]) - 1.5 * length];
-        let camera = &view.camera;
-        let mut arrows = [
-            (DVec3::X, [205, 50, 45], "E"),
-            (DVec3::Y, [40, 150, 60], "N"),
-            (DVec3::Z, [50, 90, 210], "Up"),
-        ];
-        // Far ones first.
-        arrows.sort_by(|a, b| b.0.dot(camera.forward).total_cmp(&a.0.dot(camera.forward)));
-        for (axis, color, name) in arrows {
-            let (x, y) = (axis.dot(camera.right), -axis.dot(camera.up));
-            let tip = [center[0] + length * x, center[1] + length * y];
-            self.canvas
-                .line(center, tip, 0.16 * self.height, color, |_, _| 1.0);
-            let width = self.canvas.text_width(name, self.height);
-            let at = [
-                center[0] + 1.28 * length * x - 0.5 * width,
-                center[1] + 1.28 * length * y - 0.5 * self.height,
-            ];
-            self.canvas.text(name, at[0], at[1], self.height, color);
-        }
-    }
-
-    /// Edges of the model's box, under the volume.
-    fn model_box(&mut self, image: &Image, view: &View) {
-        let [width, height] = image.size;
-        let aspect = f64::from(width) / f64::from(height);
-        let corners: [_; 8] = std::array::from_fn(|c| {
-            let at = view.camera.project(view.box_corners[c], aspect)?;
-            Some([at.x * f64::from(width), at.y * f64::from(height)])
+    /// A view from the southwest on a box of 10 by 9 by 4.
+    fn view(size: [u32; 2], background: f64) -> View {
+        let spaces = Spaces::new(None, 2.0);
+        let box_corners = std::array::from_fn(|c| {
+            let pick = |axis: usize, length: f64| if c >> axis & 1 == 1 { length } else { 0.0 };
+            let corner = DVec3::new(pick(0, 10.0), pick(1, 9.0), pick(2, 2.0));
+            spaces.world_from_grid.transform_point3(corner)
         });
-        let alpha = |x: i64, y: i64| {
-            let inside = (0..i64::from(width)).contains(&x) && (0..i64::from(height)).contains(&y);
-            let pixel = inside
-                .then(|| image.pixels.get((x + i64::from(width) * y) as usize))
-                .flatten();
-            0.35 * (1.0 - f64::from(pixel.map_or(0.0, |p| p[3])))
+        let aspect = f64::from(size[0]) / f64::from(size[1]);
+        View {
+            size,
+            background: [background; 3],
+            camera: Camera::framing(&box_corners, 3.6, 0.6, 1.0, aspect).unwrap(),
+            spaces,
+            vertical_exaggeration: 2.0,
+            world_bounds: [DVec3::new(0.0, 0.0, -4.0), DVec3::new(10.0, 9.0, 0.0)],
+            box_corners,
+            strategy: StrategyKind::ALL[0],
+            property: "SWAT".into(),
+            step: 0,
+            field: CellField::new(Vec::new()),
+            interpolation: Interpolation::Cell,
+            transfer: TransferFunction {
+                color: presets::color_map("turbo").unwrap(),
+                opacity: vec![(0.0, 0.1), (1.0, 0.5)],
+                range: [0.0, 1.0],
+                reference_length: 1.0,
+            },
+            sampling_step: 1.0,
+            early_termination: 0.0,
+            drawn: Vec::new(),
+            show_box: true,
+            show_legend: true,
+        }
+    }
+
+    fn notes(title: &str, show_legend: bool, show_box: bool) -> Annotations {
+        Annotations {
+            title: title.into(),
+            property: "SWAT".into(),
+            unit: "m3".into(),
+            show_legend,
+            show_box,
+        }
+    }
+
+    /// Pixels before and after, of a picture that the volume covers with the given alpha.
+    fn drawn(view: &View, notes: &Annotations, alpha: f32) -> [Vec<[u8; 3]>; 2] {
+        let pixels = vec![[0.0, 0.0, 0.0, alpha]; (view.size[0] * view.size[1]) as usize];
+        let image = Image {
+            size: view.size,
+            pixels,
         };
-        for a in 0..8usize {
-            for axis in 0..3 {
-                let b = a | 1 << axis;
-                if let (true, Some(from), Some(to)) = (a != b, corners[a], corners[b]) {
-                    self.canvas.line(from, to, 1.0, self.ink, alpha);
-                }
+        let before = image.over_background_8bit(view.background);
+        let mut after = before.clone();
+        annotate(&mut after, &image, view, notes);
+        [before, after]
+    }
+
+    fn changed([before, after]: &[Vec<[u8; 3]>; 2]) -> Vec<usize> {
+        (0..before.len())
+            .filter(|&p| before[p] != after[p])
+            .collect()
+    }
+
+    #[test]
+    fn ok_every_size_and_title_is_drawn_without_panic() {
+        let long = "REEK \u{0} é 漢字 ".repeat(500);
+        for size in [
+            [1, 1],
+            [10, 3],
+            [3000, 20],
+            [20, 3000],
+            [200, 150],
+            [250, 1500],
+        ] {
+            for title in ["", "REEK", &long] {
+                let view = view(size, 1.0);
+                let small = size[0] < 200 || size[1] < 150;
+                let pictures = drawn(&view, &notes(title, true, true), 0.0);
+                assert_eq!(changed(&pictures).is_empty(), small, "{size:?}");
             }
         }
+    }
+
+    #[test]
+    fn ok_odd_views_are_drawn_without_panic() {
+        let all = notes("REEK", true, true);
+        for odd in [f64::NAN, f64::INFINITY, 0.0, -1e300] {
+            let mut view = view([300, 200], 0.2);
+            view.camera.right *= odd;
+            view.box_corners[3].x = odd;
+            view.transfer.range = [odd, 1.0];
+            view.transfer.opacity = vec![(0.0, odd)];
+            view.vertical_exaggeration = odd;
+            drawn(&view, &all, 0.5);
+        }
+    }
+
+    #[test]
+    fn nothing_changes_where_nothing_is_drawn() {
+        let view = view([400, 300], 1.0);
+        assert!(changed(&drawn(&view, &notes("REEK", false, false), 0.0)).is_empty());
+        // The title stands at the top left, the legend at the right; all else stays.
+        let pictures = drawn(&view, &notes("REEK", true, false), 0.0);
+        let pixels = changed(&pictures);
+        let (title, legend): (Vec<usize>, Vec<_>) = pixels.into_iter().partition(|p| p / 400 < 30);
+        assert!(!title.is_empty() && title.iter().all(|p| p % 400 < 100));
+        assert!(!legend.is_empty() && legend.iter().all(|p| p % 400 > 300));
+    }
+
+    #[test]
+    fn text_follows_the_title_and_stands_out_from_the_background() {
+        let picture = |background, title| {
+            let [_, after] = drawn(
+                &view([400, 300], background),
+                &notes(title, true, false),
+                0.0,
+            );
+            after[..400 * 30].to_vec()
+        };
+        assert_ne!(picture(1.0, "REEK"), picture(1.0, "NORNE"));
+        assert!(picture(1.0, "REEK").iter().any(|p| p[0] < 80));
+        assert!(picture(0.1, "REEK").iter().any(|p| p[0] > 190));
+    }
+
+    #[test]
+    fn box_lies_under_the_volume() {
+        let view = view([400, 300], 1.0);
+        let boxed = notes("", false, true);
+        let middle = |pixels: Vec<usize>| {
+            // Right of the axes.
+            let inside = |p: &&usize| *p % 400 > 120 && *p / 400 < 250;
+            pixels.iter().filter(inside).count()
+        };
+        assert!(middle(changed(&drawn(&view, &boxed, 0.0))) > 100);
+        let covered = changed(&drawn(&view, &boxed, 1.0));
+        assert_eq!(middle(covered), 0);
     }
 }

@@ -3,6 +3,8 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
+use image::error::{ParameterError, ParameterErrorKind};
+
 use super::Image;
 
 /// Why a picture could not be written.
@@ -12,12 +14,12 @@ pub enum PictureError {
     #[error("{0}: pictures are written as .png or .exr")]
     Format(PathBuf),
     /// The file could not be written.
-    #[error("cannot write {path}: {source}")]
+    #[error("cannot write {path}: {cause}")]
     Write {
         /// The file.
         path: PathBuf,
-        /// Why.
-        source: image::ImageError,
+        /// Why; part of the sentence, so no source that would be shown a second time.
+        cause: image::ImageError,
     },
 }
 
@@ -54,6 +56,7 @@ impl Format {
 /// When the file cannot be written.
 pub fn write_png(path: &Path, size: [u32; 2], rgb: &[[u8; 3]]) -> Result<(), PictureError> {
     whole(path, |temporary| {
+        matching(size, rgb.len())?;
         image::save_buffer_with_format(
             temporary,
             rgb.as_flattened(),
@@ -71,6 +74,7 @@ pub fn write_png(path: &Path, size: [u32; 2], rgb: &[[u8; 3]]) -> Result<(), Pic
 /// When the file cannot be written.
 pub fn write_exr(path: &Path, image: &Image) -> Result<(), PictureError> {
     whole(path, |temporary| {
+        matching(image.size, image.pixels.len())?;
         let bytes: &[u8] = bytemuck::cast_slice(&image.pixels);
         image::save_buffer_with_format(
             temporary,
@@ -83,6 +87,17 @@ pub fn write_exr(path: &Path, image: &Image) -> Result<(), PictureError> {
     })
 }
 
+/// The encoders panic over a wrong number of pixels.
+fn matching([width, height]: [u32; 2], pixels: usize) -> image::ImageResult<()> {
+    if u64::from(width) * u64::from(height) == pixels as u64 {
+        return Ok(());
+    }
+    let kind = ParameterErrorKind::DimensionMismatch;
+    Err(image::ImageError::Parameter(ParameterError::from_kind(
+        kind,
+    )))
+}
+
 /// Writes beside `path` and renames, so that no half file stays.
 fn whole(
     path: &Path,
@@ -93,12 +108,12 @@ fn whole(
     let temporary = path.with_file_name(name);
     let done =
         write(&temporary).and_then(|()| std::fs::rename(&temporary, path).map_err(Into::into));
-    done.map_err(|source| {
+    done.map_err(|cause| {
         // The error that matters is the first; a leftover is only untidy.
         drop::<io::Result<()>>(std::fs::remove_file(&temporary));
         PictureError::Write {
             path: path.to_owned(),
-            source,
+            cause,
         }
     })
 }
@@ -112,24 +127,64 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.exr");
         let pixels: Vec<[f32; 4]> = (0..12u8)
-            .map(|n| [0.1, 1.5, 1e-3, 0.05].map(|v| v * f32::from(n)))
+            .map(|n| [0.1, -1.5, 1e-30, 3e8].map(|v| v * f32::from(n)))
             .collect();
-        write_exr(
-            &path,
-            &Image {
-                size: [4, 3],
-                pixels: pixels.clone(),
-            },
-        )
-        .unwrap();
+        let image = Image {
+            size: [4, 3],
+            pixels,
+        };
+        write_exr(&path, &image).unwrap();
         let read = image::open(&path).unwrap().into_rgba32f();
-        assert_eq!(read.as_raw().as_slice(), pixels.as_flattened());
+        let bits = |values: &[f32]| values.iter().map(|v| v.to_bits()).collect::<Vec<_>>();
+        assert_eq!(bits(read.as_raw()), bits(image.pixels.as_flattened()));
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
     }
 
     #[test]
+    fn ok_png_replaces_a_file_and_gives_back_the_same_pixels() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.png");
+        std::fs::write(&path, "older").unwrap();
+        let rgb: Vec<[u8; 3]> = (0..6).map(|n| [n, 50 * n, 255 - n]).collect();
+        write_png(&path, [3, 2], &rgb).unwrap();
+        let read = image::open(&path).unwrap().into_rgb8();
+        assert_eq!(read.dimensions(), (3, 2));
+        assert_eq!(read.as_raw().as_slice(), rgb.as_flattened());
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn err_wrong_number_of_pixels_leaves_the_older_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.png");
+        std::fs::write(&path, "older").unwrap();
+        assert!(write_png(&path, [3, 2], &[[0; 3]; 5]).is_err());
+        assert_eq!(std::fs::read(&path).unwrap(), b"older");
+        let image = Image {
+            size: [2, 2],
+            pixels: Vec::new(),
+        };
+        assert!(write_exr(&folder.path().join("a.exr"), &image).is_err());
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn ok_extensions_in_any_case() {
+        assert_eq!(
+            Format::from_path(Path::new("a.b.PNG")).unwrap(),
+            Format::Png
+        );
+        assert_eq!(Format::from_path(Path::new("é.exr")).unwrap(), Format::Exr);
+    }
+
+    #[test]
     fn err_unknown_extension_and_missing_folder() {
-        assert!(Format::from_path(Path::new("a.jpg")).is_err());
+        for unknown in ["a.jpg", "a", "", ".png"] {
+            let error = Format::from_path(Path::new(unknown))
+                .unwrap_err()
+                .to_string();
+            assert!(error.contains(".png") && error.contains(".exr"), "{error}");
+        }
         let error = write_png(Path::new("/no/such/folder/a.png"), [1, 1], &[[0; 3]]).unwrap_err();
         assert!(error.to_string().contains("/no/such/folder/a.png"));
     }

@@ -1,8 +1,10 @@
 //! From linear, premultiplied pixels to files with legend, title and axes.
 
 mod annotate;
+mod axes;
 mod canvas;
 mod files;
+mod legend;
 mod ticks;
 
 pub use annotate::{Annotations, annotate};

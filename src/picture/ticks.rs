@@ -1,40 +1,73 @@
 //! Round numbers along a legend.
 
-/// Round values within a range, about `wanted` of them, rising; only the value where the range is empty.
-pub fn ticks([low, high]: [f64; 2], wanted: usize) -> Vec<f64> {
+/// Round values within a range, about `wanted` of them, rising, each with its label; only the first
+/// value where the range is empty or not finite.
+pub fn labels(range: [f64; 2], wanted: usize) -> Vec<(f64, String)> {
+    let values = ticks(range, wanted);
+    let step = match values[..] {
+        [a, b, ..] => b - a,
+        [v] if v.fract() == 0.0 && v.abs() < 1e6 => 1.0,
+        // One value alone is shown with three digits.
+        _ => values[0].abs() * 1e-2,
+    };
+    let largest = values.iter().fold(0.0f64, |m, v| m.max(v.abs()));
+    let named = |v: f64| (v, label(v, largest, step));
+    values.into_iter().map(named).collect()
+}
+
+fn ticks([low, high]: [f64; 2], wanted: usize) -> Vec<f64> {
     let span = high - low;
-    if !(span > 0.0 && span.is_finite()) {
-        return vec![low];
-    }
     let rough = span / wanted.max(1) as f64;
     let power = 10f64.powf(rough.log10().floor());
     let step = [1.0, 2.0, 5.0, 10.0]
-        .iter()
         .map(|m| m * power)
+        .into_iter()
         .find(|s| *s >= 0.999 * rough)
         .unwrap_or(rough);
-    if !(step > 0.0 && step.is_finite()) {
+    // Steps that vanish beside the values would give the same value again and again.
+    let visible = step > low.abs().max(high.abs()) * 1e-13;
+    if !(span > 0.0 && step.is_finite() && visible) {
         return vec![low];
     }
     let first = (low / step - 1e-9).ceil();
     (0..=4 * wanted)
-        .map(|n| (first + n as f64) * step)
+        // Adding 0 turns a negative zero into zero.
+        .map(|n| (first + n as f64) * step + 0.0)
         .take_while(|v| *v <= high + 1e-9 * span)
         .collect()
 }
 
-/// A tick's value with the digits that its step needs.
-pub fn label(value: f64, span: f64) -> String {
-    let magnitude = value.abs().max(span.abs());
-    if magnitude >= 1e6 || (magnitude < 1e-3 && magnitude > 0.0) {
-        return format!("{value:.2e}");
+/// A value with the digits that a step needs, where `largest` is the largest value beside it.
+pub fn label(value: f64, largest: f64, step: f64) -> String {
+    let digits = |v: f64| {
+        let digits = v.abs().log10();
+        if digits.is_finite() {
+            (digits + 1e-9).floor()
+        } else {
+            0.0
+        }
+    };
+    if value == 0.0 || !value.is_finite() {
+        return value.to_string();
     }
-    let decimals = (2.0 - span.abs().max(1e-9).log10()).floor().clamp(0.0, 6.0) as usize;
-    let text = format!("{value:.decimals$}");
-    if text.contains('.') {
-        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    if (1e-3..1e6).contains(&largest) {
+        let decimals = (-digits(step)).clamp(0.0, 12.0) as usize;
+        return format!("{value:.decimals$}");
+    }
+    let decimals = (digits(value) - digits(step)).clamp(0.0, 12.0) as usize;
+    let text = format!("{value:.decimals$e}");
+    match text.split_once('e') {
+        Some((mantissa, exponent)) => format!("{}e{exponent}", shortened(mantissa)),
+        None => text,
+    }
+}
+
+/// A decimal number without the zeros at its end.
+pub fn shortened(number: &str) -> &str {
+    if number.contains('.') {
+        number.trim_end_matches('0').trim_end_matches('.')
     } else {
-        text
+        number
     }
 }
 
@@ -42,27 +75,66 @@ pub fn label(value: f64, span: f64) -> String {
 mod tests {
     use super::*;
 
+    fn texts(range: [f64; 2], wanted: usize) -> Vec<String> {
+        labels(range, wanted).into_iter().map(|l| l.1).collect()
+    }
+
     #[test]
     fn ticks_are_round_and_inside() {
-        assert_eq!(ticks([0.0, 1.0], 5).len(), 6);
+        assert_eq!(
+            texts([0.0, 1.0], 5),
+            ["0", "0.2", "0.4", "0.6", "0.8", "1.0"]
+        );
         assert_eq!(ticks([298.55, 364.9], 5), [300.0, 320.0, 340.0, 360.0]);
-        assert_eq!(ticks([5.0, 5.0], 5), [5.0]);
-        assert_eq!(ticks([-1.0, 1.0], 4), [-1.0, -0.5, 0.0, 0.5, 1.0]);
+        assert_eq!(texts([298.55, 364.9], 5), ["300", "320", "340", "360"]);
+        assert_eq!(texts([-1.0, 1.0], 4), ["-1.0", "-0.5", "0", "0.5", "1.0"]);
+        assert_eq!(
+            texts([-37.0, -12.0], 5),
+            ["-35", "-30", "-25", "-20", "-15"]
+        );
+        // A negative twin: ticks must move with the range.
+        assert_ne!(texts([-37.0, -12.0], 5), texts([-47.0, -22.0], 5));
+    }
+
+    #[test]
+    fn labels_of_huge_and_tiny_values_differ_from_each_other() {
+        assert_eq!(
+            texts([0.0, 1e9], 5),
+            ["0", "2e8", "4e8", "6e8", "8e8", "1e9"]
+        );
+        assert_eq!(texts([1e-7, 3.3e-6], 3), ["2e-6"]);
+        assert_eq!(
+            texts([300.0, 300.002], 2),
+            ["300.000", "300.001", "300.002"]
+        );
         for range in [
+            [1e15, 1.0001e15],
+            [1e-30, 3e-30],
+            [-5e7, 5.1e7],
             [0.0, 1e-30],
-            [-1e30, 1e30],
-            [1e15, 1e15 + 4.0],
-            [0.0, f64::NAN],
         ] {
-            assert!(ticks(range, 5).len() <= 21);
+            let mut texts = texts(range, 5);
+            let all = texts.len();
+            texts.dedup();
+            assert!(texts.len() == all && all > 2, "{range:?} {texts:?}");
         }
     }
 
     #[test]
-    fn labels_show_what_the_step_needs() {
-        assert_eq!(label(0.2, 1.0), "0.2");
-        assert_eq!(label(300.0, 66.0), "300");
-        assert_eq!(label(0.0, 1.0), "0");
-        assert_eq!(label(2.5e7, 1e7), "2.50e7");
+    fn empty_and_odd_ranges_give_one_value() {
+        assert_eq!(texts([5.0, 5.0], 5), ["5"]);
+        assert_eq!(texts([0.123_456, 0.123_456], 5), ["0.123"]);
+        assert_eq!(texts([0.0, 0.0], 5), ["0"]);
+        assert_eq!(texts([1e15, 1e15 + 0.125], 5), ["1e15"]);
+        for odd in [
+            [0.0, f64::NAN],
+            [f64::NAN, 1.0],
+            [-1e308, 1e308],
+            [0.0, 5e-324],
+            [2.0, 1.0],
+        ] {
+            assert_eq!(labels(odd, 5).len(), 1, "{odd:?}");
+        }
+        assert_eq!(labels([0.0, 1.0], 0).len(), 1);
     }
 }

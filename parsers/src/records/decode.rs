@@ -22,7 +22,7 @@ impl RecordFile {
         }
     }
 
-    /// Values of a REAL, DOUB or INTE array as f64.
+    /// Values of a REAL, DOUB, INTE or LOGI array as f64; true is 1, false 0.
     ///
     /// # Errors
     /// When the array holds no numbers or is damaged.
@@ -31,6 +31,7 @@ impl RecordFile {
             Kind::Real => self.decode(entry, |b| f64::from(f32::from_be_bytes(b))),
             Kind::Inte => self.decode(entry, |b| f64::from(i32::from_be_bytes(b))),
             Kind::Doub => self.decode(entry, f64::from_be_bytes),
+            Kind::Logi => self.decode(entry, |b: [u8; 4]| f64::from(u8::from(b != [0; 4]))),
             _ => Err(self.error(entry, "holds no numbers")),
         }
     }
@@ -43,6 +44,17 @@ impl RecordFile {
         match entry.kind {
             Kind::Inte => self.decode(entry, i32::from_be_bytes),
             _ => Err(self.error(entry, "holds no integers")),
+        }
+    }
+
+    /// Values of a LOGI array: all but zero is true, since writers differ (-1, 1).
+    ///
+    /// # Errors
+    /// When the array holds no logicals or is damaged.
+    pub fn bools(&self, entry: &Entry) -> Result<Vec<bool>, ParseError> {
+        match entry.kind {
+            Kind::Logi => self.decode(entry, |b: [u8; 4]| b != [0; 4]),
+            _ => Err(self.error(entry, "holds no logicals")),
         }
     }
 

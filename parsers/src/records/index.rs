@@ -4,161 +4,219 @@ use super::{Entry, Kind, i32_at};
 use crate::error::{At, ParseError};
 use crate::mapped::MappedFile;
 
-/// Elements in a block by convention: numbers, strings.
-const NUMBERS_A_BLOCK: u64 = 1000;
-const STRINGS_A_BLOCK: u64 = 105;
 /// Header record with its markers.
 const HEADER: u64 = 24;
-/// Count of a header that announces a multiple of 2^31 elements for the next header.
+/// Type of a header whose count is minus the number of 2^31 elements to add to the next header's.
 const X231: &[u8] = b"X231";
+
+/// What stopped the indexing.
+struct Fault {
+    at: u64,
+    keyword: String,
+    message: String,
+}
+
+/// A header record.
+#[derive(Clone, Copy)]
+struct Header<'a> {
+    name: [u8; 8],
+    count: i32,
+    kind: &'a [u8],
+}
 
 /// The complete arrays from the start, and what stopped the indexing before the end.
 pub(super) fn index(file: &MappedFile) -> (Vec<Entry>, Option<ParseError>) {
     let bytes = file.bytes();
     let mut entries = Vec::new();
-    let mut at = 0;
-    let wrong = |at: u64, keyword: &str, message: String| {
-        Some(ParseError::new(file.path(), At::Byte(at), keyword, message))
-    };
+    let stop = |f: Fault| ParseError::new(file.path(), At::Byte(f.at), &f.keyword, f.message);
     if bytes.is_empty() {
-        return (entries, wrong(0, "", "the file is empty".into()));
+        return (entries, Some(stop(fault(0, "the file is empty"))));
     }
-    let mut high_count = 0u64;
+    let mut at = 0;
     while at < bytes.len() as u64 {
-        let header = match header(bytes, at) {
-            Ok(header) => header,
-            // The array before it is to blame as often as the header itself.
-            Err(message) => {
-                let before = entries
-                    .last()
-                    .map_or(String::new(), |e: &Entry| e.name().to_owned());
-                let place = if before.is_empty() {
-                    message
-                } else {
-                    format!("behind it: {message}")
-                };
-                return (entries, wrong(at, &before, place));
+        match array(bytes, at) {
+            Ok(entry) => {
+                at = entry.end;
+                entries.push(entry);
             }
-        };
-        let (name, count, kind) = header;
-        let text = String::from_utf8_lossy(name).trim_end().to_owned();
-        if kind == X231 {
-            high_count = u64::from(count.unsigned_abs()) << 31;
-            at += HEADER;
-            continue;
-        }
-        let Some(kind) = Kind::parse(kind) else {
-            let message = format!("unknown type {}", String::from_utf8_lossy(kind));
-            return (entries, wrong(at, &text, message));
-        };
-        let Ok(low) = u64::try_from(count) else {
-            return (entries, wrong(at, &text, format!("has a count of {count}")));
-        };
-        let count = high_count + low;
-        high_count = 0;
-        let data = at + HEADER;
-        match data_end(bytes, data, count, kind) {
-            Ok(end) => {
-                let mut padded = [b' '; 8];
-                padded.copy_from_slice(name);
-                entries.push(Entry {
-                    name: padded,
-                    kind,
-                    count,
-                    offset: at,
-                    data,
-                    end,
-                });
-                at = end;
+            Err(mut fault) => {
+                // The array before it is to blame as often as the header itself.
+                if let (true, Some(last)) = (fault.keyword.is_empty(), entries.last()) {
+                    fault.keyword = last.name().to_owned();
+                    fault.message = format!("behind it: {}", fault.message);
+                }
+                return (entries, Some(stop(fault)));
             }
-            Err((place, message)) => return (entries, wrong(place, &text, message)),
         }
     }
     (entries, None)
 }
 
-type Header<'a> = (&'a [u8], i32, &'a [u8]);
-
-fn header(bytes: &[u8], at: u64) -> Result<Header<'_>, String> {
-    let start = usize::try_from(at).map_err(|e| e.to_string())?;
-    let record = bytes
-        .get(start..)
-        .and_then(|rest| rest.get(..HEADER as usize))
-        .ok_or_else(|| {
-            format!(
-                "the file ends within a header; {} bytes are left of {HEADER}",
-                bytes.len() - start
-            )
-        })?;
-    let not_a_header = || {
-        "this is not an array header; the file is no Eclipse binary file or is damaged".to_owned()
-    };
-    if i32_at(record, 0) != Some(16) || i32_at(record, 20) != Some(16) || !record[4..12].is_ascii()
-    {
-        return Err(not_a_header());
+fn fault(at: u64, message: impl Into<String>) -> Fault {
+    Fault {
+        at,
+        keyword: String::new(),
+        message: message.into(),
     }
-    let count = i32_at(record, 12).ok_or_else(not_a_header)?;
-    Ok((&record[4..12], count, &record[16..20]))
+}
+
+/// The array whose header is at `at`.
+fn array(bytes: &[u8], at: u64) -> Result<Entry, Fault> {
+    let first = header(bytes, at)?;
+    let named = |mut fault: Fault| {
+        fault.keyword = String::from_utf8_lossy(&first.name).into_owned();
+        fault
+    };
+    let wrong = |message: String| Err(named(fault(at, message)));
+    let (high, second, data) = match first.kind {
+        X231 => match u64::try_from(-i64::from(first.count)) {
+            Ok(multiple) => {
+                let second = header(bytes, at + HEADER).map_err(named)?;
+                (multiple << 31, second, at + 2 * HEADER)
+            }
+            Err(_) => {
+                let count = first.count;
+                return wrong(format!(
+                    "has an X231 count of {count}, which must not be positive"
+                ));
+            }
+        },
+        _ => (0, first, at + HEADER),
+    };
+    if second.name != first.name {
+        return wrong("its X231 header is not followed by a second header of that name".into());
+    }
+    let Some(kind) = Kind::parse(second.kind) else {
+        let kind = String::from_utf8_lossy(second.kind);
+        return wrong(format!("has the unknown type {kind:?}"));
+    };
+    let Ok(low) = u64::try_from(second.count) else {
+        return wrong(format!("has a count of {}", second.count));
+    };
+    let count = high + low;
+    let end = data_end(bytes, data, count, kind).map_err(named)?;
+    Ok(Entry {
+        name: first.name,
+        kind,
+        count,
+        offset: at,
+        data,
+        end,
+    })
+}
+
+fn header(bytes: &[u8], at: u64) -> Result<Header<'_>, Fault> {
+    let rest = usize::try_from(at).ok().and_then(|at| bytes.get(at..));
+    let rest = rest.unwrap_or_default();
+    let damaged = || {
+        fault(
+            at,
+            if rest.starts_with(b" '") {
+                "this is a formatted (text) file, and those are not read yet"
+            } else {
+                "this is not an array header; the file is no Eclipse binary file or is damaged"
+            },
+        )
+    };
+    // A file that is cut short is told from one that is something else by the marker.
+    let begins_well = i32_at(rest, 0).is_none_or(|marker| marker == 16);
+    let Some(record) = rest.get(..HEADER as usize).filter(|_| begins_well) else {
+        if !begins_well {
+            return Err(damaged());
+        }
+        let missing = HEADER as usize - rest.len();
+        let message = format!("the file ends within an array header, {missing} bytes too early");
+        return Err(fault(at, message));
+    };
+    let name = record[4..12].try_into().unwrap_or_default();
+    match (i32_at(record, 12), i32_at(record, 20)) {
+        (Some(count), Some(16)) if record[4..12].is_ascii() => Ok(Header {
+            name,
+            count,
+            kind: &record[16..20],
+        }),
+        _ => Err(damaged()),
+    }
 }
 
 /// Where the data records of an array end.
-fn data_end(bytes: &[u8], data: u64, count: u64, kind: Kind) -> Result<u64, (u64, String)> {
-    let total = count
-        .checked_mul(kind.size())
-        .filter(|t| *t <= bytes.len() as u64);
-    let Some(total) = total else {
-        let left = (bytes.len() as u64).saturating_sub(data);
-        return Err((
-            data,
-            format!("{count} values do not fit in the {left} bytes that follow"),
-        ));
+fn data_end(bytes: &[u8], data: u64, count: u64, kind: Kind) -> Result<u64, Fault> {
+    let length = bytes.len() as u64;
+    let Some(total) = count.checked_mul(kind.size()) else {
+        return Err(fault(data, format!("a count of {count} is not possible")));
     };
     if total == 0 {
-        return Ok(data);
+        // Conventionally nothing follows; some writers put an empty record.
+        let empty = i32_at(bytes, data) == Some(0) && i32_at(bytes, data + 4) == Some(0);
+        return Ok(if empty { data + 8 } else { data });
     }
-    if let Some(end) = conventional_end(bytes, data, total, kind) {
-        return Ok(end);
+    let too_short = |needed: u64| {
+        let missing = needed.saturating_sub(length - data);
+        let message = format!(
+            "its {count} values take {needed} bytes and the file ends {missing} bytes too early, \
+             at byte {length}: it is cut short, or the count is wrong"
+        );
+        fault(data, message)
+    };
+    // Before any arithmetic with the count: what follows in the file bounds it.
+    if total > length - data {
+        return Err(too_short(total.saturating_add(8)));
     }
-    let (mut at, mut left) = (data, total);
-    while left > 0 {
-        let missing = |what: &str| {
-            (
-                at,
-                format!(
-                    "the file ends or is damaged within the data: {what}; {left} bytes of values are missing"
-                ),
-            )
-        };
-        let length = i32_at(bytes, at).ok_or_else(|| missing("no block length"))?;
-        let length = u64::try_from(length)
-            .ok()
-            .filter(|l| (1..=left).contains(l) && l % kind.size() == 0)
-            .ok_or_else(|| missing(&format!("a block of {length} bytes")))?;
-        if i32_at(bytes, at + 4 + length) != Some(length as i32) {
-            return Err(missing("the two lengths of a block differ"));
-        }
-        at += 8 + length;
-        left -= length;
+    match conventional_end(bytes, data, total, kind) {
+        Some(end) => Ok(end),
+        None => walk(bytes, data, total, kind.size(), too_short),
     }
-    Ok(at)
 }
 
 /// The end by the conventional block sizes, where first and last block and what follows agree
 /// with them; so that indexing touches only a page or two of each array.
 fn conventional_end(bytes: &[u8], data: u64, total: u64, kind: Kind) -> Option<u64> {
-    let block = kind.size()
-        * if matches!(kind, Kind::Text(_)) {
-            STRINGS_A_BLOCK
-        } else {
-            NUMBERS_A_BLOCK
-        };
+    let block = kind.size() * kind.block();
     let blocks = total.div_ceil(block);
     let last = total - (blocks - 1) * block;
     let end = data + total + 8 * blocks;
-    let marker = |at: u64, length: u64| i32_at(bytes, at) == Some(length as i32);
+    let marker = |at: u64, length: u64| i32_at(bytes, at).map(i64::from) == Some(length as i64);
     let agrees = marker(data, total.min(block))
         && marker(end - 4, last)
         && marker(end - 8 - last, last)
-        && (end == bytes.len() as u64 || marker(end, 16));
+        && (end == bytes.len() as u64 || header(bytes, end).is_ok());
     agrees.then_some(end)
+}
+
+/// The end by following the markers block by block.
+fn walk(
+    bytes: &[u8],
+    data: u64,
+    total: u64,
+    size: u64,
+    too_short: impl Fn(u64) -> Fault,
+) -> Result<u64, Fault> {
+    let (mut at, mut left) = (data, total);
+    while left > 0 {
+        // With at least one more block, and its two markers.
+        let needed = at - data + left + 8;
+        let Some(marker) = i32_at(bytes, at) else {
+            return Err(too_short(needed));
+        };
+        let block = u64::try_from(marker).ok();
+        let Some(block) = block.filter(|b| (1..=left).contains(b) && b % size == 0) else {
+            let message = format!(
+                "a block of {marker} bytes does not fit here, where {left} bytes of values are due; the file is damaged"
+            );
+            return Err(fault(at, message));
+        };
+        match i32_at(bytes, at + 4 + block) {
+            None => return Err(too_short(needed)),
+            Some(again) if again != marker => {
+                let message = format!(
+                    "the two lengths of a block differ ({marker} and {again}); the file is damaged"
+                );
+                return Err(fault(at, message));
+            }
+            Some(_) => {}
+        }
+        at += 8 + block;
+        left -= block;
+    }
+    Ok(at)
 }

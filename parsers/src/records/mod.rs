@@ -6,11 +6,18 @@
 
 mod decode;
 mod index;
+mod write;
 
 use std::path::Path;
 
 use crate::error::{At, ParseError, Warnings};
 use crate::mapped::MappedFile;
+
+pub use write::RecordWriter;
+
+/// Elements in a block by convention: numbers, strings.
+const NUMBERS_A_BLOCK: u64 = 1000;
+const STRINGS_A_BLOCK: u64 = 105;
 
 /// Type of the elements of an array.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -40,6 +47,14 @@ impl Kind {
         }
     }
 
+    /// Elements in a block by convention.
+    fn block(self) -> u64 {
+        match self {
+            Self::Text(_) => STRINGS_A_BLOCK,
+            _ => NUMBERS_A_BLOCK,
+        }
+    }
+
     fn parse(name: &[u8]) -> Option<Self> {
         Some(match name {
             b"INTE" => Self::Inte,
@@ -48,7 +63,7 @@ impl Kind {
             b"LOGI" => Self::Logi,
             b"CHAR" => Self::Text(8),
             b"MESS" => Self::Mess,
-            [b'C', digits @ ..] => {
+            [b'C', digits @ ..] if digits.iter().all(u8::is_ascii_digit) => {
                 let digits = std::str::from_utf8(digits).ok()?;
                 Self::Text(digits.parse().ok().filter(|n| *n > 0)?)
             }
@@ -120,7 +135,12 @@ impl RecordFile {
             if entries.is_empty() {
                 return Err(error);
             }
-            let message = format!("{}: the rest of the file was left out", error.message);
+            let keyword = Some(&error.keyword).filter(|k| !k.is_empty());
+            let keyword = keyword.map_or(String::new(), |k| format!("{k}: "));
+            let message = format!(
+                "{keyword}{}: the rest of the file was left out",
+                error.message
+            );
             warnings.push(path, error.at, message);
         }
         Ok(Self { file, entries })
