@@ -120,21 +120,10 @@ impl Egrid {
                 ));
             }
         };
-        let grid_unit = find("GRIDUNIT")
-            .map(|e| file.strings(e))
-            .transpose()?
-            .map(|s| GridUnit {
-                length: s.first().cloned().unwrap_or_default(),
-                is_map: s.get(1).is_some_and(|m| m.trim() == "MAP"),
-            });
+        let grid_unit = find("GRIDUNIT").map(|e| grid_unit(&file, e)).transpose()?;
         let map_axes = match find("MAPAXES") {
+            Some(entry) => map_axes(&file, entry, warnings)?,
             None => None,
-            Some(entry) if entry.count == 6 => file.f64s(entry)?.try_into().ok(),
-            Some(entry) => {
-                let message = format!("MAPAXES has {} values, not 6: left out", entry.count);
-                warnings.push(path, At::Byte(entry.offset), message);
-                None
-            }
         };
         if let Some(entry) = find("CORSNUM") {
             let message = "CORSNUM: coarsened cells are read as the fine cells they were";
@@ -200,6 +189,27 @@ fn dimensions(file: &RecordFile, head: &Entry) -> Result<[usize; 3], ParseError>
 /// Item 27 of GRIDHEAD: sectors around the axis.
 fn is_radial(grid_head: &[i32]) -> bool {
     grid_head.get(26).is_some_and(|&sectors| sectors > 0)
+}
+
+fn grid_unit(file: &RecordFile, entry: &Entry) -> Result<GridUnit, ParseError> {
+    let strings = file.strings(entry)?;
+    Ok(GridUnit {
+        length: strings.first().cloned().unwrap_or_default(),
+        is_map: strings.get(1).is_some_and(|m| m.trim() == "MAP"),
+    })
+}
+
+fn map_axes(
+    file: &RecordFile,
+    entry: &Entry,
+    warnings: &mut Warnings,
+) -> Result<Option<[f64; 6]>, ParseError> {
+    let values = file.f64s(entry)?.try_into().ok();
+    if values.is_none() {
+        let message = format!("MAPAXES has {} values, not 6: left out", entry.count);
+        warnings.push(file.path(), At::Byte(entry.offset), message);
+    }
+    Ok(values)
 }
 
 fn sized(
