@@ -66,7 +66,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         }
         if !found {
             fallbacks += 1u;
-            let location = locate(point, vec3f(0.0), ray.advance, frame.interpolation);
+            let location = locate(Query(point, vec3f(0.0), MARCH_ENOUGH, frame.interpolation), ray.advance);
             iterations += location.iterations;
             work += location.work + 2u;
             if !location.found {
@@ -75,9 +75,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
                 continue;
             }
             cell = location.cell;
-            // One more step for the inverse Jacobian at the sample.
-            s = solve(cell, relative_to(cell, point), location.uvw, 1.0);
-            s.uvw = location.uvw;
+            s = location.solution;
         }
         have_cell = true;
         samples += 1u;

@@ -9,6 +9,9 @@ struct Points {
     reserved1: u32,
 }
 
+// The probe answers to f32's precision.
+const PROBE_ENOUGH: f32 = 5e-6;
+
 @group(3) @binding(0) var<uniform> points_info: Points;
 // Pairs: the point in grid space relative to the origin, and what rounding to f32 cut off.
 @group(3) @binding(1) var<storage, read> points: array<vec4f>;
@@ -20,11 +23,12 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         return;
     }
     let point = points[2u * id.x].xyz;
-    let location = locate(point, points[2u * id.x + 1u].xyz, vec3f(0.0), points_info.interpolation);
+    let query = Query(point, points[2u * id.x + 1u].xyz, PROBE_ENOUGH, points_info.interpolation);
+    let location = locate(query, vec3f(0.0));
     var result: Found;
     result.column = NOT_FOUND;
     if location.found {
-        let uvw = clamp(location.uvw, vec3f(0.0), vec3f(1.0));
+        let uvw = clamp(location.solution.uvw, vec3f(0.0), vec3f(1.0));
         result.column = location.cell.column;
         result.layer = location.cell.layer;
         result.parameters = 2.0 * uvw - vec3f(1.0);

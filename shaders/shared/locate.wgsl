@@ -7,20 +7,30 @@ struct Location {
     iterations: u32,
     // Loop iterations of any kind, about.
     work: u32,
-    uvw: vec3f,
     cell: Cell,
+    solution: Solution,
     // Where not found: how many steps of `advance` surely lie outside all cells (at least 1).
     skip: f32,
 }
 
-const LOCATE_ENOUGH: f32 = 5e-6;
 const LAYER_MOVES: u32 = 8u;
 // Loop iterations for a column before any cell is tried: inverse bilinear map and search by depth.
 const COLUMN_WORK: u32 = 24u;
 
-// Finds the cell that holds `point` (+ `low_bits`, its rounding error); `advance` is the
-// displacement to the next sample, used to skip what is empty.
-fn locate(point: vec3f, low_bits: vec3f, advance: vec3f, interpolation: u32) -> Location {
+// A point to locate.
+struct Query {
+    point: vec3f,
+    // Its rounding error.
+    low_bits: vec3f,
+    // Newton steps below this end the iteration.
+    enough: f32,
+    interpolation: u32,
+}
+
+// Finds the cell that holds a point; `advance` is the displacement to the next sample, used to skip
+// what is empty.
+fn locate(query: Query, advance: vec3f) -> Location {
+    let point = query.point;
     var result: Location;
     result.skip = 1.0;
     let at = floor((point.xy - grid.bin_origin) / grid.bin_size);
@@ -46,7 +56,7 @@ fn locate(point: vec3f, low_bits: vec3f, advance: vec3f, interpolation: u32) -> 
         return result;
     }
     for (var n = first; n < last; n++) {
-        if locate_in_column(bin_columns[n], point, low_bits, interpolation, &result) {
+        if locate_in_column(bin_columns[n], query, &result) {
             return result;
         }
     }
@@ -61,9 +71,9 @@ fn steps_to_leave(at: f32, advance: f32, low: f32, high: f32) -> f32 {
     return clamp(select(low - at, high - at, advance > 0.0) / advance, 0.0, 1e6);
 }
 
-fn locate_in_column(
-    column: u32, point: vec3f, low_bits: vec3f, interpolation: u32, result: ptr<function, Location>,
-) -> bool {
+fn locate_in_column(column: u32, query: Query, result: ptr<function, Location>) -> bool {
+    let point = query.point;
+    let low_bits = query.low_bits;
     (*result).work += COLUMN_WORK;
     let p = pillar_index(column);
     let q0 = section_corner(load_pillar(p.x), point, low_bits);
@@ -77,7 +87,7 @@ fn locate_in_column(
         return false;
     }
     if (lists.x & COLUMN_FLAG) != 0u {
-        return search_all_layers(column, point, low_bits, uv, interpolation, result);
+        return search_all_layers(column, query, uv, result);
     }
     let inner = clamp(uv, vec2f(0.0), vec2f(1.0));
     let weights = vec4f((1.0 - inner.x) * (1.0 - inner.y), inner.x * (1.0 - inner.y),
@@ -93,7 +103,7 @@ fn locate_in_column(
             low = middle + 1u;
         }
     }
-    return search_from_layer(column, min(low, grid.nk - 1u), point, low_bits, uv, weights, interpolation, result);
+    return search_from_layer(column, min(low, grid.nk - 1u), query, uv, weights, result);
 }
 
 // Pillar position at the point's depth, relative to the point.
@@ -132,33 +142,33 @@ fn inverse_bilinear(q0: vec2f, q1: vec2f, q2: vec2f, q3: vec2f) -> vec2f {
 
 // Newton in `start` and, where the result lies above or below, in the layers there.
 fn search_from_layer(
-    column: u32, start: u32, point: vec3f, low_bits: vec3f, uv: vec2f, weights: vec4f, interpolation: u32,
-    result: ptr<function, Location>,
+    column: u32, start: u32, query: Query, uv: vec2f, weights: vec4f, result: ptr<function, Location>,
 ) -> bool {
     let lists = column_lists[column];
+    let margin = column_margin(lists);
     var layer = i32(start);
     var direction = 0;
     for (var n = 0u; n < LAYER_MOVES; n++) {
         if layer < 0 || layer >= i32(grid.nk) {
             return false;
         }
-        let top = height_above(lists, u32(layer), 0u, weights, point.z, low_bits.z);
-        let bottom = height_above(lists, u32(layer), 1u, weights, point.z, low_bits.z);
+        let top_depths = depths_at(layer_entries(lists, u32(layer), 0u));
+        let bottom_depths = depths_at(layer_entries(lists, u32(layer), 1u));
+        let top = dot(weights, top_depths - vec4f(query.point.z)) - query.low_bits.z;
+        let bottom = dot(weights, bottom_depths - vec4f(query.point.z)) - query.low_bits.z;
         let thickness = max(bottom - top, 1e-20);
         let w = clamp(-top / thickness, 0.0, 1.0);
         var move_to = 0;
-        if is_drawn(column, u32(layer)) {
-            let cell = load_cell(column, u32(layer), interpolation);
-            let s = solve(cell, relative_to(cell, point) + low_bits, vec3f(uv, w), LOCATE_ENOUGH);
-            (*result).iterations += s.iterations;
-            (*result).work += s.iterations + 1u;
-            if s.inside {
-                (*result).found = true;
-                (*result).uvw = s.uvw;
-                (*result).cell = cell;
+        if top > depth_slack(top_depths, margin) {
+            move_to = -1;
+        } else if bottom < -depth_slack(bottom_depths, margin) {
+            move_to = 1;
+        } else if is_drawn(column, u32(layer)) {
+            if try_cell(column, u32(layer), query, vec3f(uv, w), result) {
                 return true;
             }
-            move_to = select(select(0, 1, s.uvw.z > 1.0), -1, s.uvw.z < 0.0);
+            let reached = (*result).solution.uvw.z;
+            move_to = select(select(0, 1, reached > 1.0), -1, reached < 0.0);
         } else {
             // Not drawn: near its top or bottom the point may belong to the layer beyond.
             move_to = select(select(0, 1, w > 0.75), -1, w < 0.25);
@@ -175,33 +185,44 @@ fn search_from_layer(
     return false;
 }
 
+// How far off the depth of a bilinear patch may be where (u, v) is off by the column's margin.
+fn depth_slack(patch_depths: vec4f, margin: f32) -> f32 {
+    let low = min(min(patch_depths.x, patch_depths.y), min(patch_depths.z, patch_depths.w));
+    let high = max(max(patch_depths.x, patch_depths.y), max(patch_depths.z, patch_depths.w));
+    return 2.0 * margin * (high - low) + COINCIDENT;
+}
+
+// Newton in one cell; the result's solution is left there either way.
+fn try_cell(column: u32, layer: u32, query: Query, start: vec3f, result: ptr<function, Location>) -> bool {
+    let cell = load_cell(column, layer, query.interpolation);
+    let s = solve(cell, relative_to(cell, query.point) + query.low_bits, start, query.enough);
+    (*result).iterations += s.iterations;
+    (*result).work += s.iterations + 1u;
+    (*result).solution = s;
+    if s.inside {
+        (*result).found = true;
+        (*result).cell = cell;
+    }
+    return s.inside;
+}
+
 // Layers that cross or are turned over allow no search by depth.
-fn search_all_layers(
-    column: u32, point: vec3f, low_bits: vec3f, uv: vec2f, interpolation: u32,
-    result: ptr<function, Location>,
-) -> bool {
+fn search_all_layers(column: u32, query: Query, uv: vec2f, result: ptr<function, Location>) -> bool {
     let lists = column_lists[column];
     (*result).work += grid.nk;
     for (var layer = 0u; layer < grid.nk; layer++) {
         if !is_drawn(column, layer) {
             continue;
         }
-        let top = depths_at(layer_entries(lists, layer, 0u)) - vec4f(point.z);
-        let bottom = depths_at(layer_entries(lists, layer, 1u)) - vec4f(point.z);
+        let top = depths_at(layer_entries(lists, layer, 0u)) - vec4f(query.point.z);
+        let bottom = depths_at(layer_entries(lists, layer, 1u)) - vec4f(query.point.z);
         let shallow = min(top, bottom);
         let deep = max(top, bottom);
         if min(min(shallow.x, shallow.y), min(shallow.z, shallow.w)) > COINCIDENT
             || max(max(deep.x, deep.y), max(deep.z, deep.w)) < -COINCIDENT {
             continue;
         }
-        let cell = load_cell(column, layer, interpolation);
-        let s = solve(cell, relative_to(cell, point) + low_bits, vec3f(uv, 0.5), LOCATE_ENOUGH);
-        (*result).iterations += s.iterations;
-        (*result).work += s.iterations;
-        if s.inside {
-            (*result).found = true;
-            (*result).uvw = s.uvw;
-            (*result).cell = cell;
+        if try_cell(column, layer, query, vec3f(uv, 0.5), result) {
             return true;
         }
     }
