@@ -40,20 +40,40 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     var topological_steps = 0u;
     var fallbacks = 0u;
     var work = 0u;
+    // Two phases, so that rays side by side locate together and march together.
     while n < ray.count && sum.transmittance >= frame.early_termination && work < tile.work_limit {
-        work += 1u;
-        let point = ray.base + n * ray.advance;
-        var found = false;
-        if have_cell {
+        if !have_cell {
+            let query = Query(ray.base + n * ray.advance, vec3f(0.0), MARCH_ENOUGH, frame.interpolation);
+            let location = locate(query, ray.advance);
+            fallbacks += 1u;
+            iterations += location.iterations;
+            work += location.work + 2u;
+            if !location.found {
+                n += location.skip;
+                continue;
+            }
+            cell = location.cell;
+            s = location.solution;
+            have_cell = true;
+        }
+        while have_cell {
+            samples += 1u;
+            sum = accumulate(sum, evaluate(cell, clamp(s.uvw, vec3f(0.0), vec3f(1.0))).w);
+            n += 1.0;
+            if n >= ray.count || sum.transmittance < frame.early_termination || work >= tile.work_limit {
+                break;
+            }
+            let point = ray.base + n * ray.advance;
             let ahead = vec3f(dot(s.inverse_u, ray.advance), dot(s.inverse_v, ray.advance),
                 dot(s.inverse_w, ray.advance));
             var start = clamp(s.uvw + ahead, vec3f(-1.0), vec3f(2.0));
+            have_cell = false;
             for (var attempt = 0u; attempt <= TOPOLOGICAL_LIMIT; attempt++) {
                 s = solve(cell, relative_to(cell, point), start, MARCH_ENOUGH);
                 iterations += s.iterations;
-                work += s.iterations + 1u;
+                work += s.iterations + 2u;
                 if s.inside {
-                    found = true;
+                    have_cell = true;
                     break;
                 }
                 var next = s.uvw;
@@ -64,23 +84,6 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
                 start = next;
             }
         }
-        if !found {
-            fallbacks += 1u;
-            let location = locate(Query(point, vec3f(0.0), MARCH_ENOUGH, frame.interpolation), ray.advance);
-            iterations += location.iterations;
-            work += location.work + 2u;
-            if !location.found {
-                have_cell = false;
-                n += location.skip;
-                continue;
-            }
-            cell = location.cell;
-            s = location.solution;
-        }
-        have_cell = true;
-        samples += 1u;
-        sum = accumulate(sum, evaluate(cell, clamp(s.uvw, vec3f(0.0), vec3f(1.0))).w);
-        n += 1.0;
     }
     if n < ray.count && sum.transmittance >= frame.early_termination {
         ray_states[state] = vec4f(sum.color, sum.transmittance);

@@ -14,6 +14,8 @@ struct Location {
 }
 
 const LAYER_MOVES: u32 = 8u;
+// Part of a skip that is taken: pillars that are not parallel turn the sides of a section meanwhile.
+const SAFE_SKIP: f32 = 0.9;
 // Loop iterations for a column before any cell is tried: inverse bilinear map and search by depth.
 const COLUMN_WORK: u32 = 24u;
 
@@ -55,11 +57,15 @@ fn locate(query: Query, advance: vec3f) -> Location {
         result.skip = max(1.0, ceil(skip - 1e-3));
         return result;
     }
+    let low = grid.bin_origin + vec2f(bin_xy) * grid.bin_size;
+    result.skip = min(steps_to_leave(point.x, advance.x, low.x, low.x + grid.bin_size.x),
+        steps_to_leave(point.y, advance.y, low.y, low.y + grid.bin_size.y));
     for (var n = first; n < last; n++) {
-        if locate_in_column(bin_columns[n], query, &result) {
+        if locate_in_column(bin_columns[n], query, advance, &result) {
             return result;
         }
     }
+    result.skip = max(1.0, ceil(result.skip - 1e-3));
     return result;
 }
 
@@ -71,33 +77,54 @@ fn steps_to_leave(at: f32, advance: f32, low: f32, high: f32) -> f32 {
     return clamp(select(low - at, high - at, advance > 0.0) / advance, 0.0, 1e6);
 }
 
-fn locate_in_column(column: u32, query: Query, result: ptr<function, Location>) -> bool {
-    let point = query.point;
-    let low_bits = query.low_bits;
+fn locate_in_column(column: u32, query: Query, advance: vec3f, result: ptr<function, Location>) -> bool {
     (*result).work += COLUMN_WORK;
+    let point = query.point;
     let p = pillar_index(column);
-    let q0 = section_corner(load_pillar(p.x), point, low_bits);
-    let q1 = section_corner(load_pillar(p.y), point, low_bits);
-    let q2 = section_corner(load_pillar(p.z), point, low_bits);
-    let q3 = section_corner(load_pillar(p.w), point, low_bits);
-    let uv = inverse_bilinear(q0, q1, q2, q3);
+    let pillar0 = load_pillar(p.x);
+    let pillar1 = load_pillar(p.y);
+    let pillar2 = load_pillar(p.z);
+    let pillar3 = load_pillar(p.w);
+    let q0 = section_corner(pillar0, query);
+    let q1 = section_corner(pillar1, query);
+    let q2 = section_corner(pillar2, query);
+    let q3 = section_corner(pillar3, query);
     let lists = column_lists[column];
-    let outside = abs(uv - vec2f(0.5)) - vec2f(0.5 + column_margin(lists));
+    let margin = column_margin(lists);
+    // Motion across the section in one step.
+    let motion = advance.xy - 0.25 * advance.z * (pillar0.slope + pillar1.slope + pillar2.slope + pillar3.slope);
+    let steps_beside = steps_to_section(q0, q1, q2, q3, motion, margin);
+    if steps_beside >= 0.0 {
+        (*result).skip = min((*result).skip, SAFE_SKIP * steps_beside);
+        return false;
+    }
+    let uv = inverse_bilinear(q0, q1, q2, q3);
+    let outside = abs(uv - vec2f(0.5)) - vec2f(0.5 + margin);
     if max(outside.x, outside.y) > 0.0 {
+        (*result).skip = 1.0;
         return false;
     }
     if (lists.x & COLUMN_FLAG) != 0u {
+        (*result).skip = 1.0;
         return search_all_layers(column, query, uv, result);
     }
     let inner = clamp(uv, vec2f(0.0), vec2f(1.0));
     let weights = vec4f((1.0 - inner.x) * (1.0 - inner.y), inner.x * (1.0 - inner.y),
         (1.0 - inner.x) * inner.y, inner.x * inner.y);
+    let speed = section_speed(q0, q1, q2, q3, motion);
+    let above = clear_of(lists, 0u, 0u, weights, query, margin, speed, advance.z);
+    let below = clear_of(lists, grid.nk - 1u, 1u, weights, query, margin, speed, advance.z);
+    if max(above, below) >= 0.0 {
+        (*result).skip = min((*result).skip, SAFE_SKIP * max(above, below));
+        return false;
+    }
+    (*result).skip = 1.0;
     // The first layer whose bottom lies below the point.
     var low = 0u;
     var high = grid.nk;
     while low < high {
         let middle = (low + high) / 2u;
-        if height_above(lists, middle, 1u, weights, point.z, low_bits.z) > 0.0 {
+        if height_above(lists, middle, 1u, weights, point.z, query.low_bits.z) > 0.0 {
             high = middle;
         } else {
             low = middle + 1u;
@@ -107,8 +134,60 @@ fn locate_in_column(column: u32, query: Query, result: ptr<function, Location>) 
 }
 
 // Pillar position at the point's depth, relative to the point.
-fn section_corner(pillar: Pillar, point: vec3f, low_bits: vec3f) -> vec2f {
-    return (pillar.at - point.xy) + (pillar.low_bits + pillar.slope * point.z - low_bits.xy);
+fn section_corner(pillar: Pillar, query: Query) -> vec2f {
+    return (pillar.at - query.point.xy) + (pillar.low_bits + pillar.slope * query.point.z - query.low_bits.xy);
+}
+
+// Steps of `motion` after which the origin may come within the margin of a quadrilateral; negative
+// where it is already. A quadrilateral that is not convex has no outside here.
+fn steps_to_section(q0: vec2f, q1: vec2f, q2: vec2f, q3: vec2f, motion: vec2f, margin: f32) -> f32 {
+    let edges = array<vec2f, 4>(q1 - q0, q3 - q1, q2 - q3, q0 - q2);
+    let corners = array<vec2f, 4>(q0, q1, q3, q2);
+    let area = 0.5 * (cross2(q1 - q0, q3 - q0) + cross2(q3 - q0, q2 - q0));
+    let turns = vec4f(cross2(edges[0], edges[1]), cross2(edges[1], edges[2]), cross2(edges[2], edges[3]),
+        cross2(edges[3], edges[0])) / area;
+    if !all(turns >= vec4f(0.0)) {
+        return -1.0;
+    }
+    var steps = -1.0;
+    for (var n = 0; n < 4; n++) {
+        // How far outside this side, in cell widths, and how much nearer a step comes.
+        let outside = cross2(edges[n], corners[n]) / area - margin;
+        if outside > 0.0 {
+            let approach = -cross2(motion, edges[n]) / area;
+            steps = max(steps, select(1e6, outside / approach, approach > outside * 1e-6));
+        }
+    }
+    return steps;
+}
+
+fn cross2(a: vec2f, b: vec2f) -> f32 {
+    return a.x * b.y - a.y * b.x;
+}
+
+// Cell widths that a step crosses, at most.
+fn section_speed(q0: vec2f, q1: vec2f, q2: vec2f, q3: vec2f, motion: vec2f) -> f32 {
+    let least = min(min(abs(cross2(q1 - q0, q2 - q0)), abs(cross2(q1 - q0, q3 - q1))),
+        min(abs(cross2(q3 - q2, q2 - q0)), abs(cross2(q3 - q2, q3 - q1))));
+    let along = max(max(abs(cross2(motion, q1 - q0)), abs(cross2(motion, q3 - q2))),
+        max(abs(cross2(motion, q2 - q0)), abs(cross2(motion, q3 - q1))));
+    return along / max(least, 1e-20);
+}
+
+// Steps after which the point may come to a layer's top from above or to its bottom from below;
+// negative where it is not clear of it.
+fn clear_of(
+    lists: vec4u, layer: u32, bottom: u32, weights: vec4f, query: Query, margin: f32, speed: f32, sinking: f32,
+) -> f32 {
+    let patch_depths = depths_at(layer_entries(lists, layer, bottom));
+    let height = dot(weights, patch_depths - vec4f(query.point.z)) - query.low_bits.z;
+    let sign = select(1.0, -1.0, bottom == 1u);
+    let clear = sign * height - depth_slack(patch_depths, margin);
+    if clear <= 0.0 {
+        return -1.0;
+    }
+    let approach = sign * sinking + 2.0 * speed * depth_spread(patch_depths);
+    return select(1e6, clear / approach, approach > clear * 1e-6);
 }
 
 // Depth of a layer's top or bottom below the point, bilinear in the column.
@@ -187,9 +266,13 @@ fn search_from_layer(
 
 // How far off the depth of a bilinear patch may be where (u, v) is off by the column's margin.
 fn depth_slack(patch_depths: vec4f, margin: f32) -> f32 {
+    return 2.0 * margin * depth_spread(patch_depths) + COINCIDENT;
+}
+
+fn depth_spread(patch_depths: vec4f) -> f32 {
     let low = min(min(patch_depths.x, patch_depths.y), min(patch_depths.z, patch_depths.w));
     let high = max(max(patch_depths.x, patch_depths.y), max(patch_depths.z, patch_depths.w));
-    return 2.0 * margin * (high - low) + COINCIDENT;
+    return high - low;
 }
 
 // Newton in one cell; the result's solution is left there either way.
