@@ -42,19 +42,19 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     var work = 0u;
     // Two phases, so that rays side by side locate together and march together.
     while n < ray.count && sum.transmittance >= frame.early_termination && work < tile.work_limit {
-        if !have_cell {
+        while !have_cell && n < ray.count && work < tile.work_limit {
             let query = Query(ray.base + n * ray.advance, vec3f(0.0), MARCH_ENOUGH, frame.interpolation);
             let location = locate(query, ray.advance);
             fallbacks += 1u;
             iterations += location.iterations;
             work += location.work + 2u;
-            if !location.found {
+            have_cell = location.found;
+            if location.found {
+                cell = location.cell;
+                s = location.solution;
+            } else {
                 n += location.skip;
-                continue;
             }
-            cell = location.cell;
-            s = location.solution;
-            have_cell = true;
         }
         while have_cell {
             samples += 1u;
