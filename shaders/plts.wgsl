@@ -8,8 +8,7 @@
 // one iteration usually does, and empty bins are skipped instead of rasterizing the hull. A ray that
 // has done tile.work_limit loop iterations pauses: drivers end long loops without a word (llvmpipe
 // after 65,535 iterations of all loops together), and no submission may run for long.
-#import locate
-#import transfer
+#import section
 
 const TOPOLOGICAL_LIMIT: u32 = 6u;
 // Steps below this end the iteration while marching; the error left is of its square.
@@ -31,6 +30,9 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
             return;
         }
         sum = Accumulated(ray_states[state].rgb, ray_states[state].a);
+    } else {
+        let section = section_color(ray);
+        sum = Accumulated(section.rgb, 1.0 - section.a);
     }
     var cell: Cell;
     var s: Solution;
@@ -41,7 +43,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     var fallbacks = 0u;
     var work = 0u;
     // Two phases, so that rays side by side locate together and march together.
-    while n < ray.count && sum.transmittance >= frame.early_termination && work < tile.work_limit {
+    while n < ray.count && is_open(sum) && work < tile.work_limit {
         while !have_cell && n < ray.count && work < tile.work_limit {
             let query = Query(ray.base + n * ray.advance, vec3f(0.0), MARCH_ENOUGH, frame.interpolation);
             let location = locate(query, ray.advance);
@@ -60,7 +62,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
             samples += 1u;
             sum = accumulate(sum, evaluate(cell, clamp(s.uvw, vec3f(0.0), vec3f(1.0))).w);
             n += 1.0;
-            if n >= ray.count || sum.transmittance < frame.early_termination || work >= tile.work_limit {
+            if n >= ray.count || !is_open(sum) || work >= tile.work_limit {
                 break;
             }
             let point = ray.base + n * ray.advance;
@@ -85,7 +87,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
             }
         }
     }
-    if n < ray.count && sum.transmittance >= frame.early_termination {
+    if n < ray.count && is_open(sum) {
         ray_states[state] = vec4f(sum.color, sum.transmittance);
         ray_states[state + 1u] = vec4f(n, 0.0, 0.0, 0.0);
     } else {

@@ -60,9 +60,10 @@ fn structs_agree() {
         grid_from_world_z,
         interpolation,
         box_low,
-        reserved0,
+        clip_count,
         box_high,
-        reserved1
+        opaque_cuts,
+        clip_planes
     );
     agrees!(
         m, Tile, origin, size, resume, work_limit, reserved0, reserved1
@@ -97,6 +98,17 @@ fn constants_agree() {
         ("LIST_GAPPED", layout::LIST_GAPPED),
         ("COLUMN_FLAG", layout::COLUMN_FLAG),
         ("LIST_OFFSET", layout::LIST_OFFSET),
+        ("MAX_CLIP_PLANES", layout::MAX_CLIP_PLANES as u32),
+        ("COUNTERS", layout::COUNTERS),
+        ("COUNT_SAMPLES", layout::COUNT_SAMPLES),
+        ("COUNT_ITERATIONS", layout::COUNT_ITERATIONS),
+        ("COUNT_STEPS", layout::COUNT_STEPS),
+        ("COUNT_FALLBACKS", layout::COUNT_FALLBACKS),
+        ("COUNT_FINISHED", layout::COUNT_FINISHED),
+        ("COUNT_WORK", layout::COUNT_WORK),
+        ("COUNT_PEELS", layout::COUNT_PEELS),
+        ("COUNT_RECOVERED", layout::COUNT_RECOVERED),
+        ("COUNT_LOST", layout::COUNT_LOST),
     ] {
         let (_, constant) = m
             .constants

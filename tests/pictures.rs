@@ -3,10 +3,12 @@
 
 mod common;
 
-use strataray::gpu::{FrameRenderer, Gpu, GpuGrid};
 use strataray::metrics::{fraction_within, psnr_8bit};
 use strataray::picture::Image;
-use strataray::scene::{self, CameraSpec, FramingCamera, Interpolation, Scene, View};
+use strataray::renderer::Renderer;
+use strataray::scene::{
+    self, CameraSpec, ClipSpec, CutFace, FramingCamera, Interpolation, Scene, View,
+};
 use strataray::strategies::StrategyKind;
 use strataray::{case::Case, load, reference};
 
@@ -23,21 +25,16 @@ fn scene(azimuth: f64, elevation: f64, interpolation: Interpolation) -> Scene {
     }
 }
 
-fn on_gpu(gpu: &Gpu, case: &Case, view: &View, strategy: StrategyKind) -> Image {
-    let mut grid = GpuGrid::new(gpu, &case.grid).unwrap();
-    grid.show(
-        gpu,
-        &case.grid,
-        &view.field,
-        &view.drawn,
-        view.interpolation,
-    )
-    .unwrap();
-    let strategy = strategy.create(gpu).unwrap();
-    let (image, stats) = FrameRenderer::default()
-        .render(gpu, &grid, &*strategy, view, &|_| true)
+fn on_gpu(renderer: &mut Renderer, case: &Case, view: &View, strategy: StrategyKind) -> Image {
+    let view = View {
+        strategy,
+        ..view.clone()
+    };
+    let frame = renderer
+        .render(&case.grid, &view, &|_| true)
         .unwrap()
         .unwrap();
+    let (image, stats) = (frame.image, frame.stats);
     let per_sample = stats.newton_iterations as f64 / stats.samples as f64;
     println!(
         "  {} samples, {per_sample:.2} Newton iterations a sample, {} steps, {} fallbacks, longest submission {:?}",
@@ -56,6 +53,7 @@ fn strategies_agree_with_the_reference() {
     let Some(gpu) = common::gpu() else { return };
     for model in common::models() {
         let case = load::open(&model).unwrap();
+        let mut renderer = Renderer::new(gpu.clone(), &case.grid).unwrap();
         for (azimuth, elevation, interpolation) in [
             (205.0, 35.0, Interpolation::Vertex),
             (80.0, 12.0, Interpolation::Cell),
@@ -68,7 +66,7 @@ fn strategies_agree_with_the_reference() {
                 case.about.name
             );
             for strategy in StrategyKind::ALL {
-                let image = on_gpu(&gpu, &case, &view, strategy);
+                let image = on_gpu(&mut renderer, &case, &view, strategy);
                 assert!(image.pixels.iter().flatten().all(|v| v.is_finite()));
                 let (db, within) = (
                     psnr(&image, &truth, &view),
@@ -95,6 +93,7 @@ fn strategies_agree_with_the_reference() {
 fn a_shifted_camera_is_noticed() {
     let Some(gpu) = common::gpu() else { return };
     let case = load::open(&common::sample()).unwrap();
+    let mut renderer = Renderer::new(gpu, &case.grid).unwrap();
     let view = scene::resolve(&scene(205.0, 35.0, Interpolation::Vertex), &case).unwrap();
     let truth = reference::render(&case.grid, &view, &|_| true).unwrap();
     let mut shifted = view.clone();
@@ -104,7 +103,7 @@ fn a_shifted_camera_is_noticed() {
             .camera
             .eye
             .distance(0.5 * (shifted.world_bounds[0] + shifted.world_bounds[1])));
-    let image = on_gpu(&gpu, &case, &shifted, StrategyKind::Plts);
+    let image = on_gpu(&mut renderer, &case, &shifted, StrategyKind::Plts);
     let (db, within) = (
         psnr(&image, &truth, &view),
         fraction_within(&image.pixels, &truth.pixels, 2e-3),
@@ -116,20 +115,67 @@ fn a_shifted_camera_is_noticed() {
 fn filters_and_cancel_work() {
     let Some(gpu) = common::gpu() else { return };
     let case = load::open(&common::sample()).unwrap();
+    let mut renderer = Renderer::new(gpu, &case.grid).unwrap();
     let mut scene = scene(205.0, 35.0, Interpolation::Cell);
     scene.filter.k = Some([2, 3]);
     let view = scene::resolve(&scene, &case).unwrap();
     let truth = reference::render(&case.grid, &view, &|_| true).unwrap();
-    let image = on_gpu(&gpu, &case, &view, StrategyKind::Plts);
+    let image = on_gpu(&mut renderer, &case, &view, StrategyKind::Plts);
     assert!(psnr(&image, &truth, &view) >= 45.0);
     scene.filter.k = None;
     let whole = scene::resolve(&scene, &case).unwrap();
     assert!(
         psnr(
-            &on_gpu(&gpu, &case, &whole, StrategyKind::Plts),
+            &on_gpu(&mut renderer, &case, &whole, StrategyKind::Plts),
             &truth,
             &view
         ) < 40.0
     );
     assert!(reference::render(&case.grid, &view, &|_| false).is_none());
+}
+
+/// A plane through the middle of the model that keeps its northern or its eastern half.
+fn clip(view: &View, normal: [f64; 3], face: CutFace) -> ClipSpec {
+    let middle = 0.5 * (view.world_bounds[0] + view.world_bounds[1]);
+    ClipSpec {
+        point: middle.to_array(),
+        normal,
+        face,
+    }
+}
+
+#[test]
+fn clip_planes_and_their_sections_agree_with_the_reference() {
+    let Some(gpu) = common::gpu() else { return };
+    for model in common::models() {
+        let case = load::open(&model).unwrap();
+        let mut renderer = Renderer::new(gpu.clone(), &case.grid).unwrap();
+        let mut scene = scene(205.0, 35.0, Interpolation::Vertex);
+        let whole = scene::resolve(&scene, &case).unwrap();
+        for face in [CutFace::Open, CutFace::Opaque] {
+            scene.clip = vec![
+                clip(&whole, [0.1, 1.0, 0.0], face),
+                clip(&whole, [1.0, 0.0, 0.3], CutFace::Open),
+            ];
+            let view = scene::resolve(&scene, &case).unwrap();
+            let truth = reference::render(&case.grid, &view, &|_| true).unwrap();
+            let opaque = truth.pixels.iter().filter(|p| p[3] == 1.0).count();
+            assert_eq!(opaque > 100, face == CutFace::Opaque, "{}", case.about.name);
+            for strategy in StrategyKind::ALL {
+                let image = on_gpu(&mut renderer, &case, &view, strategy);
+                let db = psnr(&image, &truth, &view);
+                let not_clipped = psnr(
+                    &on_gpu(&mut renderer, &case, &whole, strategy),
+                    &truth,
+                    &view,
+                );
+                println!(
+                    "{} {} {face:?}: {db:.1} dB, {not_clipped:.1} dB unclipped",
+                    case.about.name,
+                    strategy.name()
+                );
+                assert!(db >= 38.0 && not_clipped < 35.0, "{}", strategy.name());
+            }
+        }
+    }
 }

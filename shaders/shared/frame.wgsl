@@ -5,28 +5,33 @@
 @group(0) @binding(1) var<uniform> tile: Tile;
 @group(0) @binding(2) var target_image: texture_storage_2d<rgba32float, write>;
 // Pairs of low and high words, see the COUNT constants.
-@group(0) @binding(3) var<storage, read_write> counters: array<atomic<u32>, 12>;
-// Two a pixel of the tile: color and transmittance so far; next sample, or DONE.
+@group(0) @binding(3) var<storage, read_write> counters: array<atomic<u32>, 24>;
+// What a strategy keeps of each ray of the tile from one dispatch to the next.
 @group(0) @binding(4) var<storage, read_write> ray_states: array<vec4f>;
 
-const COUNT_SAMPLES: u32 = 0u;
-const COUNT_ITERATIONS: u32 = 1u;
-const COUNT_STEPS: u32 = 2u;
-const COUNT_FALLBACKS: u32 = 3u;
-const COUNT_FINISHED: u32 = 4u;
-const COUNT_WORK: u32 = 5u;
 const DONE: f32 = -1.0;
+const NO_CUT: u32 = 31u;
 
 struct Ray {
-    // Sample n lies at `base + (n - first) * advance`, grid space relative to the origin.
+    // Sample n of the ray lies at `base + n * advance`, grid space relative to the origin, and at
+    // distance `(first + n + 1/2) * frame.step` from the eye.
     base: vec3f,
     advance: vec3f,
     first: f32,
-    // Number of samples inside the model's box.
+    // Number of samples inside the model's box and the kept side of all clip planes.
     count: f32,
+    // Grid-space displacement per world-space length.
+    direction: vec3f,
+    // Distances from the eye between which the ray is kept; none where `leave <= enter`.
+    enter: f32,
+    leave: f32,
+    // The ray enters through a clip plane, and its section is opaque.
+    opaque_cut: bool,
+    // The ray starts inside the box: the eye is there, or a clip plane opens it.
+    starts_inside: bool,
 }
 
-// The ray of a pixel, cut to the lattice samples inside the model's box.
+// The ray of a pixel, cut to the model's box and the clip planes.
 fn ray_of(pixel: vec2u) -> Ray {
     let x = 2.0 * (f32(pixel.x) + 0.5) / f32(frame.width) - 1.0;
     let y = 1.0 - 2.0 * (f32(pixel.y) + 0.5) / f32(frame.height);
@@ -38,14 +43,34 @@ fn ray_of(pixel: vec2u) -> Ray {
     let b = (frame.box_high - frame.eye) / safe;
     let near = min(a, b);
     let far = max(a, b);
-    let enter = max(max(near.x, near.y), max(near.z, 0.0));
-    let leave = min(min(far.x, far.y), far.z);
-    var ray: Ray;
-    ray.first = max(0.0, floor(enter / frame.step - 0.5));
-    ray.count = max(0.0, ceil(leave / frame.step - 0.5) - ray.first + 1.0);
-    if leave <= enter {
-        ray.count = 0.0;
+    let box_enter = max(near.x, max(near.y, near.z));
+    let box_leave = min(min(far.x, far.y), far.z);
+    var clip_enter = 0.0;
+    var clip_leave = 1e30;
+    var cut = NO_CUT;
+    for (var n = 0u; n < frame.clip_count; n++) {
+        let plane = frame.clip_planes[n];
+        let height = dot(plane.xyz, frame.eye) + plane.w;
+        let rate = dot(plane.xyz, direction);
+        if abs(rate) < 1e-12 {
+            clip_leave = select(clip_leave, -1.0, height < 0.0);
+        } else if rate < 0.0 {
+            clip_leave = min(clip_leave, -height / rate);
+        } else if -height / rate > clip_enter {
+            clip_enter = -height / rate;
+            cut = n;
+        }
     }
+    var ray: Ray;
+    ray.direction = direction;
+    ray.enter = max(box_enter, clip_enter);
+    ray.leave = min(box_leave, clip_leave);
+    // The box has slack of a sample, clip planes have none: they cut through cells.
+    ray.first = max(max(0.0, floor(box_enter / frame.step - 0.5)), ceil(clip_enter / frame.step - 0.5));
+    let end = min(ceil(box_leave / frame.step - 0.5), floor(clip_leave / frame.step - 0.5));
+    ray.count = select(max(0.0, end - ray.first + 1.0), 0.0, ray.leave <= ray.enter);
+    ray.starts_inside = ray.leave > ray.enter && clip_enter >= box_enter;
+    ray.opaque_cut = ray.starts_inside && cut != NO_CUT && (frame.opaque_cuts >> cut & 1u) == 1u;
     ray.base = frame.eye + (ray.first + 0.5) * frame.step * direction;
     ray.advance = frame.step * direction;
     return ray;

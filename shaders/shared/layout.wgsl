@@ -1,5 +1,7 @@
 // Every struct and constant that host and shaders share; the host's mirrors have the same names.
 
+const MAX_CLIP_PLANES: u32 = 8u;
+
 struct Frame {
     // Grid space relative to the model's origin, file length units.
     eye: vec3f,
@@ -22,9 +24,12 @@ struct Frame {
     interpolation: u32,
     // Box of the active cells, grid space relative to the origin.
     box_low: vec3f,
-    reserved0: u32,
+    clip_count: u32,
     box_high: vec3f,
-    reserved1: u32,
+    // Bit n: where plane n opens the model to the eye, its section is drawn opaque.
+    opaque_cuts: u32,
+    // Kept is where dot(xyz, point) + w >= 0, grid space relative to the origin.
+    clip_planes: array<vec4f, MAX_CLIP_PLANES>,
 }
 
 // The part of the picture that one dispatch makes, in pixels.
@@ -74,3 +79,14 @@ const COLUMN_FLAG: u32 = 0x40000000u;
 const LIST_OFFSET: u32 = 0x3fffffffu;
 // Corners closer than this along their pillar coincide.
 const COINCIDENT: f32 = 1e-3;
+// Counters, each of a low and a high word.
+const COUNTERS: u32 = 12u;
+const COUNT_SAMPLES: u32 = 0u;
+const COUNT_ITERATIONS: u32 = 1u;
+const COUNT_STEPS: u32 = 2u;
+const COUNT_FALLBACKS: u32 = 3u;
+const COUNT_FINISHED: u32 = 4u;
+const COUNT_WORK: u32 = 5u;
+const COUNT_PEELS: u32 = 6u;
+const COUNT_RECOVERED: u32 = 7u;
+const COUNT_LOST: u32 = 8u;

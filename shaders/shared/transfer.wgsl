@@ -4,6 +4,9 @@
 // Linear red, green, blue and extinction per world-space length at LUT_SIZE positions over the range.
 @group(2) @binding(0) var<storage, read> transfer_table: array<vec4f>;
 
+// Integrals of extinction times color, and of extinction, over the position from 0 to each entry.
+@group(2) @binding(1) var<storage, read> transfer_integrals: array<vec4f>;
+
 fn transfer(value: f32) -> vec4f {
     let position = clamp((value - frame.value_low) * frame.value_scale, 0.0, 1.0) * f32(LUT_SIZE - 1u);
     let entry = min(u32(position), LUT_SIZE - 2u);
@@ -20,4 +23,9 @@ fn accumulate(a: Accumulated, value: f32) -> Accumulated {
     let entry = transfer(value);
     let passed = exp(-entry.w * frame.step);
     return Accumulated(a.color + a.transmittance * (1.0 - passed) * entry.rgb, a.transmittance * passed);
+}
+
+// False once nothing behind can be seen.
+fn is_open(a: Accumulated) -> bool {
+    return a.transmittance > 0.0 && a.transmittance >= frame.early_termination;
 }

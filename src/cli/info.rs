@@ -5,11 +5,11 @@ use std::path::PathBuf;
 use rayon::prelude::*;
 use serde_json::{Value, json};
 use strataray::case::{Case, Kind};
-use strataray::load;
 use strataray::model::{MapAxes, Spaces};
 
 use super::Verbosity;
 use super::progress::Reporter;
+use super::scene_options::open_case;
 
 #[derive(clap::Args)]
 #[command(
@@ -30,10 +30,7 @@ pub struct Arguments {
 
 pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let reporter = Reporter::new(arguments.verbosity);
-    let case = load::open(&arguments.case)?;
-    for note in &case.about.notes {
-        reporter.note(note);
-    }
+    let case = open_case(&arguments.case, &reporter)?;
     let facts = facts(&case, &arguments.stats)?;
     if arguments.json {
         println!("{}", serde_json::to_string_pretty(&facts)?);

@@ -1,9 +1,11 @@
 //! The command line: one file per command.
 
+mod cpu_time;
 mod info;
 mod probe;
 mod progress;
 mod render;
+mod scene_options;
 
 use std::path::PathBuf;
 use std::process::ExitCode;

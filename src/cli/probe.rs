@@ -7,13 +7,13 @@ use anyhow::Context;
 use glam::DVec3;
 use strataray::case::Case;
 use strataray::gpu::{Gpu, GpuGrid, probe};
-use strataray::load;
 use strataray::model::{CellField, Ijk, Spaces, VertexField};
 use strataray::reference::{self, Locator};
 use strataray::scene::Interpolation;
 
 use super::Verbosity;
 use super::progress::Reporter;
+use super::scene_options::open_case;
 
 #[derive(Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 enum On {
@@ -63,10 +63,7 @@ type Answer = Option<(Ijk, DVec3, f64)>;
 
 pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let reporter = Reporter::new(arguments.verbosity);
-    let case = load::open(&arguments.case)?;
-    for note in &case.about.notes {
-        reporter.note(note);
-    }
+    let case = open_case(&arguments.case, &reporter)?;
     let step = case.step(&arguments.step)?;
     let field = case.field(&arguments.property, step)?;
     let given = read_points(arguments)?;

@@ -6,14 +6,16 @@ use std::time::{Duration, Instant};
 use anyhow::Context;
 use serde_json::json;
 use strataray::case::Case;
-use strataray::gpu::{FrameRenderer, FrameStats, Gpu, GpuBytes, GpuGrid};
-use strataray::picture::{self, Annotations, Image};
-use strataray::scene::{self, CameraSpec, Interpolation, Scene, StepSpec, View};
-use strataray::strategies::StrategyKind;
-use strataray::{load, reference};
+use strataray::gpu::Gpu;
+use strataray::picture::{self, Image};
+use strataray::reference;
+use strataray::renderer::{Frame, Renderer};
+use strataray::scene::{self, View};
 
 use super::Verbosity;
+use super::cpu_time::cpu_time;
 use super::progress::Reporter;
+use super::scene_options::{SceneOptions, open_case};
 
 #[derive(clap::Args)]
 #[command(after_help = "Examples:
@@ -23,46 +25,11 @@ use super::progress::Reporter;
 pub struct Arguments {
     /// Any file of the case, or its base name.
     case: PathBuf,
-    /// Scene file (JSON); the options below override it.
-    #[arg(long)]
-    scene: Option<PathBuf>,
+    #[command(flatten)]
+    options: SceneOptions,
     /// Picture to write: .png, or .exr for linear values.
     #[arg(short, long)]
     output: PathBuf,
-    /// Property, or a difference such as PRESSURE-PRESSURE@0.
-    #[arg(long)]
-    property: Option<String>,
-    /// Time step: number from 0, date, first or last.
-    #[arg(long)]
-    step: Option<String>,
-    /// Ray-casting strategy.
-    #[arg(long)]
-    strategy: Option<String>,
-    /// Values within a cell.
-    #[arg(long)]
-    interpolation: Option<Interpolation>,
-    /// Picture size, such as 1000x1000.
-    #[arg(long, value_name = "WxH")]
-    size: Option<String>,
-    /// Occlusion: only off in this version.
-    #[arg(long)]
-    occlusion: Option<String>,
-    /// Direction to look from, and zoom.
-    #[arg(
-        long,
-        value_name = "AZIMUTH,ELEVATION[,ZOOM]",
-        allow_hyphen_values = true
-    )]
-    camera: Option<String>,
-    /// Vertical exaggeration.
-    #[arg(long)]
-    exaggeration: Option<f64>,
-    /// Threads of the CPU work.
-    #[arg(long)]
-    threads: Option<usize>,
-    /// Part of the name of the GPU adapter to use.
-    #[arg(long)]
-    adapter: Option<String>,
     /// Write statistics (JSON).
     #[arg(long)]
     stats: Option<PathBuf>,
@@ -85,25 +52,19 @@ struct Stages {
     open: Duration,
     read: Duration,
     upload: Duration,
+    acceleration: Duration,
     first_frame: Duration,
 }
 
 pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let reporter = Reporter::new(arguments.verbosity);
     let format = picture::Format::from_path(&arguments.output)?;
-    if let Some(threads) = arguments.threads {
-        rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build_global()?;
-    }
-    let scene = scene_of(arguments)?;
+    arguments.options.set_threads()?;
+    let scene = arguments.options.scene()?;
     let mut stages = Stages::default();
     let start = Instant::now();
-    let case = load::open(&arguments.case)?;
+    let case = open_case(&arguments.case, &reporter)?;
     stages.open = start.elapsed();
-    for note in &case.about.notes {
-        reporter.note(note);
-    }
     let start = Instant::now();
     let view = scene::resolve(&scene, &case)?;
     stages.read = start.elapsed();
@@ -119,7 +80,8 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
     match format {
         picture::Format::Exr => picture::write_exr(&arguments.output, &image)?,
         picture::Format::Png => {
-            write_png(&arguments.output, &image, &case, &view, arguments.plain)?;
+            let rgb = picture::finished(&image, &case, &view, arguments.plain);
+            picture::write_png(&arguments.output, image.size, &rgb)?;
         }
     }
     Ok(())
@@ -132,204 +94,88 @@ fn on_gpu(
     mut stages: Stages,
     reporter: &Reporter,
 ) -> anyhow::Result<Image> {
-    let gpu = Gpu::new(arguments.adapter.as_deref())?;
-    if gpu.is_software() {
-        reporter.note(&format!(
-            "no GPU is used: {} computes on the CPU",
-            gpu.describe()
-        ));
-    }
+    let gpu = arguments.options.open_gpu(reporter)?;
     let start = Instant::now();
-    let mut grid = GpuGrid::new(&gpu, &case.grid)?;
-    grid.show(
-        &gpu,
-        &case.grid,
-        &view.field,
-        &view.drawn,
-        view.interpolation,
-    )?;
-    let strategy = view.strategy.create(&gpu)?;
-    stages.upload = start.elapsed();
-    let mut renderer = FrameRenderer::default();
+    let mut renderer = Renderer::new(gpu.clone(), &case.grid)?;
+    stages.acceleration = renderer.acceleration_time();
+    stages.upload = start.elapsed().saturating_sub(stages.acceleration);
     let mut frame = || {
         reporter
             .bar("rendering", |progress| {
-                renderer.render(&gpu, &grid, &*strategy, view, &|f| progress(f))
+                renderer.render(&case.grid, view, &|f| progress(f))
             })?
             .context("the picture was cancelled")
     };
     let start = Instant::now();
-    let (mut image, first) = frame()?;
+    let first = frame()?;
     stages.first_frame = start.elapsed();
-    let mut timed = vec![first];
-    if arguments.stats.is_some() {
-        timed.clear();
-        for _ in 0..arguments.frames.max(1) {
-            let cpu = cpu_time();
-            let (again, mut stats) = frame()?;
-            stats.cpu = cpu_time().saturating_sub(cpu);
-            image = again;
-            timed.push(stats);
-        }
-    }
-    timed.sort_by_key(|s| s.frame);
-    let median = timed[timed.len() / 2];
     reporter.detail(&format!(
-        "{}: {:.1} ms a frame on {}",
+        "{}: {:.1} ms for the rays, {:.1} ms to prepare, on {}",
         view.strategy.name(),
-        1e3 * median.frame.as_secs_f64(),
+        1e3 * first.stats.frame.as_secs_f64(),
+        1e3 * first.prepare.as_secs_f64(),
         gpu.describe()
     ));
-    if let Some(path) = &arguments.stats {
-        let bytes = GpuBytes {
-            targets: median.target_bytes,
-            ..grid.bytes()
-        };
-        let stats = statistics(case, view, view.strategy, &gpu, &median, bytes, &stages);
-        std::fs::write(path, serde_json::to_string_pretty(&stats)?)
-            .with_context(|| format!("cannot write {}", path.display()))?;
+    let Some(path) = &arguments.stats else {
+        return Ok(first.image);
+    };
+    let prepare = first.prepare;
+    let mut timed = Vec::new();
+    for _ in 0..arguments.frames.max(1) {
+        let cpu = cpu_time();
+        let mut again = frame()?;
+        again.stats.cpu = cpu_time().saturating_sub(cpu);
+        again.prepare = prepare;
+        timed.push(again);
     }
-    Ok(image)
+    timed.sort_by_key(|f| f.stats.frame);
+    let median = timed.swap_remove(timed.len() / 2);
+    let stats = statistics(case, view, &gpu, &median, &stages);
+    write_json(path, &stats)?;
+    Ok(median.image)
+}
+
+fn write_json(path: &Path, value: &serde_json::Value) -> anyhow::Result<()> {
+    std::fs::write(path, serde_json::to_string_pretty(value)?)
+        .with_context(|| format!("cannot write {}", path.display()))
 }
 
 fn statistics(
     case: &Case,
     view: &View,
-    strategy: StrategyKind,
     gpu: &Gpu,
-    frame: &FrameStats,
-    bytes: GpuBytes,
+    frame: &Frame,
     stages: &Stages,
 ) -> serde_json::Value {
     let ms = |d: Duration| 1e3 * d.as_secs_f64();
     let load = case.about.load_times;
+    let stats = &frame.stats;
     json!({
-        "strategy": strategy.name(),
+        "strategy": view.strategy.name(),
         "adapter": gpu.describe(),
         "size": view.size,
-        "frame_ms": ms(frame.frame),
-        "frame_wall_ms": ms(frame.wall),
-        "frame_cpu_ms": ms(frame.cpu),
-        "longest_submission_ms": ms(frame.longest_submission),
-        "submissions": frame.submissions,
-        "samples": frame.samples,
-        "newton_iterations": frame.newton_iterations,
-        "topological_steps": frame.topological_steps,
-        "grid_fallbacks": frame.grid_fallbacks,
-        "peels": 0,
-        "recovered_rays": 0,
-        "lost_rays": 0,
+        "frame_ms": ms(stats.frame),
+        "frame_wall_ms": ms(stats.wall),
+        "frame_cpu_ms": ms(stats.cpu),
+        "prepare_ms": ms(frame.prepare),
+        "longest_submission_ms": ms(stats.longest_submission),
+        "submissions": stats.submissions,
+        "samples": stats.samples,
+        "newton_iterations": stats.newton_iterations,
+        "topological_steps": stats.topological_steps,
+        "grid_fallbacks": stats.grid_fallbacks,
+        "peels": stats.peels,
+        "recovered_rays": stats.recovered_rays,
+        "lost_rays": stats.lost_rays,
         "cells": {"total": case.grid.dims().cells(), "active": case.grid.active_cells().len()},
-        "gpu_bytes": bytes,
+        "gpu_bytes": frame.bytes,
         "stages_ms": {
             "open": ms(stages.open.saturating_sub(load.model)),
             "read": ms(stages.read),
             "model": ms(load.model),
             "upload": ms(stages.upload),
-            "acceleration": 0.0,
+            "acceleration": ms(stages.acceleration),
             "first_frame": ms(stages.first_frame),
         },
     })
-}
-
-fn write_png(
-    path: &Path,
-    image: &Image,
-    case: &Case,
-    view: &View,
-    plain: bool,
-) -> anyhow::Result<()> {
-    let mut rgb = image.over_background_8bit(view.background);
-    if !plain {
-        let mut title = format!("{}   {}", case.about.name, view.property);
-        if case.is_dynamic(&view.property)
-            && let Some(step) = case.steps.get(view.step)
-        {
-            title += &format!("   step {}   {}", view.step, step.date);
-        }
-        let annotations = Annotations {
-            title,
-            property: view.property.clone(),
-            unit: case.unit(&view.property).to_owned(),
-            show_legend: view.show_legend,
-            show_box: view.show_box,
-        };
-        picture::annotate(&mut rgb, image, view, &annotations);
-    }
-    Ok(picture::write_png(path, image.size, &rgb)?)
-}
-
-fn scene_of(arguments: &Arguments) -> anyhow::Result<Scene> {
-    let mut scene = match &arguments.scene {
-        None => Scene::default(),
-        Some(path) => {
-            let text = std::fs::read_to_string(path)
-                .with_context(|| format!("cannot read {}", path.display()))?;
-            serde_json::from_str(&text).with_context(|| format!("{}", path.display()))?
-        }
-    };
-    if let Some(property) = &arguments.property {
-        scene.property = Some(property.clone());
-    }
-    if let Some(step) = &arguments.step {
-        scene.step = StepSpec::Name(step.clone());
-    }
-    if let Some(strategy) = &arguments.strategy {
-        scene.strategy.clone_from(strategy);
-    }
-    if let Some(interpolation) = arguments.interpolation {
-        scene.interpolation = interpolation;
-    }
-    if let Some(occlusion) = arguments.occlusion.as_deref()
-        && occlusion != "off"
-    {
-        anyhow::bail!("--occlusion {occlusion} is not supported yet; use off");
-    }
-    if let Some(size) = &arguments.size {
-        let parsed = size
-            .split_once(['x', 'X'])
-            .and_then(|(w, h)| Some([w.parse().ok()?, h.parse().ok()?]));
-        scene.size = parsed
-            .with_context(|| format!("--size {size}: give width and height like 1000x800"))?;
-    }
-    if let Some(camera) = &arguments.camera {
-        scene.camera = CameraSpec::Framing(framing(camera)?);
-    }
-    if arguments.exaggeration.is_some() {
-        scene.vertical_exaggeration = arguments.exaggeration;
-    }
-    Ok(scene)
-}
-
-fn framing(text: &str) -> anyhow::Result<scene::FramingCamera> {
-    let numbers: Option<Vec<f64>> = text.split(',').map(|n| n.trim().parse().ok()).collect();
-    match numbers.as_deref() {
-        Some([azimuth, elevation, rest @ ..]) if rest.len() < 2 => Ok(scene::FramingCamera {
-            azimuth_degrees: *azimuth,
-            elevation_degrees: *elevation,
-            zoom: rest.first().copied().unwrap_or(1.0),
-        }),
-        _ => anyhow::bail!(
-            "--camera {text}: give azimuth and elevation in degrees and perhaps a zoom, like 220,35,1.2"
-        ),
-    }
-}
-
-/// CPU time of this process so far, where the system tells (Linux), else zero.
-fn cpu_time() -> Duration {
-    let stat = std::fs::read_to_string("/proc/self/stat").unwrap_or_default();
-    // Fields 14 and 15, user and system time in ticks of 10 ms, counted behind the command's name.
-    let fields: Vec<&str> = stat
-        .rsplit(')')
-        .next()
-        .unwrap_or_default()
-        .split_whitespace()
-        .collect();
-    let ticks = |n: usize| {
-        fields
-            .get(n)
-            .and_then(|f| f.parse::<u64>().ok())
-            .unwrap_or(0)
-    };
-    Duration::from_millis(10 * (ticks(11) + ticks(12)))
 }

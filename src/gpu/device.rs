@@ -2,6 +2,8 @@
 
 use std::sync::{Arc, Mutex};
 
+use super::pipeline::SharedLayouts;
+
 /// Why the GPU cannot be used.
 #[derive(Debug, thiserror::Error)]
 pub enum GpuError {
@@ -61,6 +63,8 @@ pub struct Gpu {
     pub info: wgpu::AdapterInfo,
     /// Nanoseconds per timestamp tick, where the adapter has timestamps.
     pub timestamp_period_ns: Option<f32>,
+    /// Layouts of the bind groups that all strategies share.
+    pub layouts: SharedLayouts,
     late_error: Arc<Mutex<Option<String>>>,
 }
 
@@ -95,7 +99,7 @@ impl Gpu {
             reason,
         };
         let offered = adapter.limits();
-        let needed = 10;
+        let needed = 14;
         if offered.max_storage_buffers_per_shader_stage < needed {
             return Err(unsuitable(format!(
                 "it offers {} storage buffers a shader and {needed} are needed",
@@ -103,7 +107,7 @@ impl Gpu {
             )));
         }
         let limits = wgpu::Limits {
-            // Seven arrays of the grid, the transfer table, counters, and a strategy's own.
+            // Seven arrays of the grid, two transfer tables, counters, ray states, a strategy's own.
             max_storage_buffers_per_shader_stage: needed,
             // Depth lists and values of large models are single arrays: take what there is.
             max_storage_buffer_binding_size: offered.max_storage_buffer_binding_size,
@@ -130,6 +134,7 @@ impl Gpu {
         }));
         let timestamp_period_ns = (!features.is_empty()).then(|| queue.get_timestamp_period());
         Ok(Self {
+            layouts: SharedLayouts::new(&device)?,
             device,
             queue,
             info,
@@ -215,15 +220,24 @@ impl Gpu {
             })
     }
 
-    /// A bind group of `pipeline` from buffers in binding order.
+    /// A zeroed buffer that shaders write and the host can copy from.
+    pub fn scratch(&self, label: &str, size: u64) -> wgpu::Buffer {
+        self.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some(label),
+            size,
+            usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
+            mapped_at_creation: false,
+        })
+    }
+
+    /// A bind group from resources in binding order.
     pub fn bind(
         &self,
-        pipeline: &wgpu::ComputePipeline,
-        group: u32,
-        entries: &[wgpu::BindingResource<'_>],
+        layout: &wgpu::BindGroupLayout,
+        resources: &[wgpu::BindingResource<'_>],
     ) -> wgpu::BindGroup {
         let entries: Vec<_> = (0..)
-            .zip(entries)
+            .zip(resources)
             .map(|(binding, resource)| wgpu::BindGroupEntry {
                 binding,
                 resource: resource.clone(),
@@ -231,7 +245,7 @@ impl Gpu {
             .collect();
         self.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: None,
-            layout: &pipeline.get_bind_group_layout(group),
+            layout,
             entries: &entries,
         })
     }

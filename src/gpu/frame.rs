@@ -7,7 +7,11 @@ use glam::DVec3;
 
 use super::device::{Gpu, GpuError};
 use super::grid_upload::GpuGrid;
-use super::layout::{Frame, INTERPOLATION_CELL, INTERPOLATION_VERTEX, LUT_SIZE, Tile};
+use super::layout::{
+    self, Frame, INTERPOLATION_CELL, INTERPOLATION_VERTEX, LUT_SIZE, MAX_CLIP_PLANES, Tile,
+};
+use super::pipeline::Pipeline;
+use super::target;
 use super::tiles::{self, Pace, Rect};
 use crate::picture::Image;
 use crate::scene::{Interpolation, View};
@@ -35,6 +39,12 @@ pub struct FrameStats {
     pub grid_fallbacks: u64,
     /// Rays that have reached their end.
     pub finished_rays: u64,
+    /// Entries into the model of the ray that has most of them.
+    pub peels: u64,
+    /// Rays that lost their way at an edge or vertex and were set right by point location.
+    pub recovered_rays: u64,
+    /// Rays that could not be set right.
+    pub lost_rays: u64,
     /// Loop iterations of all rays, about.
     pub work: u64,
     /// Number of submissions.
@@ -52,8 +62,8 @@ pub struct FrameRenderer {
 /// Loop iterations after which a ray pauses at the latest: on software adapters within what llvmpipe
 /// allows a group of eight rays.
 const WORK_LIMIT: [u32; 2] = [6_000, 100_000];
-/// Counters of the shader: low and high words.
-const COUNTERS: u64 = 12 * 4;
+/// Bytes of the shader's counters: low and high words.
+const COUNTERS: u64 = 8 * layout::COUNTERS as u64;
 /// Bytes of two timestamps, in front of the counters in the staging buffer.
 const TICKS: u64 = 16;
 
@@ -67,6 +77,113 @@ struct Bound<'a> {
     queries: Option<(wgpu::QuerySet, wgpu::Buffer)>,
 }
 
+/// One round of a tile, as a strategy records it: one submission that takes every ray further.
+pub struct Round<'a> {
+    /// The device.
+    pub gpu: &'a Gpu,
+    /// Pixels of the tile.
+    pub size: [u32; 2],
+    groups: &'a [wgpu::BindGroup; 3],
+    queries: Option<&'a wgpu::QuerySet>,
+}
+
+/// Where a pass stands in its round; the first and the last one take the time.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Place {
+    /// The round's only pass.
+    Only,
+    /// The first of several.
+    First,
+    /// Neither first nor last.
+    Between,
+    /// The last of several.
+    Last,
+}
+
+impl Round<'_> {
+    /// Query set with the indices that a pass writes its begin and end to.
+    fn times(&self, place: Place) -> Option<(&wgpu::QuerySet, Option<u32>, Option<u32>)> {
+        let begin = matches!(place, Place::Only | Place::First).then_some(0);
+        let end = matches!(place, Place::Only | Place::Last).then_some(1);
+        let set = self.queries.filter(|_| begin.is_some() || end.is_some())?;
+        Some((set, begin, end))
+    }
+
+    /// Records a dispatch with one invocation a pixel of the tile; `own` is bind group 3.
+    pub fn compute(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        pipeline: &Pipeline,
+        own: Option<&wgpu::BindGroup>,
+        place: Place,
+    ) {
+        let times = self.times(place);
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+            label: Some("rays"),
+            timestamp_writes: times.map(|(query_set, begin, end)| {
+                wgpu::ComputePassTimestampWrites {
+                    query_set,
+                    beginning_of_pass_write_index: begin,
+                    end_of_pass_write_index: end,
+                }
+            }),
+        });
+        pass.set_pipeline(&pipeline.pipeline);
+        for (n, group) in (0..).zip(self.groups.iter().chain(own)) {
+            pass.set_bind_group(n, group, &[]);
+        }
+        let [x, y, _] = pipeline.groups_for([self.size[0], self.size[1], 1]);
+        pass.dispatch_workgroups(x, y, 1);
+    }
+
+    /// Begins a render pass over the tile, its bind groups set; the caller sets the pipeline.
+    pub fn raster<'e>(
+        &self,
+        encoder: &'e mut wgpu::CommandEncoder,
+        color: &wgpu::TextureView,
+        depth: &wgpu::TextureView,
+        place: Place,
+    ) -> wgpu::RenderPass<'e> {
+        let times = self.times(place);
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("faces"),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: color,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
+                    store: wgpu::StoreOp::Store,
+                },
+            })],
+            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+                view: depth,
+                depth_ops: Some(wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(1.0),
+                    store: wgpu::StoreOp::Discard,
+                }),
+                stencil_ops: None,
+            }),
+            timestamp_writes: times.map(|(query_set, begin, end)| {
+                wgpu::RenderPassTimestampWrites {
+                    query_set,
+                    beginning_of_pass_write_index: begin,
+                    end_of_pass_write_index: end,
+                }
+            }),
+            occlusion_query_set: None,
+            multiview_mask: None,
+        });
+        let [width, height] = self.size.map(|n| n as f32);
+        pass.set_viewport(0.0, 0.0, width, height, 0.0, 1.0);
+        pass.set_scissor_rect(0, 0, self.size[0], self.size[1]);
+        for (n, group) in (0..).zip(self.groups) {
+            pass.set_bind_group(n, group, &[]);
+        }
+        pass
+    }
+}
+
 impl FrameRenderer {
     /// Renders a view; `None` where `progress` cancelled it.
     ///
@@ -76,7 +193,7 @@ impl FrameRenderer {
         &mut self,
         gpu: &Gpu,
         grid: &GpuGrid,
-        strategy: &dyn RenderStrategy,
+        strategy: &mut dyn RenderStrategy,
         view: &View,
         progress: &dyn Fn(f64) -> bool,
     ) -> Result<Option<(Image, FrameStats)>, GpuError> {
@@ -88,31 +205,30 @@ impl FrameRenderer {
                 reason: format!("pictures are limited to {limit} pixels each way"),
             });
         }
-        let pipeline = &strategy.pipeline().pipeline;
-        let target = create_target(gpu, view.size);
-        let counters = device_buffer(gpu, "counters", COUNTERS);
+        let target = target::create(gpu, view.size);
+        let counters = gpu.scratch("counters", COUNTERS);
         let pixels = u64::from(view.size[0]) * u64::from(view.size[1]);
-        let states = device_buffer(gpu, "ray states", 32 * pixels.min(tiles::MAX_AREA));
+        let state_bytes = strategy.ray_state_bytes() * pixels.min(tiles::MAX_AREA);
+        let states = gpu.scratch("ray states", state_bytes);
         let table = gpu.storage("transfer table", &transfer_table(&view.transfer))?;
+        let integrals = gpu.storage("transfer integrals", &transfer_integrals(&view.transfer))?;
         let frame = gpu.uniform("frame", &frame_uniform(grid, view));
         let tile = gpu.uniform("tile", &Tile::zeroed());
         let texture = target.create_view(&wgpu::TextureViewDescriptor::default());
+        let frame_resources = [
+            frame.as_entire_binding(),
+            tile.as_entire_binding(),
+            wgpu::BindingResource::TextureView(&texture),
+            counters.as_entire_binding(),
+            states.as_entire_binding(),
+        ];
+        let transfer_resources = [table.as_entire_binding(), integrals.as_entire_binding()];
         let bound = Bound {
             gpu,
             groups: [
-                gpu.bind(
-                    pipeline,
-                    0,
-                    &[
-                        frame.as_entire_binding(),
-                        tile.as_entire_binding(),
-                        wgpu::BindingResource::TextureView(&texture),
-                        counters.as_entire_binding(),
-                        states.as_entire_binding(),
-                    ],
-                ),
-                grid.bind(gpu, pipeline),
-                gpu.bind(pipeline, 2, &[table.as_entire_binding()]),
+                gpu.bind(gpu.layouts.group(0), &frame_resources),
+                grid.bind(gpu),
+                gpu.bind(gpu.layouts.group(2), &transfer_resources),
             ],
             tile,
             counters,
@@ -123,11 +239,11 @@ impl FrameRenderer {
             target_bytes: 16 * pixels + states.size(),
             ..FrameStats::default()
         };
-        let draw = |rect, pace: &mut Pace| bound.draw(strategy, rect, pace, &mut stats);
+        let draw = |rect, pace: &mut Pace| bound.draw(&mut *strategy, rect, pace, &mut stats);
         if !tiles::cover(view.size, &mut self.pace, draw, progress)? {
             return Ok(None);
         }
-        let pixels = read_target(gpu, &target, view.size)?;
+        let pixels = target::read(gpu, &target, view.size)?;
         stats.wall = start.elapsed();
         Ok(Some((
             Image {
@@ -143,7 +259,7 @@ impl Bound<'_> {
     /// Makes one tile, in as many submissions as its rays need.
     fn draw(
         &self,
-        strategy: &dyn RenderStrategy,
+        strategy: &mut dyn RenderStrategy,
         rect: Rect,
         pace: &mut Pace,
         stats: &mut FrameStats,
@@ -158,7 +274,7 @@ impl Bound<'_> {
         while stats.finished_rays < goal {
             uniform.work_limit = pace.work_limit(rect.area(), most);
             let before = stats.work;
-            let took = self.submit(strategy, &uniform, stats)?;
+            let took = self.submit(&mut *strategy, &uniform, stats)?;
             pace.learn(took, stats.work - before);
             uniform.resume = 1;
         }
@@ -168,7 +284,7 @@ impl Bound<'_> {
     /// Submits one dispatch, waits for it and brings the statistics up to date.
     fn submit(
         &self,
-        strategy: &dyn RenderStrategy,
+        strategy: &mut dyn RenderStrategy,
         uniform: &Tile,
         stats: &mut FrameStats,
     ) -> Result<Duration, GpuError> {
@@ -176,21 +292,13 @@ impl Bound<'_> {
         gpu.queue
             .write_buffer(&self.tile, 0, bytemuck::bytes_of(uniform));
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        {
-            let queries = self.queries.as_ref();
-            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
-                label: Some("tile"),
-                timestamp_writes: queries.map(|(set, _)| wgpu::ComputePassTimestampWrites {
-                    query_set: set,
-                    beginning_of_pass_write_index: Some(0),
-                    end_of_pass_write_index: Some(1),
-                }),
-            });
-            for (n, group) in (0..).zip(&self.groups) {
-                pass.set_bind_group(n, group, &[]);
-            }
-            strategy.encode(&mut pass, uniform.size);
-        }
+        let round = Round {
+            gpu,
+            size: uniform.size,
+            groups: &self.groups,
+            queries: self.queries.as_ref().map(|(set, _)| set),
+        };
+        strategy.encode(&round, &mut encoder);
         if let Some((set, resolve)) = &self.queries {
             encoder.resolve_query_set(set, 0..2, resolve, 0);
             encoder.copy_buffer_to_buffer(resolve, 0, &self.staging, 0, TICKS);
@@ -221,13 +329,19 @@ impl Bound<'_> {
 impl FrameStats {
     /// Takes over the shader's counters, pairs of low and high words.
     fn count(&mut self, words: &[u32]) {
-        let count = |n: usize| u64::from(words[2 * n]) | u64::from(words[2 * n + 1]) << 32;
-        self.samples = count(0);
-        self.newton_iterations = count(1);
-        self.topological_steps = count(2);
-        self.grid_fallbacks = count(3);
-        self.finished_rays = count(4);
-        self.work = count(5);
+        let count = |n: u32| {
+            let at = 2 * n as usize;
+            u64::from(words[at]) | u64::from(words[at + 1]) << 32
+        };
+        self.samples = count(layout::COUNT_SAMPLES);
+        self.newton_iterations = count(layout::COUNT_ITERATIONS);
+        self.topological_steps = count(layout::COUNT_STEPS);
+        self.grid_fallbacks = count(layout::COUNT_FALLBACKS);
+        self.finished_rays = count(layout::COUNT_FINISHED);
+        self.work = count(layout::COUNT_WORK);
+        self.peels = count(layout::COUNT_PEELS);
+        self.recovered_rays = count(layout::COUNT_RECOVERED);
+        self.lost_rays = count(layout::COUNT_LOST);
     }
 }
 
@@ -247,85 +361,36 @@ fn queries(gpu: &Gpu) -> Option<(wgpu::QuerySet, wgpu::Buffer)> {
     Some((set, resolve))
 }
 
-/// A zeroed buffer that shaders write and the host can copy from.
-fn device_buffer(gpu: &Gpu, label: &str, size: u64) -> wgpu::Buffer {
-    gpu.device.create_buffer(&wgpu::BufferDescriptor {
-        label: Some(label),
-        size,
-        usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
-        mapped_at_creation: false,
-    })
-}
-
-fn create_target(gpu: &Gpu, [width, height]: [u32; 2]) -> wgpu::Texture {
-    gpu.device.create_texture(&wgpu::TextureDescriptor {
-        label: Some("target"),
-        size: wgpu::Extent3d {
-            width,
-            height,
-            depth_or_array_layers: 1,
-        },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: wgpu::TextureFormat::Rgba32Float,
-        usage: wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::COPY_SRC,
-        view_formats: &[],
-    })
-}
-
-/// Copies the picture back in bands, so that the staging buffer stays small.
-fn read_target(
-    gpu: &Gpu,
-    target: &wgpu::Texture,
-    [width, height]: [u32; 2],
-) -> Result<Vec<[f32; 4]>, GpuError> {
-    const BAND_BYTES: u32 = 32 << 20;
-    let row = (16 * width).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
-    let rows = (BAND_BYTES / row).clamp(1, height);
-    let staging = gpu.staging(u64::from(row) * u64::from(rows));
-    let mut pixels = Vec::with_capacity(width as usize * height as usize);
-    for y in (0..height).step_by(rows as usize) {
-        let count = rows.min(height - y);
-        let mut encoder = gpu
-            .device
-            .create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        encoder.copy_texture_to_buffer(
-            wgpu::TexelCopyTextureInfo {
-                origin: wgpu::Origin3d { x: 0, y, z: 0 },
-                ..target.as_image_copy()
-            },
-            wgpu::TexelCopyBufferInfo {
-                buffer: &staging,
-                layout: wgpu::TexelCopyBufferLayout {
-                    offset: 0,
-                    bytes_per_row: Some(row),
-                    rows_per_image: Some(count),
-                },
-            },
-            wgpu::Extent3d {
-                width,
-                height: count,
-                depth_or_array_layers: 1,
-            },
-        );
-        gpu.queue.submit([encoder.finish()]);
-        let content = gpu.map(&staging)?;
-        for line in content.chunks_exact(row as usize).take(count as usize) {
-            pixels.extend(bytemuck::pod_collect_to_vec::<u8, [f32; 4]>(
-                &line[..16 * width as usize],
-            ));
-        }
-    }
-    Ok(pixels)
-}
-
 fn transfer_table(transfer: &TransferFunction) -> Vec<[f32; 4]> {
     (0..LUT_SIZE)
         .map(|n| {
             let position = f64::from(n) / f64::from(LUT_SIZE - 1);
             let [r, g, b] = transfer.linear_rgb(position).map(|v| v as f32);
             [r, g, b, transfer.extinction(position) as f32]
+        })
+        .collect()
+}
+
+/// Integrals over the position, from 0 to each entry of the table, of extinction times color and of
+/// extinction: between two positions the mean of both is a difference away.
+fn transfer_integrals(transfer: &TransferFunction) -> Vec<[f32; 4]> {
+    let width = 1.0 / f64::from(LUT_SIZE - 1);
+    let mut sum = [0.0f64; 4];
+    let mut before = [0.0f64; 4];
+    transfer_table(transfer)
+        .iter()
+        .enumerate()
+        .map(|(n, entry)| {
+            let tau = f64::from(entry[3]);
+            let [r, g, b] = [0, 1, 2].map(|c| tau * f64::from(entry[c]));
+            let now = [r, g, b, tau];
+            if n > 0 {
+                for c in 0..4 {
+                    sum[c] += 0.5 * width * (before[c] + now[c]);
+                }
+            }
+            before = now;
+            sum.map(|v| v as f32)
         })
         .collect()
 }
@@ -360,8 +425,26 @@ fn frame_uniform(grid: &GpuGrid, view: &View) -> Frame {
             Interpolation::Vertex => INTERPOLATION_VERTEX,
         },
         box_low: f32s(grid.bounds[0]),
-        reserved0: 0,
+        clip_count: view.clip.len() as u32,
         box_high: f32s(grid.bounds[1]),
-        reserved1: 0,
+        opaque_cuts: (0..)
+            .zip(&view.clip)
+            .map(|(n, plane)| u32::from(plane.opaque) << n)
+            .sum(),
+        clip_planes: clip_planes(grid, view),
     }
+}
+
+/// Planes from world space to grid space relative to the grid's origin; f64 until nothing cancels.
+fn clip_planes(grid: &GpuGrid, view: &View) -> [[f32; 4]; MAX_CLIP_PLANES] {
+    let mut planes = [[0.0; 4]; MAX_CLIP_PLANES];
+    for (plane, clip) in planes.iter_mut().zip(&view.clip) {
+        let to_world = &view.spaces.world_from_grid;
+        let normal = to_world.matrix3.transpose() * clip.normal;
+        let height = clip
+            .normal
+            .dot(to_world.transform_point3(grid.origin) - clip.point);
+        *plane = normal.extend(height).as_vec4().to_array();
+    }
+    planes
 }

@@ -26,12 +26,40 @@ pub struct GpuBytes {
     pub targets: u64,
 }
 
+impl std::ops::Add for GpuBytes {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self {
+            geometry: self.geometry + other.geometry,
+            acceleration: self.acceleration + other.acceleration,
+            property: self.property + other.property,
+            resampled: self.resampled + other.resampled,
+            lighting: self.lighting + other.lighting,
+            targets: self.targets + other.targets,
+        }
+    }
+}
+
+/// Counts up with each change, so that what is made from the grid knows when it is stale.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Versions {
+    /// Of the drawn cells.
+    pub drawn: u64,
+    /// Of the values.
+    pub values: u64,
+}
+
 /// A grid on the device, with the field and selection that are shown now.
 pub struct GpuGrid {
     /// Origin of the device's coordinates in grid space.
     pub origin: DVec3,
     /// Box of the active cells relative to the origin.
     pub bounds: [DVec3; 2],
+    /// Time that building the acceleration grid took.
+    pub acceleration_time: std::time::Duration,
+    /// Which selection and which values are on the device.
+    pub versions: Versions,
     info: wgpu::Buffer,
     pillars: wgpu::Buffer,
     column_lists: wgpu::Buffer,
@@ -39,6 +67,8 @@ pub struct GpuGrid {
     bins: wgpu::Buffer,
     bin_columns: wgpu::Buffer,
     drawn_cells: wgpu::Buffer,
+    /// What `drawn_cells` holds.
+    drawn_words: Vec<[u32; 2]>,
     values: wgpu::Buffer,
 }
 
@@ -50,7 +80,9 @@ impl GpuGrid {
     pub fn new(gpu: &Gpu, grid: &Grid) -> Result<Self, GpuError> {
         let bounds = grid.bounds().unwrap_or([DVec3::ZERO, DVec3::ONE]);
         let origin = round_origin(bounds);
+        let start = std::time::Instant::now();
         let accel = AccelGrid::new(grid, origin);
+        let acceleration_time = start.elapsed();
         let dims = grid.dims();
         if grid.depths().len() > LIST_OFFSET as usize {
             return Err(GpuError::TooLarge {
@@ -88,6 +120,9 @@ impl GpuGrid {
         Ok(Self {
             origin,
             bounds: bounds.map(|b| b - origin),
+            acceleration_time,
+            versions: Versions::default(),
+            drawn_words: Vec::new(),
             info: gpu.uniform("grid info", &info),
             pillars: gpu.storage("pillars", &pillars)?,
             column_lists: gpu.storage("column lists", &column_lists(grid))?,
@@ -111,7 +146,13 @@ impl GpuGrid {
         drawn: &[bool],
         interpolation: Interpolation,
     ) -> Result<(), GpuError> {
-        self.drawn_cells = gpu.storage("drawn cells", &drawn_words(grid, drawn))?;
+        let words = drawn_words(grid, drawn);
+        if words != self.drawn_words {
+            self.drawn_cells = gpu.storage("drawn cells", &words)?;
+            self.drawn_words = words;
+            self.versions.drawn += 1;
+        }
+        self.versions.values += 1;
         self.values = match interpolation {
             Interpolation::Cell => gpu.storage("values", &column_major(grid, field, drawn))?,
             Interpolation::Vertex => {
@@ -128,8 +169,8 @@ impl GpuGrid {
         Ok(())
     }
 
-    /// The bind group of the grid for a pipeline.
-    pub fn bind(&self, gpu: &Gpu, pipeline: &wgpu::ComputePipeline) -> wgpu::BindGroup {
+    /// The bind group of the grid.
+    pub fn bind(&self, gpu: &Gpu) -> wgpu::BindGroup {
         let buffers = [
             &self.info,
             &self.pillars,
@@ -140,7 +181,8 @@ impl GpuGrid {
             &self.bins,
             &self.bin_columns,
         ];
-        gpu.bind(pipeline, 1, &buffers.map(wgpu::Buffer::as_entire_binding))
+        let resources = buffers.map(wgpu::Buffer::as_entire_binding);
+        gpu.bind(gpu.layouts.group(1), &resources)
     }
 
     /// Bytes by purpose.

@@ -22,9 +22,10 @@ pub struct Frame {
     pub grid_from_world_z: [f32; 3],
     pub interpolation: u32,
     pub box_low: [f32; 3],
-    pub reserved0: u32,
+    pub clip_count: u32,
     pub box_high: [f32; 3],
-    pub reserved1: u32,
+    pub opaque_cuts: u32,
+    pub clip_planes: [[f32; 4]; MAX_CLIP_PLANES],
 }
 
 /// The part of the picture that one dispatch makes.
@@ -84,3 +85,25 @@ pub const LIST_GAPPED: u32 = 0x8000_0000;
 pub const COLUMN_FLAG: u32 = 0x4000_0000;
 /// Mask of the offset in a list reference.
 pub const LIST_OFFSET: u32 = 0x3fff_ffff;
+/// Counters, each of a low and a high word.
+pub const COUNTERS: u32 = 12;
+/// Counter of the samples inside drawn cells.
+pub const COUNT_SAMPLES: u32 = 0;
+/// Counter of Newton iterations.
+pub const COUNT_ITERATIONS: u32 = 1;
+/// Counter of steps from cell to cell.
+pub const COUNT_STEPS: u32 = 2;
+/// Counter of point locations through the acceleration grid.
+pub const COUNT_FALLBACKS: u32 = 3;
+/// Counter of rays that have ended.
+pub const COUNT_FINISHED: u32 = 4;
+/// Counter of loop iterations.
+pub const COUNT_WORK: u32 = 5;
+/// Largest number of peels of a ray.
+pub const COUNT_PEELS: u32 = 6;
+/// Counter of rays set right by point location.
+pub const COUNT_RECOVERED: u32 = 7;
+/// Counter of rays that could not be set right.
+pub const COUNT_LOST: u32 = 8;
+/// Clip planes at most.
+pub const MAX_CLIP_PLANES: usize = crate::scene::resolve::MAX_CLIP_PLANES;

@@ -5,10 +5,13 @@ pub mod device;
 pub mod frame;
 pub mod grid_upload;
 pub mod layout;
+pub mod pipeline;
 pub mod probe;
 pub mod shader;
+mod target;
 pub mod tiles;
 
 pub use device::{Gpu, GpuError};
-pub use frame::{FrameRenderer, FrameStats};
-pub use grid_upload::{GpuBytes, GpuGrid};
+pub use frame::{FrameRenderer, FrameStats, Place, Round};
+pub use grid_upload::{GpuBytes, GpuGrid, Versions};
+pub use pipeline::{Pipeline, RasterPipeline};

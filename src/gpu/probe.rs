@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::device::{Gpu, GpuError};
 use super::grid_upload::GpuGrid;
 use super::layout::{Found, INTERPOLATION_CELL, INTERPOLATION_VERTEX, NOT_FOUND};
-use super::shader::Pipeline;
+use super::pipeline::Pipeline;
 use crate::model::{Grid, Ijk};
 use crate::scene::Interpolation;
 
@@ -35,7 +35,7 @@ pub fn locate(
     interpolation: Interpolation,
 ) -> Result<Vec<Option<Located>>, GpuError> {
     let pipeline = Pipeline::new(gpu, "probe")?;
-    let grid_group = gpu_grid.bind(gpu, &pipeline.pipeline);
+    let grid_group = gpu_grid.bind(gpu);
     let mut located = Vec::with_capacity(points_in_grid.len());
     for batch in points_in_grid.chunks(BATCH) {
         let points: Vec<[[f32; 4]; 2]> =
@@ -47,15 +47,9 @@ pub fn locate(
         let info = gpu.uniform("points", &[interpolation, batch.len() as u32, 0, 0]);
         let points = gpu.storage("points", &points)?;
         let bytes = (batch.len() * size_of::<Found>()) as u64;
-        let found = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("found"),
-            size: bytes,
-            usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
-            mapped_at_creation: false,
-        });
+        let found = gpu.scratch("found", bytes);
         let own_group = gpu.bind(
-            &pipeline.pipeline,
-            3,
+            &pipeline.own,
             &[
                 info.as_entire_binding(),
                 points.as_entire_binding(),

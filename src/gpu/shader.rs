@@ -1,6 +1,6 @@
 //! Shader sources: `#import name` by stem from `shaders/shared/`, each once.
 
-use super::device::{Gpu, GpuError};
+use super::device::GpuError;
 
 macro_rules! sources {
     ($($name:literal => $path:literal),* $(,)?) => {
@@ -16,6 +16,8 @@ sources! {
     "locate" => "shared/locate.wgsl",
     "frame" => "shared/frame.wgsl",
     "transfer" => "shared/transfer.wgsl",
+    "section" => "shared/section.wgsl",
+    "groups" => "shared/groups.wgsl",
     "plts" => "plts.wgsl",
     "probe" => "probe.wgsl",
 }
@@ -51,57 +53,4 @@ fn append(name: &str, done: &mut Vec<String>, text: &mut String) -> Result<(), G
         text.push('\n');
     }
     Ok(())
-}
-
-/// A compute pipeline from the `main` of a shader, with its workgroup size as the shader states it.
-pub struct Pipeline {
-    /// The pipeline.
-    pub pipeline: wgpu::ComputePipeline,
-    /// Invocations of a workgroup along x, y and z.
-    pub workgroup: [u32; 3],
-}
-
-impl Pipeline {
-    /// Compiles shader `name`.
-    ///
-    /// # Errors
-    /// When it is not valid, with the compiler's words.
-    pub fn new(gpu: &Gpu, name: &str) -> Result<Self, GpuError> {
-        let text = compose(name)?;
-        let wrong = |message: String| GpuError::Shader {
-            name: name.to_owned(),
-            message,
-        };
-        let module = wgpu::naga::front::wgsl::parse_str(&text)
-            .map_err(|e| wrong(e.emit_to_string(&text)))?;
-        let workgroup = module
-            .entry_points
-            .first()
-            .map(|e| e.workgroup_size)
-            .ok_or_else(|| wrong("has no entry point".into()))?;
-        let scope = gpu.device.push_error_scope(wgpu::ErrorFilter::Validation);
-        let module = gpu
-            .device
-            .create_shader_module(wgpu::ShaderModuleDescriptor {
-                label: Some(name),
-                source: wgpu::ShaderSource::Wgsl(text.into()),
-            });
-        let pipeline = gpu
-            .device
-            .create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-                label: Some(name),
-                layout: None,
-                module: &module,
-                entry_point: Some("main"),
-                compilation_options: wgpu::PipelineCompilationOptions::default(),
-                cache: None,
-            });
-        match pollster::block_on(scope.pop()) {
-            Some(error) => Err(wrong(error.to_string())),
-            None => Ok(Self {
-                pipeline,
-                workgroup,
-            }),
-        }
-    }
 }

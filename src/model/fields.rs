@@ -12,8 +12,16 @@ const UNDEFINED: f32 = 1e19;
 /// One value for each active cell.
 ///
 /// **Invariants**: as long as the grid's active cells; undefined values are NaN.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct CellField(Vec<f32>);
+
+impl PartialEq for CellField {
+    /// Undefined values are equal to each other.
+    fn eq(&self, other: &Self) -> bool {
+        let bits = |v: &f32| v.to_bits();
+        self.0.iter().map(bits).eq(other.0.iter().map(bits))
+    }
+}
 
 /// Minimum, maximum and mean of the defined values of a field.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]

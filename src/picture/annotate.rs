@@ -2,6 +2,7 @@
 
 use super::canvas::Canvas;
 use super::{Image, axes, legend};
+use crate::case::Case;
 use crate::scene::View;
 use crate::transfer::function::linear_from_srgb;
 
@@ -18,6 +19,34 @@ pub struct Annotations {
     pub show_legend: bool,
     /// Draw the box, the axes and the vertical exaggeration.
     pub show_box: bool,
+}
+
+impl Annotations {
+    /// What belongs to a view of a case: its name, the property and, where that changes, the step.
+    pub fn of(case: &Case, view: &View) -> Self {
+        let mut title = format!("{}   {}", case.about.name, view.property);
+        if case.is_dynamic(&view.property)
+            && let Some(step) = case.steps.get(view.step)
+        {
+            title += &format!("   step {}   {}", view.step, step.date);
+        }
+        Self {
+            title,
+            property: view.property.clone(),
+            unit: case.unit(&view.property).to_owned(),
+            show_legend: view.show_legend,
+            show_box: view.show_box,
+        }
+    }
+}
+
+/// The picture as users see it: over the background, with what [`Annotations::of`] says unless `plain`.
+pub fn finished(image: &Image, case: &Case, view: &View, plain: bool) -> Vec<[u8; 3]> {
+    let mut rgb = image.over_background_8bit(view.background);
+    if !plain {
+        annotate(&mut rgb, image, view, &Annotations::of(case, view));
+    }
+    rgb
 }
 
 /// Pictures lower or narrower than this get no annotations: nothing would be readable.
@@ -130,7 +159,7 @@ mod tests {
             strategy: StrategyKind::ALL[0],
             property: "SWAT".into(),
             step: 0,
-            field: CellField::new(Vec::new()),
+            field: CellField::new(Vec::new()).into(),
             interpolation: Interpolation::Cell,
             transfer: TransferFunction {
                 color: presets::color_map("turbo").unwrap(),
@@ -140,7 +169,9 @@ mod tests {
             },
             sampling_step: 1.0,
             early_termination: 0.0,
-            drawn: Vec::new(),
+            drawn: Vec::new().into(),
+            clip: Vec::new(),
+            libc: crate::scene::LibcSettings::default(),
             show_box: true,
             show_legend: true,
         }

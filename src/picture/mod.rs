@@ -7,7 +7,7 @@ mod files;
 mod legend;
 mod ticks;
 
-pub use annotate::{Annotations, annotate};
+pub use annotate::{Annotations, annotate, finished};
 pub use files::{Format, PictureError, write_exr, write_png};
 
 use crate::transfer::function::{linear_from_srgb, srgb_from_linear};

@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::locate::{Located, Locator};
 use crate::model::corner_point::weights;
 use crate::model::{CellField, Grid, VertexField};
-use crate::scene::{Interpolation, View};
+use crate::scene::{ClipPlane, Interpolation, View};
 
 /// A ray in world space.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -73,12 +73,17 @@ impl<'a> Integrator<'a> {
             return [0.0; 4];
         };
         let step = self.view.sampling_step;
+        if let Some(rgb) = self.section(ray, [enter, leave]) {
+            return [rgb[0], rgb[1], rgb[2], 1.0];
+        }
         let mut color = [0.0; 3];
         let mut transmittance = 1.0;
         let mut number = (enter / step - 0.5).ceil().max(0.0);
         while (number + 0.5) * step <= leave && transmittance >= self.view.early_termination {
             let position = ray.origin + (number + 0.5) * step * ray.direction;
-            if let Some(value) = self.value(position) {
+            if self.is_kept(position)
+                && let Some(value) = self.value(position)
+            {
                 let position = self.view.transfer.position(value);
                 let alpha = 1.0 - (-self.view.transfer.extinction(position) * step).exp();
                 let rgb = self.view.transfer.linear_rgb(position);
@@ -91,6 +96,36 @@ impl<'a> Integrator<'a> {
         }
         let [red, green, blue] = color;
         [red, green, blue, 1.0 - transmittance]
+    }
+
+    /// True on the kept side of every clip plane.
+    fn is_kept(&self, position: DVec3) -> bool {
+        let mut planes = self.view.clip.iter();
+        planes.all(|plane| (position - plane.point).dot(plane.normal) >= 0.0)
+    }
+
+    /// Color of the opaque section at which a ray enters the kept part, where there is one.
+    fn section(&self, ray: Ray, [enter, leave]: [f64; 2]) -> Option<[f64; 3]> {
+        let crossings = self.view.clip.iter().map(|plane| {
+            let rate = ray.direction.dot(plane.normal);
+            let t = (plane.point - ray.origin).dot(plane.normal) / rate;
+            (if rate > 0.0 { t } else { f64::MIN }, plane)
+        });
+        let last = crossings.max_by(|a, b| a.0.total_cmp(&b.0));
+        let (t, plane) = last.filter(|(t, _)| *t > enter.max(0.0))?;
+        let position = ray.origin + t * ray.direction;
+        let others = |other: &&ClipPlane| *other != plane;
+        let kept = self
+            .view
+            .clip
+            .iter()
+            .filter(others)
+            .all(|other| (position - other.point).dot(other.normal) >= 0.0);
+        if !plane.opaque || t > leave || !kept {
+            return None;
+        }
+        let position = self.view.transfer.position(self.value(position)?);
+        Some(self.view.transfer.linear_rgb(position))
     }
 
     /// The value at a point of world space; `None` where nothing is drawn.

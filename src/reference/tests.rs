@@ -114,8 +114,10 @@ fn view(grid: &Grid, field: CellField, extinction: f64, sampling_step: f64) -> V
         },
         sampling_step,
         early_termination: 0.0,
-        drawn: vec![true; grid.active_cells().len()],
-        field,
+        drawn: vec![true; grid.active_cells().len()].into(),
+        clip: Vec::new(),
+        libc: crate::scene::LibcSettings::default(),
+        field: field.into(),
         show_box: false,
         show_legend: false,
     }
@@ -305,7 +307,7 @@ fn hidden_and_undefined_cells_are_empty() {
     let grid = Shape::default().grid();
     // The central ray runs along the edge of four pairs of cells, which the first pair has.
     let mut hidden = view(&grid, constant(&grid), 0.07, 0.3);
-    hidden.drawn[0] = false;
+    std::sync::Arc::make_mut(&mut hidden.drawn)[0] = false;
     let expected = |samples: f64| 1.0 - (-0.07 * 0.3 * samples).exp();
     // 90..100 has samples n = 300..=332 (33 of them), 100..110 the other 34.
     assert!((central_ray(&grid, &hidden)[3] - expected(34.0)).abs() < 1e-12);

@@ -2,11 +2,13 @@
 
 pub mod camera;
 pub mod resolve;
+mod settings;
 
 use serde::{Deserialize, Serialize};
 
 pub use camera::Camera;
-pub use resolve::{SceneError, View, resolve};
+pub use resolve::{ClipPlane, SceneError, View, resolve};
+pub use settings::{ClipSpec, CutFace, Integration, LibcSettings};
 
 /// A scene as users write it. Unknown fields are errors; absent ones have defaults.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -40,12 +42,14 @@ pub struct Scene {
     pub early_termination: f64,
     /// Settings of the resampled-grid strategy.
     pub srg: Option<serde_json::Value>,
+    /// Settings of the cell-to-cell strategy.
+    pub libc: LibcSettings,
     /// Occlusion and lights.
     pub lighting: Option<serde_json::Value>,
     /// Which cells are drawn.
     pub filter: Filter,
-    /// Clip planes.
-    pub clip: Vec<serde_json::Value>,
+    /// Clip planes; kept is what all of them keep.
+    pub clip: Vec<ClipSpec>,
     /// What is drawn beside the volume.
     pub show: Show,
 }
@@ -67,6 +71,7 @@ impl Default for Scene {
             sampling_step: None,
             early_termination: 0.01,
             srg: None,
+            libc: LibcSettings::default(),
             lighting: None,
             filter: Filter::default(),
             clip: Vec::new(),

@@ -1,8 +1,13 @@
 //! A scene against a case: every default filled in, every value checked.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 
-use super::{Camera, CameraSpec, ColorSpec, Filter, Interpolation, Scene, StepSpec};
+use super::{
+    Camera, CameraSpec, ClipSpec, ColorSpec, CutFace, Filter, Interpolation, LibcSettings, Scene,
+    StepSpec,
+};
 use crate::case::{Case, CaseError};
 use crate::model::{CellField, Ijk, Spaces};
 use crate::strategies::StrategyKind;
@@ -60,7 +65,7 @@ pub struct View {
     /// Step shown.
     pub step: usize,
     /// Its values.
-    pub field: CellField,
+    pub field: Arc<CellField>,
     /// How values vary inside a cell.
     pub interpolation: Interpolation,
     /// Value to color and extinction.
@@ -70,12 +75,30 @@ pub struct View {
     /// Transmittance at which a ray ends.
     pub early_termination: f64,
     /// By active index: true where the cell is drawn (has thickness and a value, passes the filter).
-    pub drawn: Vec<bool>,
+    pub drawn: Arc<Vec<bool>>,
+    /// Planes that cut parts away.
+    pub clip: Vec<ClipPlane>,
+    /// Settings of the cell-to-cell strategy.
+    pub libc: LibcSettings,
     /// Draw the box and axes.
     pub show_box: bool,
     /// Draw legend and title.
     pub show_legend: bool,
 }
+
+/// A plane in world space.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ClipPlane {
+    /// A point of it.
+    pub point: DVec3,
+    /// Unit length, points to the part that is kept.
+    pub normal: DVec3,
+    /// Its section through the cells is opaque.
+    pub opaque: bool,
+}
+
+/// Clip planes at most; what a frame's uniform has room for.
+pub const MAX_CLIP_PLANES: usize = 8;
 
 /// Fills in every default of `scene` for `case` and checks every value.
 ///
@@ -127,8 +150,10 @@ pub fn resolve(scene: &Scene, case: &Case) -> Result<View, SceneError> {
         early_termination: scene.early_termination,
         interpolation: scene.interpolation,
         property,
-        field,
-        drawn,
+        field: Arc::new(field),
+        drawn: Arc::new(drawn),
+        clip: clip(&scene.clip)?,
+        libc: scene.libc,
         show_box: scene.show.r#box,
         show_legend: scene.show.legend,
     })
@@ -161,11 +186,6 @@ fn refuse_later_work(scene: &Scene) -> Result<(), SceneError> {
             "lighting is not supported yet; leave it out",
         ),
         (
-            "clip",
-            !scene.clip.is_empty(),
-            "clip planes are not supported yet; leave them out",
-        ),
-        (
             "srg",
             scene.srg.is_some(),
             "the resampled-grid strategy is not supported yet; leave its settings out",
@@ -190,6 +210,32 @@ fn refuse_later_work(scene: &Scene) -> Result<(), SceneError> {
         Some((field, _, problem)) => Err(wrong(field, problem)),
         None => Ok(()),
     }
+}
+
+fn clip(planes: &[ClipSpec]) -> Result<Vec<ClipPlane>, SceneError> {
+    if planes.len() > MAX_CLIP_PLANES {
+        let problem = format!(
+            "has {} planes; at most {MAX_CLIP_PLANES} are possible",
+            planes.len()
+        );
+        return Err(wrong("clip", problem));
+    }
+    let resolve = |plane: &ClipSpec| {
+        let point = DVec3::from_array(plane.point);
+        if !point.is_finite() {
+            return Err(wrong("clip.point", "must be three finite numbers"));
+        }
+        let normal = DVec3::from_array(plane.normal)
+            .try_normalize()
+            .ok_or_else(|| wrong("clip.normal", "must have a length above 0"))?;
+        let opaque = plane.face == CutFace::Opaque;
+        Ok(ClipPlane {
+            point,
+            normal,
+            opaque,
+        })
+    };
+    planes.iter().map(resolve).collect()
 }
 
 fn positive(field: &'static str, value: f64) -> Result<f64, SceneError> {

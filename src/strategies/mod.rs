@@ -2,20 +2,48 @@
 
 pub mod plts;
 
-use crate::gpu::shader::Pipeline;
-use crate::gpu::{Gpu, GpuError};
+use crate::gpu::{Gpu, GpuBytes, GpuError, GpuGrid, Round};
+use crate::model::Grid;
+use crate::scene::View;
 
-/// What a strategy gives to a frame: a pipeline over the common bind groups (0 frame, 1 grid,
-/// 2 transfer function) and its dispatches for one tile.
+/// What a strategy prepares from.
+pub struct Preparation<'a> {
+    /// The device.
+    pub gpu: &'a Gpu,
+    /// The grid in f64.
+    pub model: &'a Grid,
+    /// The grid on the device, with field and selection of the view.
+    pub grid: &'a GpuGrid,
+    /// What is looked at.
+    pub view: &'a View,
+    /// Told the fraction done; returns false to cancel.
+    pub progress: &'a dyn Fn(f64) -> bool,
+}
+
+/// What a strategy gives to a frame.
 ///
-/// Implementations are immutable and live as long as the device; all that changes from frame to
-/// frame comes through the bind groups.
+/// The bind groups 0 frame, 1 grid and 2 transfer function are the same for all; group 3 is the
+/// strategy's own. A tile is made in rounds: each is one submission that takes every ray further, until
+/// the shader has counted all as finished.
 pub trait RenderStrategy {
-    /// The pipeline that the frame's bind groups are made for.
-    fn pipeline(&self) -> &Pipeline;
+    /// Bytes of the state of a ray between rounds.
+    fn ray_state_bytes(&self) -> u64;
 
-    /// Records the dispatches for a tile of `size` pixels; groups 0 to 2 are set.
-    fn encode(&self, pass: &mut wgpu::ComputePass<'_>, size: [u32; 2]);
+    /// Brings up to date what the strategy keeps beside the grid; false where it was cancelled.
+    ///
+    /// # Errors
+    /// When the device refuses.
+    fn prepare(&mut self, _what: &Preparation<'_>) -> Result<bool, GpuError> {
+        Ok(true)
+    }
+
+    /// Bytes of what the strategy keeps beside the grid.
+    fn bytes(&self) -> GpuBytes {
+        GpuBytes::default()
+    }
+
+    /// Records one round of a tile.
+    fn encode(&mut self, round: &Round<'_>, encoder: &mut wgpu::CommandEncoder);
 }
 
 /// Every strategy; the one list that command line, viewer and tests read.

@@ -6,8 +6,7 @@
 //! at each entry into the model.
 
 use super::RenderStrategy;
-use crate::gpu::shader::Pipeline;
-use crate::gpu::{Gpu, GpuError};
+use crate::gpu::{Gpu, GpuError, Pipeline, Place, Round};
 
 /// The strategy with its compiled shader.
 pub struct Plts {
@@ -27,13 +26,11 @@ impl Plts {
 }
 
 impl RenderStrategy for Plts {
-    fn pipeline(&self) -> &Pipeline {
-        &self.pipeline
+    fn ray_state_bytes(&self) -> u64 {
+        32
     }
 
-    fn encode(&self, pass: &mut wgpu::ComputePass<'_>, size: [u32; 2]) {
-        let [x, y, _] = self.pipeline.workgroup;
-        pass.set_pipeline(&self.pipeline.pipeline);
-        pass.dispatch_workgroups(size[0].div_ceil(x), size[1].div_ceil(y), 1);
+    fn encode(&mut self, round: &Round<'_>, encoder: &mut wgpu::CommandEncoder) {
+        round.compute(encoder, &self.pipeline, None, Place::Only);
     }
 }

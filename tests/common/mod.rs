@@ -9,6 +9,7 @@
 )]
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use strataray::gpu::Gpu;
 
@@ -41,9 +42,9 @@ pub fn models() -> Vec<PathBuf> {
 }
 
 /// An adapter; without one the test is skipped, or fails where REQUIRE_GPU is 1.
-pub fn gpu() -> Option<Gpu> {
+pub fn gpu() -> Option<Arc<Gpu>> {
     match Gpu::new(None) {
-        Ok(gpu) => Some(gpu),
+        Ok(gpu) => Some(Arc::new(gpu)),
         Err(error) if std::env::var("REQUIRE_GPU").is_ok_and(|v| v == "1") => panic!("{error}"),
         Err(error) => {
             eprintln!("SKIPPED: {error}");

@@ -1,0 +1,4 @@
+// The bind groups that all strategies share, in one module: frame (0), grid (1), transfer function (2).
+#import frame
+#import grid
+#import transfer

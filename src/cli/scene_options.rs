@@ -1,0 +1,143 @@
+//! The scene file and the options that override it, the same for every command that makes pictures.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use anyhow::Context;
+use strataray::case::Case;
+use strataray::gpu::Gpu;
+use strataray::load;
+use strataray::scene::{CameraSpec, FramingCamera, Interpolation, Scene, StepSpec};
+
+use super::progress::Reporter;
+
+#[derive(clap::Args)]
+pub struct SceneOptions {
+    /// Scene file (JSON); the options below override it.
+    #[arg(long)]
+    scene: Option<PathBuf>,
+    /// Property, or a difference such as PRESSURE-PRESSURE@0.
+    #[arg(long)]
+    property: Option<String>,
+    /// Time step: number from 0, date, first or last.
+    #[arg(long)]
+    step: Option<String>,
+    /// Ray-casting strategy: plts or libc.
+    #[arg(long)]
+    strategy: Option<String>,
+    /// Values within a cell.
+    #[arg(long)]
+    interpolation: Option<Interpolation>,
+    /// Picture size, such as 1000x1000.
+    #[arg(long, value_name = "WxH")]
+    size: Option<String>,
+    /// Occlusion: only off in this version.
+    #[arg(long)]
+    occlusion: Option<String>,
+    /// Direction to look from, and zoom.
+    #[arg(
+        long,
+        value_name = "AZIMUTH,ELEVATION[,ZOOM]",
+        allow_hyphen_values = true
+    )]
+    camera: Option<String>,
+    /// Vertical exaggeration.
+    #[arg(long)]
+    exaggeration: Option<f64>,
+    /// Threads of the CPU work.
+    #[arg(long)]
+    threads: Option<usize>,
+    /// Part of the name of the GPU adapter to use.
+    #[arg(long)]
+    adapter: Option<String>,
+}
+
+impl SceneOptions {
+    /// The scene of the file, or the default one, with the options over it.
+    pub fn scene(&self) -> anyhow::Result<Scene> {
+        let mut scene = match &self.scene {
+            None => Scene::default(),
+            Some(path) => {
+                let text = std::fs::read_to_string(path)
+                    .with_context(|| format!("cannot read {}", path.display()))?;
+                serde_json::from_str(&text).with_context(|| format!("{}", path.display()))?
+            }
+        };
+        if let Some(property) = &self.property {
+            scene.property = Some(property.clone());
+        }
+        if let Some(step) = &self.step {
+            scene.step = StepSpec::Name(step.clone());
+        }
+        if let Some(strategy) = &self.strategy {
+            scene.strategy.clone_from(strategy);
+        }
+        if let Some(interpolation) = self.interpolation {
+            scene.interpolation = interpolation;
+        }
+        if let Some(occlusion) = self.occlusion.as_deref()
+            && occlusion != "off"
+        {
+            anyhow::bail!("--occlusion {occlusion} is not supported yet; use off");
+        }
+        if let Some(size) = &self.size {
+            let parsed = size
+                .split_once(['x', 'X'])
+                .and_then(|(w, h)| Some([w.parse().ok()?, h.parse().ok()?]));
+            scene.size = parsed
+                .with_context(|| format!("--size {size}: give width and height like 1000x800"))?;
+        }
+        if let Some(camera) = &self.camera {
+            scene.camera = CameraSpec::Framing(framing(camera)?);
+        }
+        if self.exaggeration.is_some() {
+            scene.vertical_exaggeration = self.exaggeration;
+        }
+        Ok(scene)
+    }
+
+    /// Limits the threads of the CPU work where asked to.
+    pub fn set_threads(&self) -> anyhow::Result<()> {
+        if let Some(threads) = self.threads {
+            rayon::ThreadPoolBuilder::new()
+                .num_threads(threads)
+                .build_global()?;
+        }
+        Ok(())
+    }
+
+    /// Opens the adapter and says where it is none.
+    pub fn open_gpu(&self, reporter: &Reporter) -> anyhow::Result<Arc<Gpu>> {
+        let gpu = Gpu::new(self.adapter.as_deref())?;
+        if gpu.is_software() {
+            reporter.note(&format!(
+                "no GPU is used: {} computes on the CPU",
+                gpu.describe()
+            ));
+        }
+        Ok(Arc::new(gpu))
+    }
+}
+
+/// Opens a case and says what was not loaded.
+pub fn open_case(path: &Path, reporter: &Reporter) -> anyhow::Result<Case> {
+    let case = load::open(path)?;
+    for note in &case.about.notes {
+        reporter.note(note);
+    }
+    Ok(case)
+}
+
+fn framing(text: &str) -> anyhow::Result<FramingCamera> {
+    let numbers: Option<Vec<f64>> = text.split(',').map(|n| n.trim().parse().ok()).collect();
+    match numbers.as_deref() {
+        Some([azimuth, elevation, rest @ ..]) if rest.len() < 2 => Ok(FramingCamera {
+            azimuth_degrees: *azimuth,
+            elevation_degrees: *elevation,
+            zoom: rest.first().copied().unwrap_or(1.0),
+        }),
+        _ => anyhow::bail!(
+            "--camera {text}: give azimuth and elevation in degrees and perhaps a zoom, like 220,35,1.2"
+        ),
+    }
+}

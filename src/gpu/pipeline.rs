@@ -1,0 +1,311 @@
+//! Pipelines, with bind group layouts read from the shaders themselves.
+
+use super::device::{Gpu, GpuError};
+use super::shader::compose;
+
+/// Bind groups that all strategies share: 0 frame, 1 grid, 2 transfer function.
+const SHARED_GROUPS: usize = 3;
+
+/// Layouts of the shared bind groups, read from the shaders that declare them.
+///
+/// So a bind group of the grid or the frame is made once and fits every pipeline.
+pub struct SharedLayouts(Vec<wgpu::BindGroupLayout>);
+
+impl SharedLayouts {
+    /// Reads the layouts of the modules that declare the shared groups.
+    ///
+    /// # Errors
+    /// When one of them is not valid, with the compiler's words.
+    pub fn new(device: &wgpu::Device) -> Result<Self, GpuError> {
+        let module = parse("groups", &compose("groups")?)?;
+        let groups = 0..SHARED_GROUPS as u32;
+        Ok(Self(groups.map(|g| layout(device, &module, g)).collect()))
+    }
+
+    /// The layout of a shared group.
+    pub fn group(&self, group: usize) -> &wgpu::BindGroupLayout {
+        &self.0[group]
+    }
+}
+
+fn parse(name: &str, text: &str) -> Result<wgpu::naga::Module, GpuError> {
+    wgpu::naga::front::wgsl::parse_str(text).map_err(|e| GpuError::Shader {
+        name: name.to_owned(),
+        message: e.emit_to_string(text),
+    })
+}
+
+/// Group and binding of the global variables that have one.
+fn bindings(
+    module: &wgpu::naga::Module,
+) -> impl Iterator<Item = (u32, wgpu::BindGroupLayoutEntry)> {
+    module.global_variables.iter().filter_map(|(_, variable)| {
+        let binding = variable.binding.as_ref()?;
+        let (ty, writes) = binding_type(variable, &module.types[variable.ty].inner)?;
+        let entry = wgpu::BindGroupLayoutEntry {
+            binding: binding.binding,
+            // Vertex shaders that write need a feature of their own.
+            visibility: match writes {
+                true => wgpu::ShaderStages::FRAGMENT | wgpu::ShaderStages::COMPUTE,
+                false => wgpu::ShaderStages::VERTEX_FRAGMENT | wgpu::ShaderStages::COMPUTE,
+            },
+            ty,
+            count: None,
+        };
+        Some((binding.group, entry))
+    })
+}
+
+/// What kind of resource a variable is, and whether shaders write it.
+fn binding_type(
+    variable: &wgpu::naga::GlobalVariable,
+    inner: &wgpu::naga::TypeInner,
+) -> Option<(wgpu::BindingType, bool)> {
+    use wgpu::naga::{AddressSpace, ImageClass, ImageDimension, StorageAccess, TypeInner};
+    let buffer = |ty| wgpu::BindingType::Buffer {
+        ty,
+        has_dynamic_offset: false,
+        min_binding_size: None,
+    };
+    let dimension = |dim: ImageDimension| match dim {
+        ImageDimension::D1 => wgpu::TextureViewDimension::D1,
+        ImageDimension::D2 => wgpu::TextureViewDimension::D2,
+        ImageDimension::D3 => wgpu::TextureViewDimension::D3,
+        ImageDimension::Cube => wgpu::TextureViewDimension::Cube,
+    };
+    Some(match (variable.space, inner) {
+        (AddressSpace::Uniform, _) => (buffer(wgpu::BufferBindingType::Uniform), false),
+        (AddressSpace::Storage { access }, _) => {
+            let writes = access.contains(StorageAccess::STORE);
+            (
+                buffer(wgpu::BufferBindingType::Storage { read_only: !writes }),
+                writes,
+            )
+        }
+        (_, TypeInner::Sampler { .. }) => (
+            wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
+            false,
+        ),
+        (_, TypeInner::Image { dim, class, .. }) => match class {
+            ImageClass::Storage { format, access } => (
+                wgpu::BindingType::StorageTexture {
+                    access: match (
+                        access.contains(StorageAccess::LOAD),
+                        access.contains(StorageAccess::STORE),
+                    ) {
+                        (true, true) => wgpu::StorageTextureAccess::ReadWrite,
+                        (true, false) => wgpu::StorageTextureAccess::ReadOnly,
+                        _ => wgpu::StorageTextureAccess::WriteOnly,
+                    },
+                    format: texture_format(*format)?,
+                    view_dimension: dimension(*dim),
+                },
+                true,
+            ),
+            ImageClass::Sampled { kind, multi } => (
+                wgpu::BindingType::Texture {
+                    sample_type: match kind {
+                        wgpu::naga::ScalarKind::Uint => wgpu::TextureSampleType::Uint,
+                        wgpu::naga::ScalarKind::Sint => wgpu::TextureSampleType::Sint,
+                        _ => wgpu::TextureSampleType::Float { filterable: true },
+                    },
+                    view_dimension: dimension(*dim),
+                    multisampled: *multi,
+                },
+                false,
+            ),
+            _ => return None,
+        },
+        _ => return None,
+    })
+}
+
+/// The formats that this program writes from shaders.
+fn texture_format(format: wgpu::naga::StorageFormat) -> Option<wgpu::TextureFormat> {
+    use wgpu::naga::StorageFormat;
+    Some(match format {
+        StorageFormat::Rgba32Float => wgpu::TextureFormat::Rgba32Float,
+        StorageFormat::Rgba16Float => wgpu::TextureFormat::Rgba16Float,
+        StorageFormat::R32Float => wgpu::TextureFormat::R32Float,
+        StorageFormat::R32Uint => wgpu::TextureFormat::R32Uint,
+        _ => return None,
+    })
+}
+
+fn layout(device: &wgpu::Device, module: &wgpu::naga::Module, group: u32) -> wgpu::BindGroupLayout {
+    let mut entries: Vec<_> = bindings(module)
+        .filter_map(|(g, entry)| (g == group).then_some(entry))
+        .collect();
+    entries.sort_by_key(|e| e.binding);
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: None,
+        entries: &entries,
+    })
+}
+
+/// A shader's module with the layout of its pipeline.
+struct Compiled {
+    module: wgpu::ShaderModule,
+    layout: wgpu::PipelineLayout,
+    own: wgpu::BindGroupLayout,
+    workgroup: [u32; 3],
+}
+
+fn compile(gpu: &Gpu, name: &str) -> Result<Compiled, GpuError> {
+    let text = compose(name)?;
+    let module = parse(name, &text)?;
+    let workgroup = module
+        .entry_points
+        .first()
+        .map_or([1; 3], |e| e.workgroup_size);
+    let used = |group: usize| bindings(&module).any(|(g, _)| g as usize == group);
+    let own = layout(&gpu.device, &module, SHARED_GROUPS as u32);
+    let mut groups: Vec<Option<&wgpu::BindGroupLayout>> = (0..SHARED_GROUPS)
+        .map(|g| used(g).then(|| gpu.layouts.group(g)))
+        .collect();
+    groups.push(used(SHARED_GROUPS).then_some(&own));
+    while matches!(groups.last(), Some(None)) {
+        groups.pop();
+    }
+    let layout = gpu
+        .device
+        .create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some(name),
+            bind_group_layouts: &groups,
+            ..Default::default()
+        });
+    let module = gpu
+        .device
+        .create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some(name),
+            source: wgpu::ShaderSource::Wgsl(text.into()),
+        });
+    Ok(Compiled {
+        module,
+        layout,
+        own,
+        workgroup,
+    })
+}
+
+/// Runs `make` and turns what the driver refuses into an error that names the shader.
+fn checked<T>(
+    gpu: &Gpu,
+    name: &str,
+    make: impl FnOnce() -> Result<T, GpuError>,
+) -> Result<T, GpuError> {
+    let scope = gpu.device.push_error_scope(wgpu::ErrorFilter::Validation);
+    let made = make()?;
+    match pollster::block_on(scope.pop()) {
+        Some(error) => Err(GpuError::Shader {
+            name: name.to_owned(),
+            message: error.to_string(),
+        }),
+        None => Ok(made),
+    }
+}
+
+/// A compute pipeline from the `main` of a shader, with its workgroup size as the shader states it.
+pub struct Pipeline {
+    /// The pipeline.
+    pub pipeline: wgpu::ComputePipeline,
+    /// Layout of bind group 3, the shader's own.
+    pub own: wgpu::BindGroupLayout,
+    /// Invocations of a workgroup along x, y and z.
+    pub workgroup: [u32; 3],
+}
+
+impl Pipeline {
+    /// Compiles shader `name`.
+    ///
+    /// # Errors
+    /// When it is not valid, with the compiler's words.
+    pub fn new(gpu: &Gpu, name: &str) -> Result<Self, GpuError> {
+        checked(gpu, name, || {
+            let compiled = compile(gpu, name)?;
+            Ok(Self {
+                pipeline: gpu
+                    .device
+                    .create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+                        label: Some(name),
+                        layout: Some(&compiled.layout),
+                        module: &compiled.module,
+                        entry_point: Some("main"),
+                        compilation_options: wgpu::PipelineCompilationOptions::default(),
+                        cache: None,
+                    }),
+                own: compiled.own,
+                workgroup: compiled.workgroup,
+            })
+        })
+    }
+
+    /// Workgroups that cover `size` invocations.
+    pub fn groups_for(&self, size: [u32; 3]) -> [u32; 3] {
+        std::array::from_fn(|axis| size[axis].div_ceil(self.workgroup[axis]))
+    }
+}
+
+/// A render pipeline from the `vertex` and `fragment` entries of a shader: triangles without vertex
+/// buffers, nearest first by the fragment's own depth.
+pub struct RasterPipeline {
+    /// The pipeline.
+    pub pipeline: wgpu::RenderPipeline,
+    /// Layout of bind group 3, the shader's own.
+    pub own: wgpu::BindGroupLayout,
+}
+
+impl RasterPipeline {
+    /// Compiles shader `name` for color targets of these formats and a 32-bit depth buffer.
+    ///
+    /// # Errors
+    /// When it is not valid, with the compiler's words.
+    pub fn new(gpu: &Gpu, name: &str, targets: &[wgpu::TextureFormat]) -> Result<Self, GpuError> {
+        checked(gpu, name, || {
+            let compiled = compile(gpu, name)?;
+            let targets: Vec<_> = targets
+                .iter()
+                .map(|&format| {
+                    Some(wgpu::ColorTargetState {
+                        format,
+                        blend: None,
+                        write_mask: wgpu::ColorWrites::ALL,
+                    })
+                })
+                .collect();
+            let pipeline = gpu
+                .device
+                .create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+                    label: Some(name),
+                    layout: Some(&compiled.layout),
+                    vertex: wgpu::VertexState {
+                        module: &compiled.module,
+                        entry_point: Some("vertex"),
+                        compilation_options: wgpu::PipelineCompilationOptions::default(),
+                        buffers: &[],
+                    },
+                    primitive: wgpu::PrimitiveState::default(),
+                    depth_stencil: Some(wgpu::DepthStencilState {
+                        format: wgpu::TextureFormat::Depth32Float,
+                        depth_write_enabled: Some(true),
+                        depth_compare: Some(wgpu::CompareFunction::Less),
+                        stencil: wgpu::StencilState::default(),
+                        bias: wgpu::DepthBiasState::default(),
+                    }),
+                    multisample: wgpu::MultisampleState::default(),
+                    fragment: Some(wgpu::FragmentState {
+                        module: &compiled.module,
+                        entry_point: Some("fragment"),
+                        compilation_options: wgpu::PipelineCompilationOptions::default(),
+                        targets: &targets,
+                    }),
+                    multiview_mask: None,
+                    cache: None,
+                });
+            Ok(Self {
+                pipeline,
+                own: compiled.own,
+            })
+        })
+    }
+}

@@ -1,0 +1,146 @@
+//! A device with one grid on it, which makes pictures of views and remakes only what a view changes.
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use crate::gpu::{FrameRenderer, FrameStats, Gpu, GpuBytes, GpuError, GpuGrid};
+use crate::model::{CellField, Grid};
+use crate::picture::Image;
+use crate::scene::{Interpolation, View};
+use crate::strategies::{Preparation, RenderStrategy, StrategyKind};
+
+/// Makes pictures of one grid.
+pub struct Renderer {
+    gpu: Arc<Gpu>,
+    grid: GpuGrid,
+    frames: FrameRenderer,
+    strategies: Vec<(StrategyKind, Box<dyn RenderStrategy>)>,
+    shown: Option<Shown>,
+}
+
+/// The field and selection that are on the device.
+#[derive(Clone, PartialEq)]
+struct Shown {
+    field: Arc<CellField>,
+    drawn: Arc<Vec<bool>>,
+    interpolation: Interpolation,
+}
+
+/// A picture and what it cost.
+pub struct Frame {
+    /// The picture.
+    pub image: Image,
+    /// What its rays cost.
+    pub stats: FrameStats,
+    /// Time to bring field, selection and what the strategy keeps up to date.
+    pub prepare: Duration,
+    /// Bytes on the device by purpose.
+    pub bytes: GpuBytes,
+}
+
+impl Renderer {
+    /// Uploads a grid.
+    ///
+    /// # Errors
+    /// When the adapter cannot hold it.
+    pub fn new(gpu: Arc<Gpu>, grid: &Grid) -> Result<Self, GpuError> {
+        Ok(Self {
+            grid: GpuGrid::new(&gpu, grid)?,
+            gpu,
+            frames: FrameRenderer::default(),
+            strategies: Vec::new(),
+            shown: None,
+        })
+    }
+
+    /// Time that building the acceleration grid took.
+    pub fn acceleration_time(&self) -> Duration {
+        self.grid.acceleration_time
+    }
+
+    /// The device.
+    pub fn gpu(&self) -> &Gpu {
+        &self.gpu
+    }
+
+    /// Renders a view of `grid` (the one given to [`Self::new`]); `None` where `progress`, which is
+    /// told the fraction done, returned false.
+    ///
+    /// # Errors
+    /// When the picture or the values are too large for the adapter, or the device reports an error.
+    pub fn render(
+        &mut self,
+        grid: &Grid,
+        view: &View,
+        progress: &dyn Fn(f64) -> bool,
+    ) -> Result<Option<Frame>, GpuError> {
+        let start = Instant::now();
+        self.show(grid, view)?;
+        let Self {
+            gpu,
+            grid: on_device,
+            frames,
+            ..
+        } = self;
+        let strategy = strategy(gpu, &mut self.strategies, view.strategy)?;
+        let preparation = Preparation {
+            gpu,
+            model: grid,
+            grid: on_device,
+            view,
+            progress,
+        };
+        if !strategy.prepare(&preparation)? {
+            return Ok(None);
+        }
+        gpu.wait()?;
+        let prepare = start.elapsed();
+        let made = frames.render(gpu, on_device, strategy, view, progress)?;
+        Ok(made.map(|(image, stats)| Frame {
+            image,
+            stats,
+            prepare,
+            bytes: on_device.bytes()
+                + strategy.bytes()
+                + GpuBytes {
+                    targets: stats.target_bytes,
+                    ..GpuBytes::default()
+                },
+        }))
+    }
+
+    fn show(&mut self, grid: &Grid, view: &View) -> Result<(), GpuError> {
+        let wanted = Shown {
+            field: view.field.clone(),
+            drawn: view.drawn.clone(),
+            interpolation: view.interpolation,
+        };
+        if self.shown.as_ref() != Some(&wanted) {
+            let Shown {
+                field,
+                drawn,
+                interpolation,
+            } = &wanted;
+            self.grid
+                .show(&self.gpu, grid, field, drawn, *interpolation)?;
+            self.shown = Some(wanted);
+        }
+        Ok(())
+    }
+}
+
+/// The strategy of a kind, compiled when it is first asked for.
+fn strategy<'a>(
+    gpu: &Gpu,
+    compiled: &'a mut Vec<(StrategyKind, Box<dyn RenderStrategy>)>,
+    kind: StrategyKind,
+) -> Result<&'a mut dyn RenderStrategy, GpuError> {
+    let at = match compiled.iter().position(|(k, _)| *k == kind) {
+        Some(at) => at,
+        None => {
+            compiled.push((kind, kind.create(gpu)?));
+            compiled.len() - 1
+        }
+    };
+    Ok(compiled[at].1.as_mut())
+}
