@@ -9,6 +9,7 @@
 // has done tile.work_limit loop iterations pauses: drivers end long loops without a word (llvmpipe
 // after 65,535 iterations of all loops together), and no submission may run for long.
 #import section
+#import facing
 
 const TOPOLOGICAL_LIMIT: u32 = 6u;
 // Steps below this end the iteration while marching; the error left is of its square.
@@ -25,11 +26,12 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     var sum = Accumulated(vec3f(0.0), 1.0);
     var n = 0.0;
     if tile.resume == 1u {
-        n = ray_states[state + 1u].x;
+        n = bitcast<f32>(ray_states[state + 1u].x);
         if n == DONE {
             return;
         }
-        sum = Accumulated(ray_states[state].rgb, ray_states[state].a);
+        let sums = bitcast<vec4f>(ray_states[state]);
+        sum = Accumulated(sums.rgb, sums.a);
     } else {
         let section = section_color(ray);
         sum = Accumulated(section.rgb, 1.0 - section.a);
@@ -88,10 +90,10 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         }
     }
     if n < ray.count && is_open(sum) {
-        ray_states[state] = vec4f(sum.color, sum.transmittance);
-        ray_states[state + 1u] = vec4f(n, 0.0, 0.0, 0.0);
+        ray_states[state] = bitcast<vec4u>(vec4f(sum.color, sum.transmittance));
+        ray_states[state + 1u] = vec4u(bitcast<u32>(n), 0u, 0u, 0u);
     } else {
-        ray_states[state + 1u] = vec4f(DONE, 0.0, 0.0, 0.0);
+        ray_states[state + 1u] = vec4u(bitcast<u32>(DONE), 0u, 0u, 0u);
         textureStore(target_image, vec2i(pixel), vec4f(sum.color, 1.0 - sum.transmittance));
         count(COUNT_FINISHED, 1u);
     }
@@ -142,26 +144,10 @@ fn step_to_neighbor(cell: ptr<function, Cell>, uvw: ptr<function, vec3f>) -> boo
 
 fn faces_join(a: u32, a_layer: u32, b: u32, b_layer: u32, axis: u32, plus: bool) -> bool {
     let a_lists = column_lists[a];
-    let b_lists = column_lists[b];
     if axis == 2u {
         let mine = depths_at(layer_entries(a_lists, a_layer, select(0u, 1u, plus)));
         return all_coincide(mine, depths_at(layer_entries(a_lists, b_layer, select(1u, 0u, plus))));
     }
-    // The two lists on the shared pillars, seen from each column.
-    var mine = select(a_lists.xz, a_lists.yw, plus);
-    var theirs = select(b_lists.yw, b_lists.xz, plus);
-    if axis == 1u {
-        mine = select(a_lists.xy, a_lists.zw, plus);
-        theirs = select(b_lists.zw, b_lists.xy, plus);
-    }
-    // Flags aside, shared lists are one list: no fault.
-    if all((mine & vec2u(LIST_OFFSET)) == (theirs & vec2u(LIST_OFFSET))) {
-        return true;
-    }
-    return all_coincide(pair_depths(mine, a_layer), pair_depths(theirs, b_layer));
-}
-
-fn pair_depths(lists: vec2u, layer: u32) -> vec4f {
-    return depths_at(vec4u(list_entry(lists.x, layer, 0u), list_entry(lists.y, layer, 0u),
-        list_entry(lists.x, layer, 1u), list_entry(lists.y, layer, 1u)));
+    let face = 2u * axis + select(0u, 1u, plus);
+    return sides_join(side_lists(a_lists, face), side_lists(column_lists[b], face ^ 1u), a_layer);
 }

@@ -63,6 +63,12 @@ fn structs_agree() {
         clip_count,
         box_high,
         opaque_cuts,
+        view_x,
+        farthest,
+        view_y,
+        world_handedness,
+        view_z,
+        grid_handedness,
         clip_planes
     );
     agrees!(
@@ -109,6 +115,7 @@ fn constants_agree() {
         ("COUNT_PEELS", layout::COUNT_PEELS),
         ("COUNT_RECOVERED", layout::COUNT_RECOVERED),
         ("COUNT_LOST", layout::COUNT_LOST),
+        ("COUNT_PAUSED", layout::COUNT_PAUSED),
     ] {
         let (_, constant) = m
             .constants

@@ -6,8 +6,9 @@
 @group(0) @binding(2) var target_image: texture_storage_2d<rgba32float, write>;
 // Pairs of low and high words, see the COUNT constants.
 @group(0) @binding(3) var<storage, read_write> counters: array<atomic<u32>, 24>;
-// What a strategy keeps of each ray of the tile from one dispatch to the next.
-@group(0) @binding(4) var<storage, read_write> ray_states: array<vec4f>;
+// What a strategy keeps of each ray of the tile from one dispatch to the next; floats as their bits,
+// for numbers kept as floats may be flushed to zero.
+@group(0) @binding(4) var<storage, read_write> ray_states: array<vec4u>;
 
 const DONE: f32 = -1.0;
 const NO_CUT: u32 = 31u;
@@ -31,11 +32,16 @@ struct Ray {
     starts_inside: bool,
 }
 
-// The ray of a pixel, cut to the model's box and the clip planes.
-fn ray_of(pixel: vec2u) -> Ray {
+// Direction through the middle of a pixel in world space, 1 along the camera's axis.
+fn view_direction(pixel: vec2u) -> vec3f {
     let x = 2.0 * (f32(pixel.x) + 0.5) / f32(frame.width) - 1.0;
     let y = 1.0 - 2.0 * (f32(pixel.y) + 0.5) / f32(frame.height);
-    let world = normalize(frame.forward + x * frame.right + y * frame.up);
+    return frame.forward + x * frame.right + y * frame.up;
+}
+
+// The ray of a pixel, cut to the model's box and the clip planes.
+fn ray_of(pixel: vec2u) -> Ray {
+    let world = normalize(view_direction(pixel));
     let direction = world.x * frame.grid_from_world_x + world.y * frame.grid_from_world_y
         + world.z * frame.grid_from_world_z;
     let safe = select(direction, vec3f(1e-12), abs(direction) < vec3f(1e-12));

@@ -28,6 +28,16 @@ struct Frame {
     box_high: vec3f,
     // Bit n: where plane n opens the model to the eye, its section is drawn opaque.
     opaque_cuts: u32,
+    // Rows of the transform from grid space relative to the eye to x, y and distance along the axis.
+    view_x: vec3f,
+    // Distance from the eye of the model's farthest corner.
+    farthest: f32,
+    view_y: vec3f,
+    // +1 where cells are right-handed in world space, else -1.
+    world_handedness: f32,
+    view_z: vec3f,
+    // The same in grid space.
+    grid_handedness: f32,
     // Kept is where dot(xyz, point) + w >= 0, grid space relative to the origin.
     clip_planes: array<vec4f, MAX_CLIP_PLANES>,
 }
@@ -90,3 +100,4 @@ const COUNT_WORK: u32 = 5u;
 const COUNT_PEELS: u32 = 6u;
 const COUNT_RECOVERED: u32 = 7u;
 const COUNT_LOST: u32 = 8u;
+const COUNT_PAUSED: u32 = 9u;

@@ -13,6 +13,25 @@ fn transfer(value: f32) -> vec4f {
     return mix(transfer_table[entry], transfer_table[entry + 1u], position - f32(entry));
 }
 
+// Means over the values between two: of extinction times color, and of extinction.
+fn transfer_mean(a: f32, b: f32) -> vec4f {
+    let pa = clamp((a - frame.value_low) * frame.value_scale, 0.0, 1.0);
+    let pb = clamp((b - frame.value_low) * frame.value_scale, 0.0, 1.0);
+    if abs(pb - pa) * f32(LUT_SIZE - 1u) < 4.0 {
+        // Differences of large sums would be rounding errors; the table is all but linear here.
+        let entry = transfer(0.5 * (a + b));
+        return vec4f(entry.rgb * entry.w, entry.w);
+    }
+    return (transfer_integral(pb) - transfer_integral(pa)) / (pb - pa);
+}
+
+// Integral from position 0; extinction and color are linear between entries.
+fn transfer_integral(position: f32) -> vec4f {
+    let at = position * f32(LUT_SIZE - 1u);
+    let entry = min(u32(at), LUT_SIZE - 2u);
+    return mix(transfer_integrals[entry], transfer_integrals[entry + 1u], at - f32(entry));
+}
+
 // Front-to-back emission and absorption; linear light, premultiplied.
 struct Accumulated {
     color: vec3f,

@@ -45,7 +45,7 @@ fn facts(case: &Case, stats: &[String]) -> anyhow::Result<Value> {
     let dims = grid.dims();
     let faults = grid.fault_faces();
     let active = || grid.active_cells().par_iter().map(|&c| dims.ijk(c));
-    let signed: f64 = active().map(|c| grid.hexahedron(c).signed_volume()).sum();
+    let signed = grid.signed_bulk_volume();
     let mut facts = json!({
         "case": case.about.name,
         "files": case.about.files.iter().map(|f| f.display().to_string()).collect::<Vec<_>>(),

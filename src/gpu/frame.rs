@@ -47,6 +47,8 @@ pub struct FrameStats {
     pub lost_rays: u64,
     /// Loop iterations of all rays, about.
     pub work: u64,
+    /// Times that a ray paused within what it was doing.
+    pub pauses: u64,
     /// Number of submissions.
     pub submissions: u32,
     /// Bytes of the picture on the device.
@@ -83,6 +85,12 @@ pub struct Round<'a> {
     pub gpu: &'a Gpu,
     /// Pixels of the tile.
     pub size: [u32; 2],
+    /// True in the tile's first round, before which its rays have no state.
+    pub starts: bool,
+    /// Rays that paused within what they were doing in the round before.
+    pub paused: u64,
+    /// Of these, rays that lost their way.
+    pub strayed: u64,
     groups: &'a [wgpu::BindGroup; 3],
     queries: Option<&'a wgpu::QuerySet>,
 }
@@ -239,8 +247,9 @@ impl FrameRenderer {
             target_bytes: 16 * pixels + states.size(),
             ..FrameStats::default()
         };
+        let least_work = strategy.least_work();
         let draw = |rect, pace: &mut Pace| bound.draw(&mut *strategy, rect, pace, &mut stats);
-        if !tiles::cover(view.size, &mut self.pace, draw, progress)? {
+        if !tiles::cover(view.size, &mut self.pace, least_work, draw, progress)? {
             return Ok(None);
         }
         let pixels = target::read(gpu, &target, view.size)?;
@@ -271,11 +280,13 @@ impl Bound<'_> {
         };
         let goal = stats.finished_rays + rect.area();
         let most = WORK_LIMIT[usize::from(!self.gpu.is_software())];
+        let mut before = *stats;
         while stats.finished_rays < goal {
-            uniform.work_limit = pace.work_limit(rect.area(), most);
-            let before = stats.work;
-            let took = self.submit(&mut *strategy, &uniform, stats)?;
-            pace.learn(took, stats.work - before);
+            uniform.work_limit = pace.work_limit(rect.area(), strategy.least_work(), most);
+            let now = *stats;
+            let took = self.submit(&mut *strategy, &uniform, &before, stats)?;
+            pace.learn(took, stats.work - now.work);
+            before = now;
             uniform.resume = 1;
         }
         Ok(())
@@ -286,6 +297,7 @@ impl Bound<'_> {
         &self,
         strategy: &mut dyn RenderStrategy,
         uniform: &Tile,
+        before: &FrameStats,
         stats: &mut FrameStats,
     ) -> Result<Duration, GpuError> {
         let gpu = self.gpu;
@@ -295,6 +307,9 @@ impl Bound<'_> {
         let round = Round {
             gpu,
             size: uniform.size,
+            starts: uniform.resume == 0,
+            paused: stats.pauses - before.pauses,
+            strayed: stats.recovered_rays - before.recovered_rays,
             groups: &self.groups,
             queries: self.queries.as_ref().map(|(set, _)| set),
         };
@@ -342,6 +357,7 @@ impl FrameStats {
         self.peels = count(layout::COUNT_PEELS);
         self.recovered_rays = count(layout::COUNT_RECOVERED);
         self.lost_rays = count(layout::COUNT_LOST);
+        self.pauses = count(layout::COUNT_PAUSED);
     }
 }
 
@@ -402,6 +418,7 @@ fn frame_uniform(grid: &GpuGrid, view: &View) -> Frame {
     let linear = view.spaces.grid_from_world.matrix3;
     let eye = view.spaces.grid_from_world.transform_point3(camera.eye) - grid.origin;
     let [low, high] = view.transfer.range;
+    let to_camera = view.spaces.world_from_grid.matrix3.transpose();
     Frame {
         eye: f32s(eye),
         step: view.sampling_step as f32,
@@ -431,8 +448,20 @@ fn frame_uniform(grid: &GpuGrid, view: &View) -> Frame {
             .zip(&view.clip)
             .map(|(n, plane)| u32::from(plane.opaque) << n)
             .sum(),
+        view_x: f32s(to_camera * (camera.right / (camera.tan_half_fovy * aspect))),
+        farthest: farthest(view) as f32,
+        view_y: f32s(to_camera * (camera.up / camera.tan_half_fovy)),
+        world_handedness: grid.handedness * linear.determinant().signum() as f32,
+        view_z: f32s(to_camera * camera.forward),
+        grid_handedness: grid.handedness,
         clip_planes: clip_planes(grid, view),
     }
+}
+
+/// Distance from the eye to the farthest corner of the model's box.
+fn farthest(view: &View) -> f64 {
+    let distances = view.box_corners.iter().map(|c| c.distance(view.camera.eye));
+    distances.fold(0.0, f64::max)
 }
 
 /// Planes from world space to grid space relative to the grid's origin; f64 until nothing cancels.

@@ -56,6 +56,10 @@ pub struct GpuGrid {
     pub origin: DVec3,
     /// Box of the active cells relative to the origin.
     pub bounds: [DVec3; 2],
+    /// True where the layers of some column cross, so that cells may overlap.
+    pub layers_cross: bool,
+    /// +1 where the cells are right-handed in grid space, else -1.
+    pub handedness: f32,
     /// Time that building the acceleration grid took.
     pub acceleration_time: std::time::Duration,
     /// Which selection and which values are on the device.
@@ -117,15 +121,22 @@ impl GpuGrid {
             .par_iter()
             .map(|d| (d - origin.z) as f32)
             .collect();
+        let lists = column_lists(grid);
         Ok(Self {
             origin,
             bounds: bounds.map(|b| b - origin),
+            layers_cross: lists.iter().any(|l| l[0] & COLUMN_FLAG != 0),
+            handedness: if grid.signed_bulk_volume() < 0.0 {
+                -1.0
+            } else {
+                1.0
+            },
             acceleration_time,
             versions: Versions::default(),
             drawn_words: Vec::new(),
             info: gpu.uniform("grid info", &info),
             pillars: gpu.storage("pillars", &pillars)?,
-            column_lists: gpu.storage("column lists", &column_lists(grid))?,
+            column_lists: gpu.storage("column lists", &lists)?,
             depths: gpu.storage("depth lists", &depths)?,
             bins: gpu.storage("acceleration bins", &accel.bins)?,
             bin_columns: gpu.storage("acceleration columns", &accel.columns)?,

@@ -25,6 +25,12 @@ pub struct Frame {
     pub clip_count: u32,
     pub box_high: [f32; 3],
     pub opaque_cuts: u32,
+    pub view_x: [f32; 3],
+    pub farthest: f32,
+    pub view_y: [f32; 3],
+    pub world_handedness: f32,
+    pub view_z: [f32; 3],
+    pub grid_handedness: f32,
     pub clip_planes: [[f32; 4]; MAX_CLIP_PLANES],
 }
 
@@ -105,5 +111,7 @@ pub const COUNT_PEELS: u32 = 6;
 pub const COUNT_RECOVERED: u32 = 7;
 /// Counter of rays that could not be set right.
 pub const COUNT_LOST: u32 = 8;
+/// Counter of rays that paused within what they were doing.
+pub const COUNT_PAUSED: u32 = 9;
 /// Clip planes at most.
 pub const MAX_CLIP_PLANES: usize = crate::scene::resolve::MAX_CLIP_PLANES;

@@ -2,6 +2,7 @@
 
 pub mod accel;
 pub mod device;
+pub mod faces;
 pub mod frame;
 pub mod grid_upload;
 pub mod layout;

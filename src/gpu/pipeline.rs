@@ -205,7 +205,7 @@ fn checked<T>(
     }
 }
 
-/// A compute pipeline from the `main` of a shader, with its workgroup size as the shader states it.
+/// A compute pipeline from an entry of a shader, with its workgroup size as the shader states it.
 pub struct Pipeline {
     /// The pipeline.
     pub pipeline: wgpu::ComputePipeline,
@@ -216,24 +216,39 @@ pub struct Pipeline {
 }
 
 impl Pipeline {
-    /// Compiles shader `name`.
+    /// Compiles the entry `main` of shader `name`.
     ///
     /// # Errors
     /// When it is not valid, with the compiler's words.
     pub fn new(gpu: &Gpu, name: &str) -> Result<Self, GpuError> {
+        Self::variant(gpu, name, "main", &[])
+    }
+
+    /// Compiles an entry of shader `name` with values for its `override` constants.
+    ///
+    /// # Errors
+    /// When it is not valid, with the compiler's words.
+    pub fn variant(
+        gpu: &Gpu,
+        name: &str,
+        entry: &str,
+        constants: &[(&str, f64)],
+    ) -> Result<Self, GpuError> {
         checked(gpu, name, || {
             let compiled = compile(gpu, name)?;
+            let descriptor = wgpu::ComputePipelineDescriptor {
+                label: Some(name),
+                layout: Some(&compiled.layout),
+                module: &compiled.module,
+                entry_point: Some(entry),
+                compilation_options: wgpu::PipelineCompilationOptions {
+                    constants,
+                    ..Default::default()
+                },
+                cache: None,
+            };
             Ok(Self {
-                pipeline: gpu
-                    .device
-                    .create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-                        label: Some(name),
-                        layout: Some(&compiled.layout),
-                        module: &compiled.module,
-                        entry_point: Some("main"),
-                        compilation_options: wgpu::PipelineCompilationOptions::default(),
-                        cache: None,
-                    }),
+                pipeline: gpu.device.create_compute_pipeline(&descriptor),
                 own: compiled.own,
                 workgroup: compiled.workgroup,
             })

@@ -17,13 +17,16 @@ sources! {
     "frame" => "shared/frame.wgsl",
     "transfer" => "shared/transfer.wgsl",
     "section" => "shared/section.wgsl",
+    "facing" => "shared/facing.wgsl",
     "groups" => "shared/groups.wgsl",
+    "faces" => "faces.wgsl",
+    "libc" => "libc.wgsl",
     "plts" => "plts.wgsl",
     "probe" => "probe.wgsl",
 }
 
 /// The stems of all shaders that are entry points of a pipeline.
-pub const ENTRIES: [&str; 2] = ["plts", "probe"];
+pub const ENTRIES: [&str; 4] = ["faces", "libc", "plts", "probe"];
 
 /// The whole text of a shader with its imports in front, each once.
 ///

@@ -31,63 +31,59 @@ impl Rect {
 pub const BUDGET: Duration = Duration::from_millis(70);
 /// Pixels of a tile at most: each has a state of 32 bytes on the device.
 pub const MAX_AREA: u64 = 1 << 20;
-/// Time of a submission that does nothing: counted in, tiles of empty sky would look slow.
-const OVERHEAD: Duration = Duration::from_millis(2);
-/// Loop iterations of a ray in one submission, at least; fewer would mostly pay for the pause.
-const LEAST_WORK: u64 = 500;
+/// Loop iterations of the first submission: few enough for the slowest adapter that was met.
+const FIRST_UNITS: f64 = 70_000.0;
+/// How much shorter or longer than the last submission the next one may be: too long counts at once,
+/// too short by and by, for neighboring tiles differ.
+const CHANGE: [f64; 2] = [0.25, 1.7];
 
-/// How fast an adapter is, learned from its submissions and kept from frame to frame. As a ray pauses
-/// after a number of loop iterations, the time of a submission has a bound that is known beforehand.
+/// How much an adapter does in the time of a submission, learned from them and kept from frame to
+/// frame. As a ray pauses after a number of loop iterations, that time has a bound beforehand.
 #[derive(Debug)]
 pub struct Pace {
-    seconds_per_work: f64,
+    /// Loop iterations of all rays that fit into a submission.
+    units: f64,
 }
 
 impl Default for Pace {
     fn default() -> Self {
-        // Slower than any adapter that was met, so that the first submissions are short.
-        Self {
-            seconds_per_work: 1e-6,
-        }
+        Self { units: FIRST_UNITS }
     }
 }
 
 impl Pace {
-    /// Loop iterations of all rays that fit into a submission.
-    fn budget(&self) -> u64 {
-        (BUDGET.as_secs_f64() / self.seconds_per_work) as u64
-    }
-
-    /// Pixels of the next tile, at most.
-    fn area(&self) -> u64 {
-        (self.budget() / LEAST_WORK).clamp(256, MAX_AREA)
+    /// Pixels of the next tile, at most, where a ray makes `least` loop iterations in a submission.
+    fn area(&self, least: u64) -> u64 {
+        (self.units as u64 / least.max(1)).clamp(256, MAX_AREA)
     }
 
     /// Loop iterations after which each ray of a tile pauses.
-    pub fn work_limit(&self, area: u64, most: u32) -> u32 {
-        (self.budget() / area.max(1)).clamp(LEAST_WORK, u64::from(most)) as u32
+    pub fn work_limit(&self, area: u64, least: u64, most: u32) -> u32 {
+        let most = u64::from(most);
+        (self.units as u64 / area.max(1)).clamp(least.min(most), most) as u32
     }
 
     /// Learns from a submission: what it took and the loop iterations that it made.
     pub fn learn(&mut self, took: Duration, work: u64) {
-        let now = took.saturating_sub(OVERHEAD).as_secs_f64() / work.max(1) as f64;
+        let change = BUDGET.as_secs_f64() / took.as_secs_f64().max(1e-6);
         // A submission with little to do says nothing of a full one, unless it was slow.
-        if now > self.seconds_per_work || work > self.budget() / 3 {
-            // Slower counts at once, faster by and by: neighboring tiles differ.
-            self.seconds_per_work = now.clamp(0.6 * self.seconds_per_work, 1e-5).max(1e-12);
+        if change < 1.0 || work as f64 > self.units / 3.0 {
+            self.units = (self.units * change.clamp(CHANGE[0], CHANGE[1])).clamp(1e4, 1e12);
         }
     }
 }
 
 /// Calls `draw` for tiles that cover a picture, as large as the pace allows.
 ///
-/// `progress` is told the fraction done and returns false to cancel; the result is false then.
+/// `least` is the loop iterations that each ray makes in a submission at least. `progress` is told the
+/// fraction done and returns false to cancel; the result is false then.
 ///
 /// # Errors
 /// The first error of `draw`.
 pub fn cover<E>(
     size: [u32; 2],
     pace: &mut Pace,
+    least: u64,
     mut draw: impl FnMut(Rect, &mut Pace) -> Result<(), E>,
     progress: &dyn Fn(f64) -> bool,
 ) -> Result<bool, E> {
@@ -97,7 +93,7 @@ pub fn cover<E>(
     };
     let (mut done, mut left) = (0, vec![whole]);
     while let Some(rect) = left.pop() {
-        if rect.area() > pace.area() {
+        if rect.area() > pace.area(least) {
             let [first, second] = rect.halves();
             left.extend([second, first]);
             continue;
@@ -130,7 +126,10 @@ mod tests {
                 }
                 Ok(())
             };
-            assert_eq!(cover(size, &mut Pace::default(), draw, &|_| true), Ok(true));
+            assert_eq!(
+                cover(size, &mut Pace::default(), 500, draw, &|_| true),
+                Ok(true)
+            );
             assert!(hits.iter().all(|&h| h == 1));
         }
     }
@@ -140,7 +139,7 @@ mod tests {
         // An adapter of 50 ns a loop iteration, on which the rays of the right half never rest.
         let mut longest = Duration::ZERO;
         let slow = |r: Rect, pace: &mut Pace| -> Result<(), ()> {
-            let limit = u64::from(pace.work_limit(r.area(), 6000));
+            let limit = u64::from(pace.work_limit(r.area(), 500, 6000));
             let each = if r.origin[0] < 500 { 3 } else { limit };
             let took = Duration::from_nanos(50 * each * r.area());
             pace.learn(took, each * r.area());
@@ -148,7 +147,7 @@ mod tests {
             Ok(())
         };
         assert_eq!(
-            cover([1000, 500], &mut Pace::default(), slow, &|f| f < 0.9),
+            cover([1000, 500], &mut Pace::default(), 500, slow, &|f| f < 0.9),
             Ok(false)
         );
         assert!(

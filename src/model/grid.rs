@@ -258,6 +258,12 @@ impl Grid {
         self.map_axes
     }
 
+    /// Sum of the active cells' volumes, negative where the grid is left-handed (x, y, depth).
+    pub fn signed_bulk_volume(&self) -> f64 {
+        let volume = |&cell: &CellIndex| self.hexahedron(self.dims.ijk(cell)).signed_volume();
+        self.active_cells.par_iter().map(volume).sum()
+    }
+
     /// Smallest and largest corner of the active cells in grid space; `None` without any.
     pub fn bounds(&self) -> Option<[DVec3; 2]> {
         self.active_cells

@@ -105,6 +105,28 @@ impl Grid {
         }
     }
 
+    /// The faces of the cells that `drawn` (by active index) names behind which no other of them
+    /// shares the whole face: hull, fault faces, and those beside cells that are not drawn.
+    pub fn boundary_faces(&self, drawn: &[bool]) -> Vec<(Ijk, Face)> {
+        let is_drawn = |ijk: Ijk| {
+            let active = self.active_index(self.dims().cell(ijk));
+            active.is_some_and(|a| drawn.get(a.0 as usize) == Some(&true))
+        };
+        let is_open = |ijk: Ijk, face: Face| match self.behind(ijk, face) {
+            Behind::Neighbor(next) => !is_drawn(next),
+            Behind::Displaced(_) | Behind::Nothing => true,
+        };
+        let cells = self.active_cells().par_iter().zip(drawn);
+        cells
+            .filter(|(_, drawn)| **drawn)
+            .flat_map_iter(|(&cell, _)| {
+                let ijk = self.dims().ijk(cell);
+                let open = Face::ALL.into_iter().filter(move |&f| is_open(ijk, f));
+                open.map(move |face| (ijk, face))
+            })
+            .collect()
+    }
+
     /// Number of fault faces along i and along j (`[I, J]`): lateral faces between two active
     /// cells of equal k whose corners do not all coincide.
     pub fn fault_faces(&self) -> [usize; 2] {

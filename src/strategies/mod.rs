@@ -1,5 +1,6 @@
 //! The ray-casting strategies: one host file and one shader each, chosen at run time by name.
 
+pub mod libc;
 pub mod plts;
 
 use crate::gpu::{Gpu, GpuBytes, GpuError, GpuGrid, Round};
@@ -29,6 +30,12 @@ pub trait RenderStrategy {
     /// Bytes of the state of a ray between rounds.
     fn ray_state_bytes(&self) -> u64;
 
+    /// Loop iterations that a ray makes in a round at least: the more a round costs beside them, the
+    /// fewer, so that tiles are large.
+    fn least_work(&self) -> u64 {
+        500
+    }
+
     /// Brings up to date what the strategy keeps beside the grid; false where it was cancelled.
     ///
     /// # Errors
@@ -49,17 +56,20 @@ pub trait RenderStrategy {
 /// Every strategy; the one list that command line, viewer and tests read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum StrategyKind {
+    /// Linear interpolation with barycentric coordinates.
+    Libc,
     /// Point location with topological search.
     Plts,
 }
 
 impl StrategyKind {
     /// All strategies.
-    pub const ALL: [Self; 1] = [Self::Plts];
+    pub const ALL: [Self; 2] = [Self::Libc, Self::Plts];
 
     /// The name that users type.
     pub fn name(self) -> &'static str {
         match self {
+            Self::Libc => "libc",
             Self::Plts => "plts",
         }
     }
@@ -70,6 +80,7 @@ impl StrategyKind {
     /// When the driver refuses its shader.
     pub fn create(self, gpu: &Gpu) -> Result<Box<dyn RenderStrategy>, GpuError> {
         Ok(match self {
+            Self::Libc => Box::new(libc::Libc::new(gpu)?),
             Self::Plts => Box::new(plts::Plts::new(gpu)?),
         })
     }
@@ -83,7 +94,7 @@ impl StrategyKind {
     pub fn refusal(name: &str) -> String {
         let known: Vec<_> = Self::ALL.iter().map(|s| s.name()).collect();
         match name {
-            "srg" | "libc" => format!("{name} is not supported yet; use {}", known.join(", ")),
+            "srg" => format!("{name} is not supported yet; use {}", known.join(", ")),
             _ => format!("{name} is not known; use {}", known.join(", ")),
         }
     }

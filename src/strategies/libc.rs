@@ -1,0 +1,136 @@
+//! LIBC, linear interpolation with barycentric coordinates: the fast strategy that keeps to the cells.
+//!
+//! Depth peeling of the boundary faces gives each ray its entries in order; from each the ray walks
+//! from cell to cell through faces cut into two triangles, and its parameters are linear between entry
+//! and exit of a cell (campagnolo-2021, 4.1.2). Cost: one step a cell, whatever the number of samples;
+//! one drawing of the faces a peel.
+
+use super::{Preparation, RenderStrategy};
+use crate::gpu::faces::{BoundaryFaces, FaceMode, FaceTarget};
+use crate::gpu::{Gpu, GpuBytes, GpuError, Pipeline, Place, Round};
+use crate::scene::{Integration, Interpolation, LibcSettings};
+
+/// The strategy with its compiled shaders and the list of faces.
+pub struct Libc {
+    place: Pipeline,
+    walk: Pipeline,
+    variant: Variant,
+    faces: BoundaryFaces,
+    target: Option<FaceTarget>,
+}
+
+/// Options that are constants of the walk's pipeline.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Variant {
+    settings: LibcSettings,
+    interpolation: Interpolation,
+}
+
+impl Variant {
+    fn compile(self, gpu: &Gpu) -> Result<Pipeline, GpuError> {
+        let by_segment = self.settings.integration == Integration::Segments;
+        let constants = [
+            ("CROSSES", self.settings.cross_faults),
+            ("BY_SEGMENT", by_segment),
+            ("BY_VERTEX", self.interpolation == Interpolation::Vertex),
+        ];
+        let constants = constants.map(|(name, value)| (name, f64::from(u8::from(value))));
+        Pipeline::variant(gpu, "libc", "walk", &constants)
+    }
+}
+
+impl Libc {
+    /// Compiles the shaders.
+    ///
+    /// # Errors
+    /// When the driver refuses one.
+    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+        let variant = Variant {
+            settings: LibcSettings::default(),
+            interpolation: Interpolation::Vertex,
+        };
+        Ok(Self {
+            place: Pipeline::variant(gpu, "libc", "place", &[])?,
+            walk: variant.compile(gpu)?,
+            variant,
+            faces: BoundaryFaces::new(gpu)?,
+            target: None,
+        })
+    }
+}
+
+/// What a dispatch does; the order is that of the shader's constants.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Stage {
+    /// Begins a tile.
+    Begins,
+    /// Takes the entries just drawn.
+    Enters,
+    /// Takes paused rays further.
+    GoesOn,
+}
+
+impl RenderStrategy for Libc {
+    fn ray_state_bytes(&self) -> u64 {
+        64
+    }
+
+    /// Drawing the faces costs the same for small tiles and large ones.
+    fn least_work(&self) -> u64 {
+        32
+    }
+
+    fn prepare(&mut self, what: &Preparation<'_>) -> Result<bool, GpuError> {
+        let variant = Variant {
+            settings: what.view.libc,
+            interpolation: what.view.interpolation,
+        };
+        if variant != self.variant {
+            self.walk = variant.compile(what.gpu)?;
+            self.variant = variant;
+        }
+        let margin = match what.grid.layers_cross {
+            // Cells may overlap anywhere: every entry counts.
+            true => f32::MAX,
+            // The triangles of both sides of a fault face lie apart by less than this.
+            false => 2.0 * what.view.sampling_step as f32,
+        };
+        self.faces
+            .update(what.gpu, what.model, what.grid, &what.view.drawn, margin)?;
+        Ok(true)
+    }
+
+    fn bytes(&self) -> GpuBytes {
+        GpuBytes {
+            geometry: self.faces.bytes(),
+            ..GpuBytes::default()
+        }
+    }
+
+    fn encode(&mut self, round: &Round<'_>, encoder: &mut wgpu::CommandEncoder) {
+        let target = FaceTarget::fitting(self.target.take(), round.gpu, round.size);
+        let record = |encoder: &mut _, pipeline: &Pipeline, stage: Stage, place| {
+            let stage = round.gpu.uniform("stage", &[stage as u32, 0, 0, 0]);
+            let entries = wgpu::BindingResource::TextureView(&target.met);
+            let own = [stage.as_entire_binding(), entries];
+            let own = round.gpu.bind(&pipeline.own, &own);
+            round.compute(encoder, pipeline, Some(&own), place);
+        };
+        if round.strayed > 0 {
+            record(encoder, &self.place, Stage::GoesOn, Place::First);
+            record(encoder, &self.walk, Stage::GoesOn, Place::Last);
+        } else if round.paused > 0 {
+            record(encoder, &self.walk, Stage::GoesOn, Place::Only);
+        } else {
+            let mut place = Place::First;
+            if round.starts {
+                record(encoder, &self.place, Stage::Begins, place);
+                place = Place::Between;
+            }
+            self.faces
+                .draw(round, encoder, &target, FaceMode::Peel, place);
+            record(encoder, &self.walk, Stage::Enters, Place::Last);
+        }
+        self.target = Some(target);
+    }
+}
