@@ -1,6 +1,7 @@
 // LIBC: linear interpolation with barycentric coordinates (campagnolo-2021, 4.1.2).
 //
-// One thread = one pixel; dispatch covers the tile. From an entry, which depth peeling of the boundary
+// One thread = one ray. The first dispatch covers the tile; those after it only the rays that are left,
+// for there are many dispatches and ever fewer rays. From an entry, which depth peeling of the boundary
 // faces gives (faces.wgsl), a ray walks from cell to cell through shared faces. Each face is two
 // triangles, cut along one diagonal for both of its cells; parameters are linear between the points of
 // entry and exit. Reads the grid, the transfer table and the entries; writes states, target, counters.
@@ -10,9 +11,9 @@
 // Departures from the paper: across a fault the cell behind is found by its column's depth lists,
 // through collapsed layers by the next one that is not; a segment can be integrated as a whole.
 //
-// Two entry points: `place` begins rays, and sets right by point location those that found no way out
-// of their cell; `walk` does all else. Software adapters run both sides of every branch for eight rays
-// together, so what is rare stands outside the loops, and options are constants of the pipeline.
+// Entry points: `begin` begins rays; `walk` takes entries and walks; `set_right` finds by point location
+// the rays that found no way out of their cell. Software adapters run both sides of every branch for
+// eight rays together, so what is rare stands outside the loops, and options are pipeline constants.
 #import section
 #import facing
 
@@ -23,14 +24,17 @@ override BY_SEGMENT: bool = false;
 // Values vary inside a cell.
 override BY_VERTEX: bool = true;
 
+// Stage and number of rays in `rays`.
 @group(3) @binding(0) var<uniform> stage: vec4u;
 // Face number + 1 of the next entry, or 0, and the bits of its distance.
 @group(3) @binding(1) var entries: texture_2d<u32>;
+// Rays of the tile that have not ended, as pixel numbers: before and after this dispatch.
+@group(3) @binding(2) var<storage, read> rays: array<u32>;
+@group(3) @binding(3) var<storage, read_write> rays_left: array<u32>;
+@group(3) @binding(4) var<storage, read_write> rays_left_count: atomic<u32>;
 
-// What `stage.x` says: rays begin; they take the entries just drawn; paused ones go on.
-const BEGINS: u32 = 0u;
+// What `stage.x` says: 1 where rays take the entries just drawn, 0 where only paused ones go on.
 const ENTERS: u32 = 1u;
-const GOES_ON: u32 = 2u;
 
 // Phases of a ray.
 const NEEDS_ENTRY: u32 = 0u;
@@ -211,57 +215,60 @@ fn on_face(face: u32, at: vec2f) -> vec3f {
 }
 
 @compute @workgroup_size(8, 8)
-fn place(@builtin(global_invocation_id) id: vec3u) {
+fn begin(@builtin(global_invocation_id) id: vec3u) {
     if any(id.xy >= tile.size) {
         return;
     }
-    let state = LIBC_STATE * (id.y * tile.size.x + id.x);
+    let number = id.y * tile.size.x + id.x;
     let ray = ray_of(tile.origin + id.xy);
-    var sum = Accumulated(vec3f(0.0), 1.0);
     var walk: Walk;
     var tally: Tally;
-    if stage.x == BEGINS {
-        walk.done = ray.enter;
-        walk.entry_t = NOWHERE;
-        walk.t = ray.enter;
-        walk.phase = select(NEEDS_ENTRY, STRAYED, ray.starts_inside);
-        let section = section_color(ray);
-        sum = Accumulated(section.rgb, 1.0 - section.a);
-        if ray.leave <= ray.enter || section.a == 1.0 {
-            walk.phase = ENDED;
-        }
-    } else {
-        walk = load_walk(state);
-        let sums = bitcast<vec4f>(ray_states[state]);
-        sum = Accumulated(sums.rgb, sums.a);
-        if walk.phase != STRAYED {
-            return;
-        }
-        walk.t += 0.25 * frame.step;
+    walk.done = ray.enter;
+    walk.entry_t = NOWHERE;
+    walk.t = ray.enter;
+    walk.phase = select(NEEDS_ENTRY, STRAYED, ray.starts_inside);
+    let section = section_color(ray);
+    if ray.leave <= ray.enter || section.a == 1.0 {
+        walk.phase = ENDED;
     }
     if walk.phase == STRAYED {
         locate_again(&walk, ray, &tally);
     }
-    finish(id.xy, state, walk, sum, tally);
+    finish(number, walk, Accumulated(section.rgb, 1.0 - section.a), tally);
 }
 
-@compute @workgroup_size(8, 8)
+@compute @workgroup_size(64)
+fn set_right(@builtin(global_invocation_id) id: vec3u) {
+    if id.x >= stage.y {
+        return;
+    }
+    let number = rays[id.x];
+    var walk = load_walk(number);
+    if walk.phase != STRAYED {
+        return;
+    }
+    var tally: Tally;
+    walk.t += 0.25 * frame.step;
+    locate_again(&walk, ray_of(tile.origin + in_tile(number)), &tally);
+    store_walk(number, walk);
+    add_up(tally);
+}
+
+@compute @workgroup_size(64)
 fn walk(@builtin(global_invocation_id) id: vec3u) {
-    if any(id.xy >= tile.size) {
+    if id.x >= stage.y {
         return;
     }
-    let state = LIBC_STATE * (id.y * tile.size.x + id.x);
-    var walk = load_walk(state);
-    if walk.phase == ENDED || (walk.phase == NEEDS_ENTRY && stage.x == GOES_ON) {
-        return;
-    }
-    let ray = ray_of(tile.origin + id.xy);
+    let number = rays[id.x];
+    var walk = load_walk(number);
+    let place = in_tile(number);
+    let ray = ray_of(tile.origin + place);
     let r = frame_of(ray);
-    let sums = bitcast<vec4f>(ray_states[state]);
+    let sums = bitcast<vec4f>(ray_states[LIBC_STATE * number]);
     var sum = Accumulated(sums.rgb, sums.a);
     var tally: Tally;
-    if walk.phase == NEEDS_ENTRY {
-        enter(&walk, r, textureLoad(entries, vec2i(id.xy), 0).xy);
+    if walk.phase == NEEDS_ENTRY && stage.x == ENTERS {
+        enter(&walk, r, textureLoad(entries, vec2i(place), 0).xy);
     }
     while (walk.phase == WALKS || walk.phase == CROSSES_FAULT) && tally.work < tile.work_limit {
         while walk.phase == WALKS && tally.work < tile.work_limit {
@@ -289,30 +296,33 @@ fn walk(@builtin(global_invocation_id) id: vec3u) {
             cross_fault(&walk, r);
         }
     }
-    finish(id.xy, state, walk, sum, tally);
+    finish(number, walk, sum, tally);
 }
 
-// Writes the picture where a ray has ended, else its state; and the counters.
-fn finish(in_tile: vec2u, state: u32, walk: Walk, sum: Accumulated, tally: Tally) {
-    var lost = 0u;
-    var phase = walk.phase;
-    if walk.recoveries > MOST_RECOVERIES {
-        lost = 1u;
-        phase = ENDED;
-    }
-    if phase == ENDED {
-        textureStore(target_image, vec2i(tile.origin + in_tile), vec4f(sum.color, 1.0 - sum.transmittance));
+fn in_tile(number: u32) -> vec2u {
+    return vec2u(number % tile.size.x, number / tile.size.x);
+}
+
+// Writes the picture where a ray has ended; else its state, and lists it for the next dispatch.
+fn finish(number: u32, walk: Walk, sum: Accumulated, tally: Tally) {
+    let is_lost = walk.recoveries > MOST_RECOVERIES;
+    if walk.phase == ENDED || is_lost {
+        let pixel = tile.origin + in_tile(number);
+        textureStore(target_image, vec2i(pixel), vec4f(sum.color, 1.0 - sum.transmittance));
         count(COUNT_FINISHED, 1u);
+        count(COUNT_LOST, select(0u, 1u, is_lost));
         atomicMax(&counters[2u * COUNT_PEELS], walk.peels);
+    } else {
+        ray_states[LIBC_STATE * number] = bitcast<vec4u>(vec4f(sum.color, sum.transmittance));
+        store_walk(number, walk);
+        rays_left[atomicAdd(&rays_left_count, 1u)] = number;
+        count(COUNT_PAUSED, select(0u, 1u, walk.phase != NEEDS_ENTRY));
+        count(COUNT_RECOVERED, select(0u, 1u, walk.phase == STRAYED));
     }
-    ray_states[state] = bitcast<vec4u>(vec4f(sum.color, sum.transmittance));
-    ray_states[state + 1u] = vec4u(bitcast<vec3u>(vec3f(walk.n, walk.done, walk.entry_t)), walk.entry);
-    ray_states[state + 2u] = bitcast<vec4u>(vec4f(walk.uvw, walk.t));
-    ray_states[state + 3u] = vec4u(walk.column, phase | walk.exit_face << 3u | walk.layer << 6u, walk.peels,
-        walk.recoveries | walk.stalls << 16u);
-    count(COUNT_PAUSED, select(0u, 1u, phase == WALKS || phase == CROSSES_FAULT || phase == STRAYED));
-    count(COUNT_RECOVERED, select(0u, 1u, phase == STRAYED));
-    count(COUNT_LOST, lost);
+    add_up(tally);
+}
+
+fn add_up(tally: Tally) {
     count(COUNT_SAMPLES, tally.samples);
     count(COUNT_ITERATIONS, tally.iterations);
     count(COUNT_STEPS, tally.steps);
@@ -329,12 +339,21 @@ struct Tally {
     work: u32,
 }
 
-fn load_walk(state: u32) -> Walk {
+fn load_walk(number: u32) -> Walk {
+    let state = LIBC_STATE * number;
     let a = ray_states[state + 1u];
     let b = bitcast<vec4f>(ray_states[state + 2u]);
     let c = ray_states[state + 3u];
     return Walk(c.y & 7u, c.x, c.y >> 6u, b.w, b.xyz, c.y >> 3u & 7u, bitcast<f32>(a.y), bitcast<f32>(a.x),
         bitcast<f32>(a.z), a.w, c.z, c.w & 0xffffu, c.w >> 16u);
+}
+
+fn store_walk(number: u32, walk: Walk) {
+    let state = LIBC_STATE * number;
+    ray_states[state + 1u] = vec4u(bitcast<vec3u>(vec3f(walk.n, walk.done, walk.entry_t)), walk.entry);
+    ray_states[state + 2u] = bitcast<vec4u>(vec4f(walk.uvw, walk.t));
+    ray_states[state + 3u] = vec4u(walk.column, walk.phase | walk.exit_face << 3u | walk.layer << 6u, walk.peels,
+        walk.recoveries | walk.stalls << 16u);
 }
 
 // Locates the ray at its distance; it walks on in its cell, or needs an entry where there is none.

@@ -87,6 +87,8 @@ pub struct Round<'a> {
     pub size: [u32; 2],
     /// True in the tile's first round, before which its rays have no state.
     pub starts: bool,
+    /// Rays of the tile that have not ended.
+    pub rays_left: u32,
     /// Rays that paused within what they were doing in the round before.
     pub paused: u64,
     /// Of these, rays that lost their way.
@@ -117,12 +119,13 @@ impl Round<'_> {
         Some((set, begin, end))
     }
 
-    /// Records a dispatch with one invocation a pixel of the tile; `own` is bind group 3.
+    /// Records a dispatch that covers `size` invocations; `own` is bind group 3.
     pub fn compute(
         &self,
         encoder: &mut wgpu::CommandEncoder,
         pipeline: &Pipeline,
         own: Option<&wgpu::BindGroup>,
+        size: [u32; 2],
         place: Place,
     ) {
         let times = self.times(place);
@@ -140,7 +143,7 @@ impl Round<'_> {
         for (n, group) in (0..).zip(self.groups.iter().chain(own)) {
             pass.set_bind_group(n, group, &[]);
         }
-        let [x, y, _] = pipeline.groups_for([self.size[0], self.size[1], 1]);
+        let [x, y, _] = pipeline.groups_for([size[0], size[1], 1]);
         pass.dispatch_workgroups(x, y, 1);
     }
 
@@ -282,9 +285,10 @@ impl Bound<'_> {
         let most = WORK_LIMIT[usize::from(!self.gpu.is_software())];
         let mut before = *stats;
         while stats.finished_rays < goal {
-            uniform.work_limit = pace.work_limit(rect.area(), strategy.least_work(), most);
+            let left = goal - stats.finished_rays;
+            uniform.work_limit = pace.work_limit(left, strategy.least_work(), most);
             let now = *stats;
-            let took = self.submit(&mut *strategy, &uniform, &before, stats)?;
+            let took = self.submit(&mut *strategy, &uniform, left as u32, &before, stats)?;
             pace.learn(took, stats.work - now.work);
             before = now;
             uniform.resume = 1;
@@ -297,6 +301,7 @@ impl Bound<'_> {
         &self,
         strategy: &mut dyn RenderStrategy,
         uniform: &Tile,
+        rays_left: u32,
         before: &FrameStats,
         stats: &mut FrameStats,
     ) -> Result<Duration, GpuError> {
@@ -308,6 +313,7 @@ impl Bound<'_> {
             gpu,
             size: uniform.size,
             starts: uniform.resume == 0,
+            rays_left,
             paused: stats.pauses - before.pauses,
             strayed: stats.recovered_rays - before.recovered_rays,
             groups: &self.groups,

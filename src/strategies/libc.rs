@@ -7,16 +7,20 @@
 
 use super::{Preparation, RenderStrategy};
 use crate::gpu::faces::{BoundaryFaces, FaceMode, FaceTarget};
-use crate::gpu::{Gpu, GpuBytes, GpuError, Pipeline, Place, Round};
+use crate::gpu::{Gpu, GpuBytes, GpuError, Pipeline, Place, Round, tiles};
 use crate::scene::{Integration, Interpolation, LibcSettings};
 
 /// The strategy with its compiled shaders and the list of faces.
 pub struct Libc {
-    place: Pipeline,
+    begin: Pipeline,
     walk: Pipeline,
+    set_right: Pipeline,
     variant: Variant,
     faces: BoundaryFaces,
     target: Option<FaceTarget>,
+    /// Rays left before and after a round, in turn.
+    rays: [wgpu::Buffer; 2],
+    rays_count: wgpu::Buffer,
 }
 
 /// Options that are constants of the walk's pipeline.
@@ -50,24 +54,25 @@ impl Libc {
             interpolation: Interpolation::Vertex,
         };
         Ok(Self {
-            place: Pipeline::variant(gpu, "libc", "place", &[])?,
+            begin: Pipeline::variant(gpu, "libc", "begin", &[])?,
             walk: variant.compile(gpu)?,
+            set_right: Pipeline::variant(gpu, "libc", "set_right", &[])?,
             variant,
             faces: BoundaryFaces::new(gpu)?,
             target: None,
+            rays: [0, 1].map(|_| gpu.scratch("rays left", 4 * tiles::MAX_AREA)),
+            rays_count: gpu.scratch("number of rays left", 16),
         })
     }
 }
 
-/// What a dispatch does; the order is that of the shader's constants.
+/// What a dispatch does beside taking rays further.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Stage {
-    /// Begins a tile.
-    Begins,
+    /// Nothing: paused rays go on.
+    GoesOn,
     /// Takes the entries just drawn.
     Enters,
-    /// Takes paused rays further.
-    GoesOn,
 }
 
 impl RenderStrategy for Libc {
@@ -109,28 +114,38 @@ impl RenderStrategy for Libc {
 
     fn encode(&mut self, round: &Round<'_>, encoder: &mut wgpu::CommandEncoder) {
         let target = FaceTarget::fitting(self.target.take(), round.gpu, round.size);
-        let record = |encoder: &mut _, pipeline: &Pipeline, stage: Stage, place| {
-            let stage = round.gpu.uniform("stage", &[stage as u32, 0, 0, 0]);
-            let entries = wgpu::BindingResource::TextureView(&target.met);
-            let own = [stage.as_entire_binding(), entries];
+        let [before, after] = &self.rays;
+        let record = |encoder: &mut _, pipeline: &Pipeline, stage: Stage, size, place| {
+            let stage = round
+                .gpu
+                .uniform("stage", &[stage as u32, round.rays_left, 0, 0]);
+            let own = [
+                stage.as_entire_binding(),
+                wgpu::BindingResource::TextureView(&target.met),
+                before.as_entire_binding(),
+                after.as_entire_binding(),
+                self.rays_count.as_entire_binding(),
+            ];
             let own = round.gpu.bind(&pipeline.own, &own);
-            round.compute(encoder, pipeline, Some(&own), place);
+            round.compute(encoder, pipeline, Some(&own), size, place);
         };
-        if round.strayed > 0 {
-            record(encoder, &self.place, Stage::GoesOn, Place::First);
-            record(encoder, &self.walk, Stage::GoesOn, Place::Last);
+        let rays = [round.rays_left, 1];
+        encoder.clear_buffer(&self.rays_count, 0, None);
+        if round.starts {
+            record(encoder, &self.begin, Stage::GoesOn, round.size, Place::Only);
         } else if round.paused > 0 {
-            record(encoder, &self.walk, Stage::GoesOn, Place::Only);
-        } else {
-            let mut place = Place::First;
-            if round.starts {
-                record(encoder, &self.place, Stage::Begins, place);
-                place = Place::Between;
+            let mut place = Place::Only;
+            if round.strayed > 0 {
+                record(encoder, &self.set_right, Stage::GoesOn, rays, Place::First);
+                place = Place::Last;
             }
+            record(encoder, &self.walk, Stage::GoesOn, rays, place);
+        } else {
             self.faces
-                .draw(round, encoder, &target, FaceMode::Peel, place);
-            record(encoder, &self.walk, Stage::Enters, Place::Last);
+                .draw(round, encoder, &target, FaceMode::Peel, Place::First);
+            record(encoder, &self.walk, Stage::Enters, rays, Place::Last);
         }
+        self.rays.swap(0, 1);
         self.target = Some(target);
     }
 }

@@ -31,6 +31,6 @@ impl RenderStrategy for Plts {
     }
 
     fn encode(&mut self, round: &Round<'_>, encoder: &mut wgpu::CommandEncoder) {
-        round.compute(encoder, &self.pipeline, None, Place::Only);
+        round.compute(encoder, &self.pipeline, None, round.size, Place::Only);
     }
 }
