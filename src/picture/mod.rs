@@ -37,6 +37,25 @@ impl Image {
     }
 }
 
+/// A picture in 8-bit sRGB.
+///
+/// **Shape**: `pixels[y * width + x]`, the top row first.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Rgb8 {
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+    /// Red, green, blue.
+    pub pixels: Vec<[u8; 3]>,
+}
+
+impl Rgb8 {
+    /// A picture of one color.
+    pub fn filled(size: [u32; 2], color: [u8; 3]) -> Self {
+        let pixels = vec![color; size[0] as usize * size[1] as usize];
+        Self { size, pixels }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
