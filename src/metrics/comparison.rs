@@ -63,12 +63,12 @@ mod tests {
         let equal = Comparison::of(&a, &b).unwrap();
         let json = r#"{"psnr_db":null,"ssim":1.0,"ciede2000_mean":0.0,"ciede2000_p99":0.0}"#;
         assert_eq!(serde_json::to_string(&equal).unwrap(), json);
-        // Three of 200 pixels are white instead of black: 20 dB would be one in a hundred.
+        // Three of 200 pixels are white instead of black, so the mean square is 3/200 of the peak's.
         b.pixels[..3].fill([255; 3]);
         let found = Comparison::of(&a, &b).unwrap();
         assert!((found.psnr_db - 10.0 * (200.0f64 / 3.0).log10()).abs() < 1e-9);
         assert!((found.ciede2000_mean - 1.5).abs() < 1e-4);
-        // Rank 0.99 * 199 = 197.01: the second largest but one of three white ones.
+        // Rank 0.99 * 199 = 197.01 of 0..199 lies among the three white ones, 197 to 199.
         assert!((found.ciede2000_p99 - 100.0).abs() < 1e-2);
         assert!(found.ssim < 1.0);
     }
