@@ -1,8 +1,14 @@
 //! How far two pictures are apart.
 
+mod ciede2000;
+mod comparison;
 mod psnr;
+mod ssim;
 
+pub use ciede2000::{ciede2000, ciede2000_map, mean, percentile};
+pub use comparison::{Comparison, UnlikeSizes};
 pub use psnr::psnr_8bit;
+pub use ssim::ssim_8bit;
 
 /// Fraction of pixels, 0..1, whose four channels all differ by at most `tolerance`.
 ///

@@ -1,10 +1,10 @@
 //! Title, legend, orientation axes and the model's box, drawn into the 8-bit picture.
 
 use super::canvas::Canvas;
+use super::pen::Pen;
 use super::{Image, axes, legend};
 use crate::case::Case;
 use crate::scene::View;
-use crate::transfer::function::linear_from_srgb;
 
 /// What to write and draw.
 #[derive(Debug, Clone, Default)]
@@ -59,73 +59,16 @@ pub fn annotate(rgb: &mut [[u8; 3]], image: &Image, view: &View, annotations: &A
     if image.size[0] < SMALLEST[0] || image.size[1] < SMALLEST[1] {
         return;
     }
-    let mut pen = Pen::new(Canvas::new(image.size, rgb), view.background);
+    let canvas = Canvas::new(image.size, rgb);
+    let mut pen = Pen::new(canvas, view.background, Pen::unit_of(image.size));
     if annotations.show_box {
         axes::draw_box(&mut pen, image, view);
         axes::draw_axes(&mut pen, view);
     }
     if annotations.show_legend {
         pen.title(&annotations.title);
-        legend::draw(&mut pen, view, annotations);
-    }
-}
-
-/// A canvas with the color and sizes that suit its picture.
-pub struct Pen<'a> {
-    pub canvas: Canvas<'a>,
-    /// Color of text and lines.
-    pub ink: [u8; 3],
-    /// The picture's background.
-    pub paper: [u8; 3],
-    pub dark_paper: bool,
-    /// Text height in pixels; the unit of every size here.
-    pub unit: f64,
-    /// Width of thin lines in pixels.
-    pub thin: f64,
-}
-
-impl<'a> Pen<'a> {
-    fn new(canvas: Canvas<'a>, background: [f64; 3]) -> Self {
-        let [r, g, b] = background.map(linear_from_srgb);
-        // At this luminance black and white stand out equally (contrast ratio of WCAG 2).
-        let dark_paper = 0.2126 * r + 0.7152 * g + 0.0722 * b < 0.179;
-        let smaller = f64::from(canvas.size[0].min(canvas.size[1]));
-        let unit = (smaller / 42.0).clamp(11.0, 160.0);
-        Self {
-            canvas,
-            ink: if dark_paper { [238; 3] } else { [28; 3] },
-            paper: background.map(|v| (255.0 * v).round() as u8),
-            dark_paper,
-            unit,
-            thin: (unit / 22.0).max(1.0),
-        }
-    }
-
-    /// Fades what lies under text or legend; on the bare background nothing changes.
-    pub fn plate(&mut self, a: [f64; 2], b: [f64; 2]) {
-        self.canvas.fill(a, b, self.paper, 0.8);
-    }
-
-    /// A line of text in ink.
-    pub fn write(&mut self, text: &str, at: [f64; 2]) {
-        self.canvas.text(text, at, self.unit, self.ink);
-    }
-
-    fn title(&mut self, title: &str) {
-        let margin = self.unit;
-        let room = f64::from(self.canvas.size[0]) - 2.0 * margin;
-        let wanted = 1.25 * self.unit;
-        let fit = room / self.canvas.text_width(title, wanted).max(1.0);
-        // Long titles become smaller first, then shorter.
-        let height = wanted * fit.clamp(0.7, 1.0);
-        let title = self.canvas.cut(title, height, room);
-        let end = margin + self.canvas.text_width(&title, height);
-        let top = 0.7 * margin;
-        self.plate(
-            [0.5 * margin, 0.5 * top],
-            [end + 0.5 * margin, top + 1.2 * height],
-        );
-        self.canvas.text(&title, [margin, top], height, self.ink);
+        let heading = [&annotations.property, &annotations.unit];
+        legend::draw(&mut pen, &view.transfer, heading.map(String::as_str));
     }
 }
 

@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3};
 
 use super::Image;
-use super::annotate::Pen;
+use super::pen::Pen;
 use super::ticks::shortened;
 use crate::scene::{Camera, View};
 

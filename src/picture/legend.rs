@@ -1,8 +1,8 @@
 //! The legend: a bar of the transfer function's colors with round values and the opacity curve.
 
-use super::annotate::{Annotations, Pen};
+use super::pen::Pen;
+use super::srgb_8bit;
 use super::ticks::labels;
-use crate::scene::View;
 use crate::transfer::TransferFunction;
 
 /// Where the bar is, in pixels.
@@ -39,13 +39,13 @@ impl Bar {
     }
 }
 
-/// Draws the legend at the right edge.
-pub fn draw(pen: &mut Pen, view: &View, annotations: &Annotations) {
+/// Draws the legend at the right edge; empty lines of the heading take no room.
+pub fn draw(pen: &mut Pen, transfer: &TransferFunction, heading: [&str; 2]) {
     let [w, h] = pen.canvas.size.map(f64::from);
     let unit = pen.unit;
     let height = (0.5 * h).min(20.0 * unit);
     let wanted = (height / (2.2 * unit)).clamp(2.0, 7.0) as usize;
-    let labels = labels(view.transfer.range, wanted);
+    let labels = labels(transfer.range, wanted);
     let label_width = |l: &(f64, String)| pen.canvas.text_width(&l.1, unit);
     let widest = labels.iter().map(label_width).fold(0.0, f64::max);
     let right = (w - 1.6 * unit - widest).max(0.5 * w).round();
@@ -56,7 +56,7 @@ pub fn draw(pen: &mut Pen, view: &View, annotations: &Annotations) {
         top,
         bottom: (top + height).round(),
     };
-    let heading = [&annotations.property, &annotations.unit]
+    let heading = heading
         .into_iter()
         .filter(|line| !line.is_empty())
         .map(|line| pen.canvas.cut(line, unit, 0.45 * w))
@@ -75,30 +75,19 @@ pub fn draw(pen: &mut Pen, view: &View, annotations: &Annotations) {
     for (n, line) in heading.iter().enumerate() {
         pen.write(line, [heading_left, first_line + 1.2 * unit * n as f64]);
     }
-    colors(pen, &bar, &view.transfer);
-    opacity(pen, &bar, &view.transfer);
-    values(pen, &bar, &view.transfer, &labels);
+    colors(pen, &bar, transfer);
+    opacity(pen, &bar, transfer);
+    values(pen, &bar, transfer, &labels);
 }
 
 fn colors(pen: &mut Pen, bar: &Bar, transfer: &TransferFunction) {
     for (y, position) in bar.rows(transfer) {
-        let color = transfer.srgb(position).map(|v| (255.0 * v).round() as u8);
+        let color = srgb_8bit(transfer.srgb(position));
         for x in bar.left as i64..bar.right as i64 {
             pen.canvas.blend(x, y, color, 1.0);
         }
     }
-    let (ink, thin) = (pen.ink, pen.thin);
-    let corners = [
-        [bar.left, bar.top],
-        [bar.right, bar.top],
-        [bar.right, bar.bottom],
-        [bar.left, bar.bottom],
-        [bar.left, bar.top],
-    ];
-    for side in corners.windows(2) {
-        let ends = [side[0], side[1]];
-        pen.canvas.line(ends, [thin; 2], ink, |_, _| 0.8);
-    }
+    pen.frame([bar.left, bar.top], [bar.right, bar.bottom], 0.8);
 }
 
 /// The opacity curve as a shape left of the bar, widest where the opacity is largest.
@@ -119,11 +108,10 @@ fn opacity(pen: &mut Pen, bar: &Bar, transfer: &TransferFunction) {
 }
 
 fn values(pen: &mut Pen, bar: &Bar, transfer: &TransferFunction, labels: &[(f64, String)]) {
-    let (unit, ink, thin) = (pen.unit, pen.ink, pen.thin);
+    let unit = pen.unit;
     for (value, text) in labels {
         let (x, y) = (bar.right, bar.y(transfer, *value));
-        let tick = [[x, y], [x + 0.35 * unit, y]];
-        pen.canvas.line(tick, [thin; 2], ink, |_, _| 1.0);
+        pen.stroke([[x, y], [x + 0.35 * unit, y]], 1.0);
         pen.write(text, [x + 0.6 * unit, y - 0.55 * unit]);
     }
 }

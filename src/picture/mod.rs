@@ -1,14 +1,24 @@
-//! From linear, premultiplied pixels to files with legend, title and axes.
+//! From linear, premultiplied pixels to files with legend, title and axes; difference maps, plots and
+//! contact sheets.
 
 mod annotate;
 mod axes;
 mod canvas;
+mod difference;
 mod files;
 mod legend;
+mod pen;
+mod plot;
+mod sheet;
 mod ticks;
 
 pub use annotate::{Annotations, annotate, finished};
+pub use difference::{difference_colors, difference_picture};
 pub use files::{Format, PictureError, write_exr, write_png};
+pub use plot::{Plot, Series};
+pub use sheet::{SheetError, Tile, contact_sheet};
+
+use canvas::Canvas;
 
 use crate::transfer::function::{linear_from_srgb, srgb_from_linear};
 
@@ -37,6 +47,55 @@ impl Image {
     }
 }
 
+/// A picture in 8-bit sRGB.
+///
+/// **Shape**: `pixels[y * width + x]`, the top row first.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Rgb8 {
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+    /// Red, green, blue.
+    pub pixels: Vec<[u8; 3]>,
+}
+
+impl Rgb8 {
+    /// A picture of one color.
+    pub fn filled(size: [u32; 2], color: [u8; 3]) -> Self {
+        let pixels = vec![color; size[0] as usize * size[1] as usize];
+        Self { size, pixels }
+    }
+
+    /// Copies another picture into this one, its upper left corner at `at`; what would lie outside
+    /// is left out.
+    pub fn paste(&mut self, other: &Self, at: [u32; 2]) {
+        let [width, other_width] = [self.size[0], other.size[0]].map(|w| w as usize);
+        let [left, top] = at.map(|n| n as usize);
+        let room = width.saturating_sub(left).min(other_width);
+        if room == 0 {
+            return;
+        }
+        let rows = self.pixels.chunks_mut(width).skip(top);
+        for (row, other) in rows.zip(other.pixels.chunks(other_width)) {
+            for (pixel, color) in row
+                .iter_mut()
+                .skip(left)
+                .zip(&other[..room.min(other.len())])
+            {
+                *pixel = *color;
+            }
+        }
+    }
+
+    fn canvas(&mut self) -> Canvas<'_> {
+        Canvas::new(self.size, &mut self.pixels)
+    }
+}
+
+/// A color in sRGB, 0..1, with 8 bits a channel.
+fn srgb_8bit(color: [f64; 3]) -> [u8; 3] {
+    color.map(|v| (255.0 * v).round() as u8)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -51,5 +110,21 @@ mod tests {
         let over_white = image.over_background_8bit([1.0; 3]);
         // Linear 0.5 is sRGB 0.7354 = 188; half white and a quarter red: 0.75 -> 225, 0.5 -> 188.
         assert_eq!(over_white, [[255; 3], [188; 3], [225, 188, 188]]);
+    }
+
+    #[test]
+    fn paste_keeps_what_lies_outside() {
+        let (old, new) = ([1; 3], [9; 3]);
+        let pasted = |size, at| {
+            let mut picture = Rgb8::filled([3, 2], old);
+            picture.paste(&Rgb8::filled(size, new), at);
+            let is_new = |p: &[u8; 3]| u8::from(*p == new);
+            picture.pixels.iter().map(is_new).collect::<Vec<u8>>()
+        };
+        assert_eq!(pasted([1, 2], [1, 0]), [0, 1, 0, 0, 1, 0]);
+        assert_eq!(pasted([5, 5], [2, 1]), [0, 0, 0, 0, 0, 1]);
+        for (size, at) in [([2, 2], [3, 0]), ([2, 2], [0, 2]), ([0, 2], [0, 0])] {
+            assert_eq!(pasted(size, at), [0; 6], "{size:?} {at:?}");
+        }
     }
 }

@@ -1,4 +1,4 @@
-//! Round numbers along a legend.
+//! Round numbers along a legend or an axis.
 
 /// Round values within a range, about `wanted` of them, rising, each with its label; only the first
 /// value where the range is empty or not finite.
@@ -13,6 +13,24 @@ pub fn labels(range: [f64; 2], wanted: usize) -> Vec<(f64, String)> {
     let largest = values.iter().fold(0.0f64, |m, v| m.max(v.abs()));
     let named = |v: f64| (v, label(v, largest, step));
     values.into_iter().map(named).collect()
+}
+
+/// Powers of ten within a range, twice and five times them too where there are few, each with its
+/// label; those of [`labels`] where the range is less than a decade or not positive.
+pub fn log_labels([low, high]: [f64; 2], wanted: usize) -> Vec<(f64, String)> {
+    let decades = (high / low).log10();
+    if !(low > 0.0 && decades >= 1.0 && decades.is_finite()) {
+        return labels([low, high], wanted);
+    }
+    let few = 3.0 * decades <= 2.0 * wanted as f64;
+    let factors: &[f64] = if few { &[1.0, 2.0, 5.0] } else { &[1.0] };
+    let every = (decades / wanted.max(1) as f64).ceil() as i32;
+    (low.log10().floor() as i32..=high.log10().floor() as i32)
+        .filter(|power| power.rem_euclid(every) == 0)
+        .flat_map(|power| factors.iter().map(move |f| f * 10f64.powi(power)))
+        .filter(|v| (low * (1.0 - 1e-9)..=high * (1.0 + 1e-9)).contains(v))
+        .map(|v| (v, label(v, v, v)))
+        .collect()
 }
 
 fn ticks([low, high]: [f64; 2], wanted: usize) -> Vec<f64> {
@@ -136,5 +154,35 @@ mod tests {
             assert_eq!(labels(odd, 5).len(), 1, "{odd:?}");
         }
         assert_eq!(labels([0.0, 1.0], 0).len(), 1);
+    }
+
+    #[test]
+    fn log_labels_are_round_and_inside() {
+        let texts = |range, wanted| -> Vec<String> {
+            let labels = log_labels(range, wanted).into_iter();
+            labels.map(|l| l.1).collect()
+        };
+        assert_eq!(texts([0.9, 11.0], 5), ["1", "2", "5", "10"]);
+        assert_eq!(texts([0.015, 0.16], 2), ["0.02", "0.05", "0.1"]);
+        assert_eq!(
+            texts([1.0, 1e6], 7),
+            ["1", "10", "100", "1000", "10000", "100000", "1e6"]
+        );
+        assert_eq!(
+            texts([1e-6, 1e9], 5),
+            ["1e-6", "0.001", "1", "1000", "1e6", "1e9"]
+        );
+        // Less than a decade, and what has no logarithm.
+        assert_eq!(texts([20.0, 80.0], 3), ["20", "40", "60", "80"]);
+        assert_eq!(texts([0.0, 1.0], 2), ["0", "0.5", "1.0"]);
+        for odd in [
+            [f64::NAN, 1.0],
+            [1.0, f64::INFINITY],
+            [5e-324, 1e308],
+            [2.0, 1.0],
+        ] {
+            assert!(!texts(odd, 5).is_empty(), "{odd:?}");
+        }
+        assert!(!texts([1.0, 100.0], 0).is_empty());
     }
 }

@@ -16,7 +16,7 @@ pub fn color_map(name: &str) -> Option<Vec<(f64, [f64; 3])>> {
         "viridis" => sampled(&colorous::VIRIDIS, false),
         "cividis" => knots(&CIVIDIS),
         "plasma" => sampled(&colorous::PLASMA, false),
-        "inferno" => sampled(&colorous::INFERNO, false),
+        "inferno" => inferno(),
         "magma" => sampled(&colorous::MAGMA, false),
         // ColorBrewer's runs from red to blue; low values are blue here.
         "redblue" => sampled(&colorous::RED_BLUE, true),
@@ -25,6 +25,11 @@ pub fn color_map(name: &str) -> Option<Vec<(f64, [f64; 3])>> {
         "gray" => evenly(&[[0.0; 3], [1.0; 3]]),
         _ => return None,
     })
+}
+
+/// Perceptually even from black over red to pale yellow: zero is dark, so that little stands out.
+pub fn inferno() -> Vec<(f64, [f64; 3])> {
+    sampled(&colorous::INFERNO, false)
 }
 
 /// A position in steps of 1/255 and a color as 0xrrggbb.

@@ -1,0 +1,89 @@
+//! What all drawings share: a canvas with ink, paper and sizes, title and thin lines.
+
+use super::canvas::Canvas;
+use super::srgb_8bit;
+use crate::transfer::function::linear_from_srgb;
+
+/// A canvas with the color and sizes that suit its picture.
+pub struct Pen<'a> {
+    pub canvas: Canvas<'a>,
+    /// Color of text and lines.
+    pub ink: [u8; 3],
+    /// The picture's background.
+    pub paper: [u8; 3],
+    pub dark_paper: bool,
+    /// Text height in pixels; the unit of every size here.
+    pub unit: f64,
+    /// Width of thin lines in pixels.
+    pub thin: f64,
+}
+
+impl<'a> Pen<'a> {
+    /// Text height that suits a picture of this size.
+    pub fn unit_of(size: [u32; 2]) -> f64 {
+        (f64::from(size[0].min(size[1])) / 42.0).clamp(11.0, 160.0)
+    }
+
+    /// A pen that stands out from a background (sRGB, 0..1) and writes `unit` pixels high.
+    pub fn new(canvas: Canvas<'a>, background: [f64; 3], unit: f64) -> Self {
+        let [r, g, b] = background.map(linear_from_srgb);
+        // At this luminance black and white stand out equally (contrast ratio of WCAG 2).
+        let dark_paper = 0.2126 * r + 0.7152 * g + 0.0722 * b < 0.179;
+        Self {
+            canvas,
+            ink: if dark_paper { [238; 3] } else { [28; 3] },
+            paper: srgb_8bit(background),
+            dark_paper,
+            unit,
+            thin: (unit / 22.0).max(1.0),
+        }
+    }
+
+    /// Fades what lies under text or legend; on the bare background nothing changes.
+    pub fn plate(&mut self, a: [f64; 2], b: [f64; 2]) {
+        self.canvas.fill(a, b, self.paper, 0.8);
+    }
+
+    /// A line of text in ink.
+    pub fn write(&mut self, text: &str, at: [f64; 2]) {
+        self.canvas.text(text, at, self.unit, self.ink);
+    }
+
+    /// A rectangle of thin lines.
+    pub fn frame(&mut self, [left, top]: [f64; 2], [right, bottom]: [f64; 2], strength: f64) {
+        let corners = [
+            [left, top],
+            [right, top],
+            [right, bottom],
+            [left, bottom],
+            [left, top],
+        ];
+        for side in corners.windows(2) {
+            self.stroke([side[0], side[1]], strength);
+        }
+    }
+
+    /// A thin line.
+    pub fn stroke(&mut self, ends: [[f64; 2]; 2], strength: f64) {
+        let widths = [self.thin; 2];
+        self.canvas.line(ends, widths, self.ink, |_, _| strength);
+    }
+
+    /// The line at the top of a picture, above 2.2 units.
+    pub fn title(&mut self, title: &str) {
+        let margin = self.unit;
+        let room = f64::from(self.canvas.size[0]) - 2.0 * margin;
+        let wanted = 1.25 * self.unit;
+        let fit = room / self.canvas.text_width(title, wanted).max(1.0);
+        // Long titles become smaller first, then shorter.
+        let height = wanted * fit.clamp(0.7, 1.0);
+        let title = self.canvas.cut(title, height, room);
+        let end = margin + self.canvas.text_width(&title, height);
+        let top = 0.7 * margin;
+        self.plate(
+            [0.5 * margin, 0.5 * top],
+            [end + 0.5 * margin, top + 1.2 * height],
+        );
+        self.canvas.text(&title, [margin, top], height, self.ink);
+    }
+}
