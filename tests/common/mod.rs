@@ -8,6 +8,8 @@
     reason = "tests"
 )]
 
+pub mod shape;
+
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 

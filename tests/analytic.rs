@@ -1,0 +1,258 @@
+//! Pictures and values whose answer is a formula, by every strategy and the reference.
+#![allow(missing_docs, clippy::unwrap_used, clippy::panic, reason = "tests")]
+
+mod common;
+
+use common::shape::Shape;
+use glam::DVec3;
+use strataray::case::Case;
+use strataray::gpu::{GpuGrid, probe};
+use strataray::model::VertexField;
+use strataray::picture::Image;
+use strataray::reference::{self, Locator};
+use strataray::renderer::Renderer;
+use strataray::scene::{self, CameraSpec, FramingCamera, Interpolation, Scene, View};
+use strataray::strategies::StrategyKind;
+
+fn scene(azimuth: f64, elevation: f64, opacity: &[[f64; 2]]) -> Scene {
+    let mut scene = Scene {
+        size: [60, 45],
+        camera: CameraSpec::Framing(FramingCamera {
+            azimuth_degrees: azimuth,
+            elevation_degrees: elevation,
+            zoom: 1.1,
+        }),
+        property: Some("VALUE".into()),
+        range: Some([0.0, 1.0]),
+        vertical_exaggeration: Some(2.0),
+        sampling_step: Some(0.75),
+        early_termination: 0.0,
+        ..Scene::default()
+    };
+    scene.transfer.opacity = Some(opacity.to_vec());
+    scene.transfer.reference_length = Some(100.0);
+    scene
+}
+
+/// The picture by a strategy, or by the reference where there is none.
+fn picture(renderer: &mut Renderer, case: &Case, view: &View, by: Option<StrategyKind>) -> Image {
+    let Some(strategy) = by else {
+        return reference::render(&case.grid, view, &|_| true).unwrap();
+    };
+    let view = View {
+        strategy,
+        ..view.clone()
+    };
+    let frame = renderer.render(&case.grid, &view, &|_| true).unwrap();
+    frame.unwrap().image
+}
+
+fn all() -> impl Iterator<Item = Option<StrategyKind>> {
+    StrategyKind::ALL.into_iter().map(Some).chain([None])
+}
+
+/// Convex solids: where `normal . p <= offset` for each pair, in world space.
+type Solid = Vec<(DVec3, f64)>;
+
+/// Alpha of a pixel, from the number of samples on the lattice inside solids that do not overlap.
+fn alpha(view: &View, solids: &[Solid], x: u32, y: u32) -> [f64; 2] {
+    let ray = reference::Ray::through_pixel(view, x, y);
+    let step = view.sampling_step;
+    let tau = view.transfer.extinction(0.5);
+    let mut samples = [0.0, 0.0];
+    for solid in solids {
+        let (mut enter, mut leave) = (0.0f64, f64::INFINITY);
+        for (normal, offset) in solid {
+            let (rate, height) = (normal.dot(ray.direction), offset - normal.dot(ray.origin));
+            let t = height / rate;
+            match rate < 0.0 {
+                true => enter = enter.max(t),
+                false => leave = leave.min(t),
+            }
+        }
+        // A sample on a face may count or not; so both ends are given.
+        let count = |slack: f64| {
+            let first = ((enter + slack) / step - 0.5).ceil();
+            let last = ((leave - slack) / step - 0.5).floor();
+            (last - first + 1.0).max(0.0)
+        };
+        samples[0] += count(0.02);
+        samples[1] += count(-0.02);
+    }
+    samples.map(|n| 1.0 - (-tau * step * n).exp())
+}
+
+/// Half-spaces of a box between two corners, sheared by `x += shear * z`.
+fn slab(low: DVec3, high: DVec3, shear: f64) -> Solid {
+    let side = DVec3::new(1.0, 0.0, -shear);
+    vec![
+        (side, high.x),
+        (-side, -low.x),
+        (DVec3::Y, high.y),
+        (-DVec3::Y, -low.y),
+        (DVec3::Z, high.z),
+        (-DVec3::Z, -low.z),
+    ]
+}
+
+fn check_alphas(case: &Case, solids: &[Solid], what: &str) {
+    let Some(gpu) = common::gpu() else { return };
+    let mut renderer = Renderer::new(gpu, &case.grid).unwrap();
+    for (azimuth, elevation) in [(205.0, 35.0), (90.5, 7.0), (10.0, -50.0)] {
+        let scene = scene(azimuth, elevation, &[[0.0, 0.6], [1.0, 0.6]]);
+        let view = scene::resolve(&scene, case).unwrap();
+        for by in all() {
+            let image = picture(&mut renderer, case, &view, by);
+            let name = by.map_or("reference", StrategyKind::name);
+            let (mut wrong, mut covered, mut shifted) = (0, 0, 0);
+            for y in 0..view.size[1] {
+                for x in 0..view.size[0] {
+                    let found = f64::from(image.pixels[(x + view.size[0] * y) as usize][3]);
+                    let within = |[low, high]: [f64; 2]| found > low - 1e-4 && found < high + 1e-4;
+                    covered += u32::from(found > 0.0);
+                    wrong += u32::from(!within(alpha(&view, solids, x, y)));
+                    // The twin: the answer of another pixel is wrong.
+                    shifted += u32::from(!within(alpha(&view, solids, x + 2, y)));
+                }
+            }
+            println!("{what} {name} {azimuth}: {wrong} of {covered} wrong, shifted {shifted}");
+            assert!(wrong * 200 <= covered, "{what} {name} {azimuth}: {wrong}");
+            assert!(
+                shifted * 4 > covered && covered > 200,
+                "{shifted} {covered}"
+            );
+        }
+    }
+}
+
+#[test]
+fn ok_boxes_and_faulted_stacks_absorb_by_beer_lambert() {
+    // World z is -2 * depth; the box is 200 x 200 wide, from depth 1000 to 1040.
+    let [low, high] = [
+        DVec3::new(0.0, 0.0, -2080.0),
+        DVec3::new(200.0, 200.0, -2000.0),
+    ];
+    check_alphas(&Shape::default().case(), &[slab(low, high, 0.0)], "box");
+
+    // Pillars lean by 0.5 along x for each unit of depth, so by -0.25 for each of world z.
+    let sheared = Shape {
+        pillar: &|i, j| {
+            let [x, y] = [100.0 * i as f64, 100.0 * j as f64];
+            [[x - 50.0, y, 900.0], [x + 50.0, y, 1100.0]]
+        },
+        ..Shape::default()
+    };
+    let offset = DVec3::new(-0.25 * 2000.0, 0.0, 0.0);
+    let solid = slab(low + offset, high + offset, -0.25);
+    check_alphas(&sheared.case(), &[solid], "sheared box");
+
+    // The second column lies 13 deeper: three faces of the first are open in part.
+    let faulted = Shape {
+        depth: &|[i, _, k], [_, _, dk]| 1000.0 + 13.0 * i as f64 + 20.0 * (k + dk) as f64,
+        ..Shape::default()
+    };
+    let case = faulted.case();
+    assert_eq!(case.grid.fault_faces(), [4, 0]);
+    let left = slab(low, high - DVec3::new(100.0, 0.0, 0.0), 0.0);
+    let down = DVec3::new(0.0, 0.0, -26.0);
+    let right = slab(low + down + DVec3::new(100.0, 0.0, 0.0), high + down, 0.0);
+    check_alphas(&case, &[left, right], "faulted stack");
+}
+
+#[test]
+fn nothing_bleeds_across_a_fault() {
+    let Some(gpu) = common::gpu() else { return };
+    // 0 on one side, 1 on the other; only what lies between is opaque.
+    let covered = |throw: f64, by: Option<StrategyKind>| {
+        let case = Shape {
+            depth: &|[i, _, k], [_, _, dk]| 1000.0 + throw * i as f64 + 20.0 * (k + dk) as f64,
+            value: &|[i, _, _]| i as f64,
+            ..Shape::default()
+        }
+        .case();
+        let opacity = [
+            [0.0, 0.0],
+            [0.02, 0.0],
+            [0.1, 0.9],
+            [0.9, 0.9],
+            [0.98, 0.0],
+            [1.0, 0.0],
+        ];
+        let view = scene::resolve(&scene(205.0, 35.0, &opacity), &case).unwrap();
+        let mut renderer = Renderer::new(gpu.clone(), &case.grid).unwrap();
+        let image = picture(&mut renderer, &case, &view, by);
+        image.pixels.iter().filter(|p| p[3] > 0.0).count()
+    };
+    for by in all() {
+        assert_eq!(covered(7.0, by), 0, "{by:?}");
+        assert!(
+            covered(0.0, by) > 200,
+            "{by:?}: without a throw values blend"
+        );
+    }
+}
+
+#[test]
+fn a_linear_field_is_reproduced_inside_on_both() {
+    let Some(gpu) = common::gpu() else { return };
+    // Equal parallelepipeds: leaning pillars, dipping layers. Then the mean of the cells around an
+    // inner vertex is the field there.
+    let corner = |i: usize, j: usize, k: usize| {
+        let [i, j, k] = [i as f64, j as f64, k as f64];
+        let depth = 2000.0 + 12.0 * i - 7.0 * j + 15.0 * k;
+        let lean = DVec3::new(0.3, -0.2, 0.0) * (depth - 2000.0);
+        DVec3::new(110.0 * i + 8.0 * j, 90.0 * j - 5.0 * i, depth) + lean
+    };
+    let linear = |p: DVec3| 3.0 + p.dot(DVec3::new(2e-3, -3e-3, 4e-3));
+    let center = |[i, j, k]: [usize; 3]| 0.5 * (corner(i, j, k) + corner(i + 1, j + 1, k + 1));
+    let case = |square: f64| {
+        Shape {
+            dims: [6, 5, 4],
+            pillar: &|i, j| [corner(i, j, 0), corner(i, j, 4)].map(|p| p.to_array()),
+            depth: &|[i, j, k], [di, dj, dk]| corner(i + di, j + dj, k + dk).z,
+            value: &|ijk| linear(center(ijk)) + square * center(ijk).x.powi(2),
+        }
+        .case()
+    };
+    let errors = |square: f64| {
+        let case = case(square);
+        let field = case.field("VALUE", 0).unwrap();
+        let mut random = fastrand::Rng::with_seed(12);
+        let points: Vec<DVec3> = (0..2000)
+            .map(|_| {
+                // Within the cells that touch inner vertices only.
+                let mut at = |n: usize| 1.01 + random.f64() * (n as f64 - 2.02);
+                let [u, v, w] = [at(6), at(5), at(4)];
+                let axis = |a: DVec3| a - corner(0, 0, 0);
+                corner(0, 0, 0)
+                    + u * axis(corner(1, 0, 0))
+                    + v * axis(corner(0, 1, 0))
+                    + w * axis(corner(0, 0, 1))
+            })
+            .collect();
+        let mut grid = GpuGrid::new(&gpu, &case.grid).unwrap();
+        let drawn = vec![true; case.grid.active_cells().len()];
+        grid.show(&gpu, &case.grid, &field, &drawn, Interpolation::Vertex)
+            .unwrap();
+        let found = probe::locate(&gpu, &grid, &case.grid, &points, Interpolation::Vertex).unwrap();
+        let locator = Locator::new(&case.grid);
+        let vertices = VertexField::new(&case.grid, &field);
+        let mut worst = [0.0f64; 2];
+        for (point, found) in points.iter().zip(found) {
+            let located = locator.locate(*point).unwrap();
+            let on_cpu = reference::value_at(&case.grid, &located, &field, Some(&vertices));
+            for (w, value) in worst
+                .iter_mut()
+                .zip([found.unwrap().value, on_cpu.unwrap()])
+            {
+                *w = w.max((value - linear(*point) - square * point.x.powi(2)).abs());
+            }
+        }
+        worst
+    };
+    let exact = errors(0.0);
+    println!("linear field, worst errors on GPU and CPU: {exact:?}");
+    assert!(exact.iter().all(|e| *e < 2e-5), "{exact:?}");
+    // The twin: a quadratic field is not.
+    assert!(errors(1e-5).iter().all(|e| *e > 1e-3));
+}

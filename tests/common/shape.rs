@@ -1,0 +1,64 @@
+//! Grids whose pillars, depths and values are functions of their place, written as decks and loaded.
+
+use std::fmt::Write;
+
+use strataray::case::Case;
+use strataray::load;
+
+/// A grid by formula; points are (x, y, depth).
+pub struct Shape<'a> {
+    pub dims: [usize; 3],
+    /// Upper and lower end of pillar (i, j).
+    pub pillar: &'a dyn Fn(usize, usize) -> [[f64; 3]; 2],
+    /// Depth of a corner (di, dj, dk) of cell (i, j, k).
+    pub depth: &'a dyn Fn([usize; 3], [usize; 3]) -> f64,
+    /// Value of a cell.
+    pub value: &'a dyn Fn([usize; 3]) -> f64,
+}
+
+impl Default for Shape<'_> {
+    /// Two by two by two cells of 100 x 100 x 20, the top at depth 1000; every value 0.5.
+    fn default() -> Self {
+        Self {
+            dims: [2, 2, 2],
+            pillar: &|i, j| {
+                let [x, y] = [100.0 * i as f64, 100.0 * j as f64];
+                [[x, y, 900.0], [x, y, 1100.0]]
+            },
+            depth: &|[_, _, k], [_, _, dk]| 1000.0 + 20.0 * (k + dk) as f64,
+            value: &|_| 0.5,
+        }
+    }
+}
+
+impl Shape<'_> {
+    /// The grid with its property `VALUE`, as the program loads it from a file.
+    pub fn case(&self) -> Case {
+        let [ni, nj, nk] = self.dims;
+        let mut text = format!("SPECGRID\n {ni} {nj} {nk} 1 F /\nCOORD\n");
+        for j in 0..=nj {
+            for i in 0..=ni {
+                for v in (self.pillar)(i, j).as_flattened() {
+                    write!(text, "{v} ").unwrap();
+                }
+            }
+        }
+        text += "/\nZCORN\n";
+        for at in 0..8 * ni * nj * nk {
+            let (x, rest) = (at % (2 * ni), at / (2 * ni));
+            let (y, z) = (rest % (2 * nj), rest / (2 * nj));
+            let depth = (self.depth)([x / 2, y / 2, z / 2], [x % 2, y % 2, z % 2]);
+            write!(text, "{depth} ").unwrap();
+        }
+        text += "/\nVALUE\n";
+        for cell in 0..ni * nj * nk {
+            let ijk = [cell % ni, cell / ni % nj, cell / ni / nj];
+            write!(text, "{} ", (self.value)(ijk)).unwrap();
+        }
+        text += "/\n";
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("shape.grdecl");
+        std::fs::write(&path, text).unwrap();
+        load::open(&path).unwrap()
+    }
+}
