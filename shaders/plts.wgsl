@@ -13,7 +13,7 @@
 
 const TOPOLOGICAL_LIMIT: u32 = 6u;
 // Steps below this end the iteration while marching; the error left is of its square.
-const MARCH_ENOUGH: f32 = 2e-4;
+const MARCH_ENOUGH: f32 = 5e-4;
 
 @compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {

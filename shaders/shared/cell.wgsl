@@ -35,6 +35,8 @@ struct Solution {
 // the first, so in exactly one.
 const INSIDE_SLACK: f32 = 1e-5;
 const NEWTON_LIMIT: u32 = 10u;
+// Newton steps below this converge: each next one is at most about a quarter of it.
+const SURE_STEP: f32 = 0.25;
 
 fn load_cell(column: u32, layer: u32, interpolation: u32) -> Cell {
     let lists = column_lists[column];
@@ -132,10 +134,20 @@ fn solve(cell: Cell, point: vec3f, start: vec3f, enough: f32) -> Solution {
         let residual = point - evaluate(cell, q).xyz;
         let step = vec3f(dot(s.inverse_u, residual), dot(s.inverse_v, residual), dot(s.inverse_w, residual));
         let length = max(abs(step.x), max(abs(step.y), abs(step.z)));
-        // Damped: a step never leads further than one cell.
-        s.uvw = clamp(q + step * min(1.0, 1.0 / max(length, 1e-30)), vec3f(-2.0), vec3f(3.0));
+        // Damped: a step never leads further than one cell. In thin layers the point may lie hundreds of
+        // cells away: two steps outside is enough to know.
+        let next = q + step * min(1.0, 1.0 / max(length, 1e-30));
+        s.uvw = clamp(next, vec3f(-1.01), vec3f(2.01));
+        if any(s.uvw != next) {
+            break;
+        }
         if length < enough || (length < 1e-2 && length > 0.5 * previous) {
             converged = true;
+            break;
+        }
+        // What is left is of the square of the step: so far outside it will not come in again.
+        let outside = max(-s.uvw, s.uvw - vec3f(1.0));
+        if length < SURE_STEP && max(outside.x, max(outside.y, outside.z)) > length {
             break;
         }
         previous = length;
