@@ -3,6 +3,8 @@
 //! Keywords: FILEHEAD, MAPUNITS, MAPAXES, GRIDUNIT, GRIDHEAD, COORD, ZCORN, ACTNUM, NNC1 with NNC2;
 //! sections of local grids start at LGR and end at ENDLGR. The README lists what is skipped.
 
+mod write;
+
 use std::path::Path;
 
 use crate::error::{At, ParseError, Warnings};
@@ -44,7 +46,7 @@ pub struct LocalGrid {
 }
 
 /// The global grid of an EGRID file.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Egrid {
     /// Cells along i, j and k.
     pub dims: [usize; 3],
