@@ -5,6 +5,7 @@ mod info;
 mod probe;
 mod progress;
 mod render;
+mod sample;
 mod scene_options;
 
 use std::path::PathBuf;
@@ -41,8 +42,8 @@ enum Command {
     Compare(Later),
     /// Times loading and rendering (not in this version).
     Bench(Later),
-    /// Writes a synthetic model (not in this version).
-    Sample(Later),
+    /// Writes a synthetic faulted model with time steps.
+    Sample(sample::Arguments),
 }
 
 /// Arguments of a command that a later version brings.
@@ -73,7 +74,7 @@ pub fn run() -> ExitCode {
         Some(Command::Animate(a)) => later("animate", &a),
         Some(Command::Compare(a)) => later("compare", &a),
         Some(Command::Bench(a)) => later("bench", &a),
-        Some(Command::Sample(a)) => later("sample", &a),
+        Some(Command::Sample(a)) => sample::run(&a),
         None => Err(anyhow::anyhow!(
             "the viewer is not part of this version; use `strataray render {}` for a picture, or `strataray --help`",
             arguments

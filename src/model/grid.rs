@@ -53,6 +53,9 @@ pub enum ModelError {
     /// The dimensions are zero or too large.
     #[error("a grid of {0} x {1} x {2} cells is not supported; 1 to 2^31-1 cells are")]
     Dimensions(usize, usize, usize),
+    /// The corners of so many cells do not fit in memory.
+    #[error("there is not enough memory for the corners of {0} x {1} x {2} cells")]
+    Memory(usize, usize, usize),
 }
 
 /// A coordinate line: the straight line on which corners lie.
@@ -279,18 +282,12 @@ where
     Z: Copy + Into<f64> + Sync,
 {
     let Dims { ni, nj, nk } = input.dims;
-    let cells = ni.checked_mul(nj).and_then(|n| n.checked_mul(nk));
-    if !cells.is_some_and(|n| (1..1 << 31).contains(&n)) {
-        return Err(ModelError::Dimensions(ni, nj, nk));
-    }
+    let cells = input.dims.checked_cells();
+    let cells = cells.ok_or(ModelError::Dimensions(ni, nj, nk))?;
     let lengths = [
         ("COORD", 6 * input.dims.pillars(), input.coord.len()),
-        ("ZCORN", 8 * input.dims.cells(), input.zcorn.len()),
-        (
-            "ACTNUM",
-            input.dims.cells(),
-            input.actnum.map_or(input.dims.cells(), <[_]>::len),
-        ),
+        ("ZCORN", 8 * cells, input.zcorn.len()),
+        ("ACTNUM", cells, input.actnum.map_or(cells, <[_]>::len)),
     ];
     for (keyword, expected, found) in lengths {
         if expected != found {

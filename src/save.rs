@@ -1,0 +1,188 @@
+//! From a synthetic model to the files of a case: the counterpart of [`crate::load`].
+
+use std::fs::File;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use strataray_parsers::cells::Head;
+use strataray_parsers::deck::{self, DeckWriter, GridText};
+use strataray_parsers::egrid::{self, Egrid, PorosityModel};
+use strataray_parsers::init;
+use strataray_parsers::restart::RestartWriter;
+use strataray_parsers::units::UnitSystem;
+
+use crate::model::synthetic::{Fields, Geometry, Step, Synthetic};
+
+/// Length unit of synthetic models and of their map.
+const METRES: &str = "METRES";
+/// Oil, water and gas, as INTEHEAD adds them.
+const PHASES: i32 = 7;
+/// How much longer a value takes as text than as binary data.
+const TEXT: usize = 4;
+
+/// Why a model could not be written.
+#[derive(Debug, thiserror::Error)]
+pub enum SaveError {
+    /// The file or folder cannot be written.
+    #[error("cannot write {}: {cause}", path.display())]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        cause: io::Error,
+    },
+    /// Whoever asked does not want it any more.
+    #[error("writing was cancelled")]
+    Cancelled,
+}
+
+/// Writes `NAME.EGRID`, `.INIT`, `.UNRST` and `.GRDECL` to `folder`, which is made where it is
+/// missing; returns their paths. `progress` gets the part done and returns false to cancel.
+///
+/// # Errors
+/// When a file cannot be written, or `progress` cancels.
+pub fn synthetic(
+    model: Synthetic,
+    name: &str,
+    folder: &Path,
+    progress: &dyn Fn(f64) -> bool,
+) -> Result<Vec<PathBuf>, SaveError> {
+    std::fs::create_dir_all(folder).map_err(|e| failed(folder, e))?;
+    let Synthetic {
+        geometry,
+        steps,
+        fields,
+    } = model;
+    let active = geometry.actnum.iter().filter(|a| **a != 0).count();
+    let head = Head {
+        units: Some(UnitSystem::Metric),
+        dims: [geometry.dims.ni, geometry.dims.nj, geometry.dims.nk].map(|n| n as i32),
+        active: active as i32,
+        phases: PHASES,
+        date: steps.first().map_or(String::new(), |s| s.date.clone()),
+        ..Head::default()
+    };
+    let geometry_work = 9 * geometry.dims.cells();
+    let text_work = TEXT * (geometry_work + Fields::STATIC.len() * geometry.dims.cells());
+    let static_work = Fields::STATIC.len() * active;
+    let step_work = Fields::DYNAMIC.len() * active;
+    let total = geometry_work + static_work + steps.len() * step_work + text_work;
+    let mut done = 0;
+    let mut advance = |work: usize| {
+        done += work;
+        match progress(done as f64 / total as f64) {
+            true => Ok(()),
+            false => Err(SaveError::Cancelled),
+        }
+    };
+    let path = |extension: &str| folder.join(format!("{name}.{extension}"));
+    let (grid, init, restart, text) = (path("EGRID"), path("INIT"), path("UNRST"), path("GRDECL"));
+    let egrid = to_egrid(geometry);
+    write(&grid, |file| egrid.write(file).map(drop))?;
+    advance(geometry_work)?;
+    write(&init, |file| {
+        init::write(file, &head, arrays(&fields, &Fields::STATIC, 0.0)).map(drop)
+    })?;
+    advance(static_work)?;
+    let mut writer = RestartWriter::new(create(&restart)?);
+    for step in &steps {
+        write_step(&mut writer, step, &head, &fields).map_err(|e| failed(&restart, e))?;
+        advance(step_work)?;
+    }
+    writer.finish().map_err(|e| failed(&restart, e))?;
+    write(&text, |file| write_text(file, &egrid, &fields))?;
+    advance(text_work)?;
+    Ok(vec![grid, init, restart, text])
+}
+
+fn failed(path: &Path, cause: io::Error) -> SaveError {
+    let path = path.to_owned();
+    SaveError::Io { path, cause }
+}
+
+fn create(path: &Path) -> Result<File, SaveError> {
+    File::create(path).map_err(|e| failed(path, e))
+}
+
+fn write(path: &Path, content: impl FnOnce(File) -> io::Result<()>) -> Result<(), SaveError> {
+    content(create(path)?).map_err(|e| failed(path, e))
+}
+
+fn to_egrid(geometry: Geometry) -> Egrid {
+    let Geometry {
+        dims,
+        coord,
+        zcorn,
+        actnum,
+        map_axes,
+    } = geometry;
+    Egrid {
+        dims: [dims.ni, dims.nj, dims.nk],
+        coord,
+        zcorn,
+        actnum: Some(actnum),
+        map_units: map_axes.map(|_| METRES.into()),
+        map_axes,
+        grid_unit: Some(egrid::GridUnit {
+            length: METRES.into(),
+            is_map: false,
+        }),
+        porosity_model: PorosityModel::Single,
+        nnc: Vec::new(),
+        local_connections: 0,
+        local_grids: Vec::new(),
+    }
+}
+
+/// Properties at a time, each computed when its turn comes.
+fn arrays<'a>(
+    fields: &'a Fields,
+    names: &'a [&'static str],
+    time: f64,
+) -> impl Iterator<Item = (&'static str, Vec<f32>)> + 'a {
+    let values = move |name: &&'static str| Some((*name, fields.values(name, time)?));
+    names.iter().filter_map(values)
+}
+
+fn write_step(
+    writer: &mut RestartWriter<File>,
+    step: &Step,
+    head: &Head,
+    fields: &Fields,
+) -> io::Result<()> {
+    let head = Head {
+        date: step.date.clone(),
+        ..head.clone()
+    };
+    let arrays = arrays(fields, &Fields::DYNAMIC, step.time);
+    writer.step(step.report, step.days, &head, &fields.wells(), arrays)
+}
+
+fn write_text(file: File, egrid: &Egrid, fields: &Fields) -> io::Result<()> {
+    let unit = deck::GridUnit {
+        name: METRES.into(),
+        is_map: false,
+    };
+    let mut writer = DeckWriter::new(file);
+    writer.grid(&GridText {
+        dims: egrid.dims,
+        coord: &egrid.coord,
+        zcorn: &egrid.zcorn,
+        actnum: egrid.actnum.as_deref(),
+        map_axes: egrid.map_axes,
+        map_units: egrid.map_units.as_deref(),
+        grid_unit: Some(&unit),
+    })?;
+    let actnum = egrid.actnum.as_deref().unwrap_or_default();
+    for (name, values) in arrays(fields, &Fields::STATIC, 0.0) {
+        // Text has a value for inactive cells too.
+        let mut active = values.into_iter();
+        let of = |a: &i32| match a {
+            0 => 0.0,
+            _ => active.next().unwrap_or_default(),
+        };
+        let all: Vec<f32> = actnum.iter().map(of).collect();
+        writer.property(name, &all)?;
+    }
+    writer.finish().map(drop)
+}
