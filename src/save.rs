@@ -36,17 +36,29 @@ pub enum SaveError {
     Cancelled,
 }
 
-/// Writes `NAME.EGRID`, `.INIT`, `.UNRST` and `.GRDECL` to `folder`, which is made where it is
-/// missing; returns their paths. `progress` gets the part done and returns false to cancel.
+/// Where to write a model.
+#[derive(Debug, Clone, Copy)]
+pub struct Target<'a> {
+    /// Folder, made where it is missing.
+    pub folder: &'a Path,
+    /// Base name of the files.
+    pub name: &'a str,
+    /// Write the grid and its static properties as text too.
+    pub text: bool,
+}
+
+/// Writes `NAME.EGRID`, `.INIT`, `.UNRST` and perhaps `.GRDECL`; returns their paths.
+///
+/// `progress` gets the part done and returns false to cancel.
 ///
 /// # Errors
 /// When a file cannot be written, or `progress` cancels.
 pub fn synthetic(
     model: Synthetic,
-    name: &str,
-    folder: &Path,
+    target: &Target<'_>,
     progress: &dyn Fn(f64) -> bool,
 ) -> Result<Vec<PathBuf>, SaveError> {
+    let Target { folder, name, text } = *target;
     std::fs::create_dir_all(folder).map_err(|e| failed(folder, e))?;
     let Synthetic {
         geometry,
@@ -63,7 +75,8 @@ pub fn synthetic(
         ..Head::default()
     };
     let geometry_work = 9 * geometry.dims.cells();
-    let text_work = TEXT * (geometry_work + Fields::STATIC.len() * geometry.dims.cells());
+    let text_work =
+        usize::from(text) * TEXT * (geometry_work + Fields::STATIC.len() * geometry.dims.cells());
     let static_work = Fields::STATIC.len() * active;
     let step_work = Fields::DYNAMIC.len() * active;
     let total = geometry_work + static_work + steps.len() * step_work + text_work;
@@ -76,7 +89,7 @@ pub fn synthetic(
         }
     };
     let path = |extension: &str| folder.join(format!("{name}.{extension}"));
-    let (grid, init, restart, text) = (path("EGRID"), path("INIT"), path("UNRST"), path("GRDECL"));
+    let (grid, init, restart) = (path("EGRID"), path("INIT"), path("UNRST"));
     let egrid = to_egrid(geometry);
     write(&grid, |file| egrid.write(file).map(drop))?;
     advance(geometry_work)?;
@@ -90,9 +103,14 @@ pub fn synthetic(
         advance(step_work)?;
     }
     writer.finish().map_err(|e| failed(&restart, e))?;
-    write(&text, |file| write_text(file, &egrid, &fields))?;
-    advance(text_work)?;
-    Ok(vec![grid, init, restart, text])
+    let mut files = vec![grid, init, restart];
+    if text {
+        let deck = path("GRDECL");
+        write(&deck, |file| write_text(file, &egrid, &fields))?;
+        advance(text_work)?;
+        files.push(deck);
+    }
+    Ok(files)
 }
 
 fn failed(path: &Path, cause: io::Error) -> SaveError {

@@ -24,8 +24,16 @@ fn build(name: &str, dims: Dims, seed: u64) -> Synthetic {
     recipe.build(dims, seed, STEPS).unwrap()
 }
 
+fn target(folder: &Path) -> save::Target<'_> {
+    save::Target {
+        folder,
+        name: "MODEL",
+        text: true,
+    }
+}
+
 fn write(model: Synthetic, folder: &Path) -> Vec<PathBuf> {
-    save::synthetic(model, "MODEL", folder, &|_| true).unwrap()
+    save::synthetic(model, &target(folder), &|_| true).unwrap()
 }
 
 /// The grid of a model without going through files.
@@ -379,6 +387,6 @@ fn err_command_in_one_sentence() {
 fn ok_cancelled_writing_says_so() {
     let folder = tempfile::tempdir().unwrap();
     let model = build("box", dims(2, 2, 2), 1);
-    let result = save::synthetic(model, "MODEL", folder.path(), &|done| done < 0.3);
+    let result = save::synthetic(model, &target(folder.path()), &|done| done < 0.3);
     assert!(matches!(result, Err(save::SaveError::Cancelled)));
 }

@@ -1,4 +1,4 @@
-//! What every writer of a grid checks first.
+//! What readers and writers of a grid check.
 
 use std::io;
 
@@ -30,10 +30,22 @@ pub(crate) fn check<T: Sync>(
         return Err(refused(message));
     }
     for (name, values) in [("COORD", coord), ("ZCORN", zcorn)] {
-        if let Some(at) = values.par_iter().position_any(|v| !is_finite(v)) {
-            let message = format!("{name}: value {} is not a finite number", at + 1);
+        if let Some(number) = first_not(values, &is_finite) {
+            let message = format!("{name}: value {number} is not a finite number");
             return Err(refused(message));
         }
     }
     Ok(())
+}
+
+/// Values looked at between two questions whether another thread has found one.
+const PIECE: usize = 1 << 14;
+
+/// Number from 1 of the first value that is not as it should be.
+pub(crate) fn first_not<T: Sync>(values: &[T], is: impl Fn(&T) -> bool + Sync) -> Option<usize> {
+    let pieces = values.par_chunks(PIECE).enumerate();
+    pieces.find_map_first(|(piece, values)| {
+        let at = values.iter().position(|v| !is(v))?;
+        Some(piece * PIECE + at + 1)
+    })
 }

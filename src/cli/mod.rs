@@ -1,8 +1,9 @@
 //! The command line: one file per command.
 
-mod cpu_time;
+mod bench;
 mod info;
 mod probe;
+mod process;
 mod progress;
 mod render;
 mod sample;
@@ -40,8 +41,8 @@ enum Command {
     Animate(Later),
     /// Strategies side by side (not in this version).
     Compare(Later),
-    /// Times loading and rendering (not in this version).
-    Bench(Later),
+    /// Times loading and rendering on this machine.
+    Bench(bench::Arguments),
     /// Writes a synthetic faulted model with time steps.
     Sample(sample::Arguments),
 }
@@ -73,7 +74,7 @@ pub fn run() -> ExitCode {
         Some(Command::Probe(a)) => probe::run(&a),
         Some(Command::Animate(a)) => later("animate", &a),
         Some(Command::Compare(a)) => later("compare", &a),
-        Some(Command::Bench(a)) => later("bench", &a),
+        Some(Command::Bench(a)) => bench::run(&a),
         Some(Command::Sample(a)) => sample::run(&a),
         None => Err(anyhow::anyhow!(
             "the viewer is not part of this version; use `strataray render {}` for a picture, or `strataray --help`",

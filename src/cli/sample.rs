@@ -59,7 +59,12 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let name = recipe.name.to_ascii_uppercase();
     let files = reporter.bar("writing", |progress| {
         let model = recipe.build(dims, arguments.seed, arguments.steps.into())?;
-        anyhow::Ok(save::synthetic(model, &name, &arguments.output, progress)?)
+        let target = save::Target {
+            folder: &arguments.output,
+            name: &name,
+            text: true,
+        };
+        anyhow::Ok(save::synthetic(model, &target, progress)?)
     })?;
     for file in &files {
         println!("{}", file.display());

@@ -238,6 +238,17 @@ impl Grid {
         &self.active_cells
     }
 
+    /// The active cells column by column: the order in which their depths lie in memory, for work on
+    /// all of them whose order does not matter.
+    pub fn active_by_column(&self) -> impl ParallelIterator<Item = Ijk> + '_ {
+        let columns = (0..self.dims.columns()).into_par_iter();
+        columns.flat_map_iter(move |column| {
+            let (i, j) = (column % self.dims.ni, column / self.dims.ni);
+            let layers = (0..self.dims.nk).map(move |k| Ijk { i, j, k });
+            layers.filter(|&ijk| self.is_active(ijk))
+        })
+    }
+
     /// Rank of a cell among the active ones, `None` where it is inactive.
     pub fn active_index(&self, cell: CellIndex) -> Option<ActiveIndex> {
         let rank = self.active_rank[cell.0 as usize];
@@ -269,9 +280,8 @@ impl Grid {
 
     /// Smallest and largest corner of the active cells in grid space; `None` without any.
     pub fn bounds(&self) -> Option<[DVec3; 2]> {
-        self.active_cells
-            .par_iter()
-            .map(|&cell| self.hexahedron(self.dims.ijk(cell)).bounds())
+        self.active_by_column()
+            .map(|ijk| self.hexahedron(ijk).bounds())
             .reduce_with(|a, b| [a[0].min(b[0]), a[1].max(b[1])])
     }
 }
@@ -302,17 +312,21 @@ where
     finite("ZCORN", input.zcorn)
 }
 
+/// Values looked at between two questions whether another thread has found one.
+const PIECE: usize = 1 << 14;
+
 fn finite<T: Copy + Into<f64> + Sync>(
     keyword: &'static str,
     values: &[T],
 ) -> Result<(), ModelError> {
-    match values.par_iter().position_first(|&v| !v.into().is_finite()) {
-        None => Ok(()),
-        Some(at) => Err(ModelError::NotFinite {
-            keyword,
-            index: at + 1,
-        }),
-    }
+    let pieces = values.par_chunks(PIECE).enumerate();
+    let bad = pieces.find_map_first(|(piece, values)| {
+        let at = values.iter().position(|&v| !v.into().is_finite())?;
+        Some(piece * PIECE + at + 1)
+    });
+    bad.map_or(Ok(()), |index| {
+        Err(ModelError::NotFinite { keyword, index })
+    })
 }
 
 pub(super) fn list(offset: usize, gapped: bool) -> DepthList {

@@ -140,8 +140,8 @@ impl<W: Write> DeckWriter<W> {
         if !starts || !spelled || name.len() > 8 {
             return Err(refused(format!("{name:?} is no keyword")));
         }
-        if let Some(at) = values.par_iter().position_any(|v| v.is_infinite()) {
-            return Err(refused(format!("{name}: value {} is infinite", at + 1)));
+        if let Some(number) = geometry::first_not(values, |v| !v.is_infinite()) {
+            return Err(refused(format!("{name}: value {number} is infinite")));
         }
         self.array(name, values)
     }

@@ -8,6 +8,7 @@ mod write;
 use std::path::Path;
 
 use crate::error::{At, ParseError, Warnings};
+use crate::geometry::first_not;
 use crate::records::{Entry, RecordFile};
 
 /// Unit of the grid's coordinates.
@@ -227,8 +228,8 @@ fn sized(
         return Err(file.error(entry, format!("expected {expected} values, found {found}")));
     }
     let values = file.f32s(entry)?;
-    match values.iter().position(|v| !v.is_finite()) {
-        Some(at) => Err(file.error(entry, format!("value {} is not a finite number", at + 1))),
+    match first_not(&values, |v| v.is_finite()) {
+        Some(number) => Err(file.error(entry, format!("value {number} is not a finite number"))),
         None => Ok(values),
     }
 }
