@@ -382,3 +382,50 @@ fn err_deck_that_could_not_be_read() {
         assert!(property(name, 0.0).contains("no keyword"), "{name}");
     }
 }
+
+/// Wall time of a large grid as text; run with `--ignored --nocapture`, and once more with
+/// `RAYON_NUM_THREADS=1`.
+#[test]
+#[ignore = "only measures"]
+fn speed_of_writing_a_large_deck() {
+    let dims = [160, 160, 50];
+    let mut random = fastrand::Rng::with_seed(3);
+    let depth = |n: usize| 2000.0 + n as f32 / 1e4;
+    let zcorn: Vec<f32> = (0..8 * 160 * 160 * 50)
+        .map(|n| depth(n) + random.f32())
+        .collect();
+    let coord = vec![1.0; 6 * 161 * 161];
+    let text = GridText {
+        dims,
+        coord: &coord,
+        zcorn: &zcorn,
+        actnum: None,
+        map_axes: None,
+        map_units: None,
+        grid_unit: None,
+    };
+    for _ in 0..5 {
+        let bytes = std::cell::Cell::new(0);
+        let start = std::time::Instant::now();
+        let mut writer = DeckWriter::new(Counted(&bytes));
+        writer.grid(&text).unwrap();
+        writer.finish().unwrap();
+        let megabytes = 1e-6 * bytes.get() as f64;
+        let seconds = start.elapsed().as_secs_f64();
+        println!("{megabytes:.0} MB, {:.0} MB/s", megabytes / seconds);
+    }
+}
+
+/// A writer that only counts.
+struct Counted<'a>(&'a std::cell::Cell<usize>);
+
+impl io::Write for Counted<'_> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.0.set(self.0.get() + bytes.len());
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}

@@ -15,6 +15,8 @@
 //!      2----3
 //! ```
 
+use std::iter::Sum;
+
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
@@ -238,15 +240,25 @@ impl Grid {
         &self.active_cells
     }
 
+    /// The active cells of a column (`i + ni * j`), downwards.
+    pub fn active_in_column(&self, column: usize) -> impl Iterator<Item = Ijk> + '_ {
+        let (i, j) = (column % self.dims.ni, column / self.dims.ni);
+        let layers = (0..self.dims.nk).map(move |k| Ijk { i, j, k });
+        layers.filter(|&ijk| self.is_active(ijk))
+    }
+
     /// The active cells column by column: the order in which their depths lie in memory, for work on
     /// all of them whose order does not matter.
     pub fn active_by_column(&self) -> impl ParallelIterator<Item = Ijk> + '_ {
         let columns = (0..self.dims.columns()).into_par_iter();
-        columns.flat_map_iter(move |column| {
-            let (i, j) = (column % self.dims.ni, column / self.dims.ni);
-            let layers = (0..self.dims.nk).map(move |k| Ijk { i, j, k });
-            layers.filter(|&ijk| self.is_active(ijk))
-        })
+        columns.flat_map_iter(|column| self.active_in_column(column))
+    }
+
+    /// The sum of a quantity over the active cells; the same bits with any number of threads.
+    pub fn sum_active<T: Sum + Send>(&self, of: impl Fn(Ijk) -> T + Sync) -> T {
+        let columns = (0..self.dims.columns()).into_par_iter();
+        let sums = columns.map(|column| self.active_in_column(column).map(&of).sum());
+        sums.collect::<Vec<T>>().into_iter().sum()
     }
 
     /// Rank of a cell among the active ones, `None` where it is inactive.
@@ -274,8 +286,7 @@ impl Grid {
 
     /// Sum of the active cells' volumes, negative where the grid is left-handed (x, y, depth).
     pub fn signed_bulk_volume(&self) -> f64 {
-        let volume = |&cell: &CellIndex| self.hexahedron(self.dims.ijk(cell)).signed_volume();
-        self.active_cells.par_iter().map(volume).sum()
+        self.sum_active(|ijk| self.hexahedron(ijk).signed_volume())
     }
 
     /// Smallest and largest corner of the active cells in grid space; `None` without any.

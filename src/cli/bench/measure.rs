@@ -27,7 +27,9 @@ pub struct CaseTimes {
     pub model_ms: f64,
     /// Finding all fault faces.
     pub topology_ms: f64,
-    /// Reading the property and resolving the scene.
+    /// Reading the values of the property alone.
+    pub property_ms: f64,
+    /// Resolving the scene, which reads the property too.
     pub read_ms: f64,
     pub upload_ms: f64,
     pub acceleration_ms: f64,
@@ -72,7 +74,9 @@ pub fn case(
     let (_, topology) = timed(|| case.grid.fault_faces());
     let first = scenes.first().context("there is no strategy to time")?;
     let (view, read) = timed(|| scene::resolve(first, &case));
-    let property = view?.property;
+    let View { property, step, .. } = view?;
+    let (field, property_time) = timed(|| case.field(&property, step));
+    field?;
     let (renderer, upload) = timed(|| Renderer::new(gpu.clone(), &case.grid));
     let mut renderer = renderer?;
     let mut strategies = Vec::new();
@@ -90,6 +94,7 @@ pub fn case(
         open_ms: ms(open.saturating_sub(model)),
         model_ms: ms(model),
         topology_ms: ms(topology),
+        property_ms: ms(property_time),
         read_ms: ms(read),
         upload_ms: ms(upload.saturating_sub(acceleration)),
         acceleration_ms: ms(acceleration),

@@ -13,7 +13,7 @@ impl Noise {
 
     /// A value in [-1, 1]; features are about one unit across, with finer ones of half their height.
     pub(super) fn at(self, p: DVec2) -> f64 {
-        self.at3(p.extend(0.5))
+        self.at3(p.extend(0.0))
     }
 
     /// The same over space.
