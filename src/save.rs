@@ -65,52 +65,81 @@ pub fn synthetic(
         steps,
         fields,
     } = model;
-    let active = geometry.actnum.iter().filter(|a| **a != 0).count();
-    let head = Head {
-        units: Some(UnitSystem::Metric),
-        dims: [geometry.dims.ni, geometry.dims.nj, geometry.dims.nk].map(|n| n as i32),
-        active: active as i32,
-        phases: PHASES,
-        date: steps.first().map_or(String::new(), |s| s.date.clone()),
-        ..Head::default()
-    };
-    let geometry_work = 9 * geometry.dims.cells();
-    let text_work =
-        usize::from(text) * TEXT * (geometry_work + Fields::STATIC.len() * geometry.dims.cells());
-    let static_work = Fields::STATIC.len() * active;
-    let step_work = Fields::DYNAMIC.len() * active;
-    let total = geometry_work + static_work + steps.len() * step_work + text_work;
-    let mut done = 0;
-    let mut advance = |work: usize| {
-        done += work;
-        match progress(done as f64 / total as f64) {
+    let head = head(&geometry);
+    let mut progress = Progress::new(&head, steps.len(), text, progress);
+    let path = |extension: &str| folder.join(format!("{name}.{extension}"));
+    let mut files = vec![path("EGRID"), path("INIT"), path("UNRST")];
+    let egrid = to_egrid(geometry);
+    write(&files[0], |file| egrid.write(file).map(drop))?;
+    progress.advance(progress.geometry)?;
+    write(&files[1], |file| {
+        init::write(file, &head, arrays(&fields, &Fields::STATIC, 0.0)).map(drop)
+    })?;
+    progress.advance(progress.statics)?;
+    let restart = |e| failed(&files[2], e);
+    let mut writer = RestartWriter::new(create(&files[2])?);
+    for step in &steps {
+        write_step(&mut writer, step, &head, &fields).map_err(restart)?;
+        progress.advance(progress.step)?;
+    }
+    writer.finish().map_err(restart)?;
+    if text {
+        files.push(path("GRDECL"));
+        write(&files[3], |file| write_text(file, &egrid, &fields))?;
+        progress.advance(progress.text)?;
+    }
+    Ok(files)
+}
+
+/// Values still to write, by what they are written to.
+struct Progress<'a> {
+    geometry: usize,
+    statics: usize,
+    step: usize,
+    text: usize,
+    total: usize,
+    done: usize,
+    tell: &'a dyn Fn(f64) -> bool,
+}
+
+impl<'a> Progress<'a> {
+    fn new(head: &Head, steps: usize, text: bool, tell: &'a dyn Fn(f64) -> bool) -> Self {
+        let cells = head.dims.iter().map(|n| *n as usize).product::<usize>();
+        let active = head.active as usize;
+        // Eight corners and the activity of a cell.
+        let geometry = 9 * cells;
+        let statics = Fields::STATIC.len() * active;
+        let step = Fields::DYNAMIC.len() * active;
+        let text = usize::from(text) * TEXT * (geometry + Fields::STATIC.len() * cells);
+        Self {
+            geometry,
+            statics,
+            step,
+            text,
+            total: geometry + statics + steps * step + text,
+            done: 0,
+            tell,
+        }
+    }
+
+    fn advance(&mut self, work: usize) -> Result<(), SaveError> {
+        self.done += work;
+        match (self.tell)(self.done as f64 / self.total as f64) {
             true => Ok(()),
             false => Err(SaveError::Cancelled),
         }
-    };
-    let path = |extension: &str| folder.join(format!("{name}.{extension}"));
-    let (grid, init, restart) = (path("EGRID"), path("INIT"), path("UNRST"));
-    let egrid = to_egrid(geometry);
-    write(&grid, |file| egrid.write(file).map(drop))?;
-    advance(geometry_work)?;
-    write(&init, |file| {
-        init::write(file, &head, arrays(&fields, &Fields::STATIC, 0.0)).map(drop)
-    })?;
-    advance(static_work)?;
-    let mut writer = RestartWriter::new(create(&restart)?);
-    for step in &steps {
-        write_step(&mut writer, step, &head, &fields).map_err(|e| failed(&restart, e))?;
-        advance(step_work)?;
     }
-    writer.finish().map_err(|e| failed(&restart, e))?;
-    let mut files = vec![grid, init, restart];
-    if text {
-        let deck = path("GRDECL");
-        write(&deck, |file| write_text(file, &egrid, &fields))?;
-        advance(text_work)?;
-        files.push(deck);
+}
+
+fn head(geometry: &Geometry) -> Head {
+    let dims = geometry.dims;
+    Head {
+        units: Some(UnitSystem::Metric),
+        dims: [dims.ni, dims.nj, dims.nk].map(|n| n as i32),
+        active: geometry.actnum.iter().filter(|a| **a != 0).count() as i32,
+        phases: PHASES,
+        ..Head::default()
     }
-    Ok(files)
 }
 
 fn failed(path: &Path, cause: io::Error) -> SaveError {
@@ -173,7 +202,7 @@ fn write_step(
         ..head.clone()
     };
     let arrays = arrays(fields, &Fields::DYNAMIC, step.time);
-    writer.step(step.report, step.days, &head, &fields.wells(), arrays)
+    writer.step(step.report, step.days, &head, fields.wells(), arrays)
 }
 
 fn write_text(file: File, egrid: &Egrid, fields: &Fields) -> io::Result<()> {

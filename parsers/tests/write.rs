@@ -213,7 +213,7 @@ fn err_cell_arrays_that_could_not_be_read() {
     };
     assert!(init(&negative, "PORO", 3).contains("expected -1"));
     let mut writer = RestartWriter::new(Vec::new());
-    let none = [("SWAT", Vec::new()); 0];
+    let none: [(&str, Vec<f32>); 0] = [];
     let said = refusal(writer.step(0, 0.0, &head(), &["A-LONG-NAME"], none.clone()));
     assert!(said.contains("A-LONG-NAME"), "{said}");
     let said = refusal(writer.step(u32::MAX, 0.0, &head(), &["A"], none));

@@ -17,6 +17,8 @@ use clap::{Parser, Subcommand};
 const EXAMPLES: &str = "Examples:
   strataray info samples/scissor/SCISSOR.EGRID
   strataray render samples/scissor/SCISSOR.EGRID --property SWAT --step last -o swat.png
+  strataray sample faulted -o models
+  strataray bench R1 samples/scissor/SCISSOR.EGRID
   strataray probe samples/scissor/SCISSOR.EGRID --property PORO --points points.csv";
 
 /// Sees oil and gas reservoirs from the inside: volume ray casting of corner-point grids.

@@ -27,8 +27,8 @@ mod private {
         /// True where one repeat count can stand for both.
         fn same(self, other: Self) -> bool;
         /// NaN, which is written as a default; infinite numbers cannot be written.
-        fn is_undefined(self) -> bool;
-        fn is_infinite(self) -> bool;
+        fn is_undefined(&self) -> bool;
+        fn is_infinite(&self) -> bool;
     }
 
     macro_rules! real {
@@ -40,11 +40,11 @@ mod private {
                 fn same(self, other: Self) -> bool {
                     self.to_bits() == other.to_bits() || self.is_nan() && other.is_nan()
                 }
-                fn is_undefined(self) -> bool {
+                fn is_undefined(&self) -> bool {
                     self.is_nan()
                 }
-                fn is_infinite(self) -> bool {
-                    self.is_infinite()
+                fn is_infinite(&self) -> bool {
+                    <$real>::is_infinite(*self)
                 }
             }
         };
@@ -59,10 +59,10 @@ mod private {
         fn same(self, other: Self) -> bool {
             self == other
         }
-        fn is_undefined(self) -> bool {
+        fn is_undefined(&self) -> bool {
             false
         }
-        fn is_infinite(self) -> bool {
+        fn is_infinite(&self) -> bool {
             false
         }
     }

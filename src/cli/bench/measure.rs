@@ -82,7 +82,9 @@ pub fn case(
     let mut strategies = Vec::new();
     for scene in scenes {
         let view = scene::resolve(scene, &case)?;
-        strategies.push(strategy(&mut renderer, &case, &view, frames, reporter)?);
+        let times = strategy(&mut renderer, &case, &view, frames, reporter);
+        let what = || format!("{} by {}", case.about.name, view.strategy.name());
+        strategies.push(times.with_context(what)?);
     }
     let dims = case.grid.dims();
     let acceleration = renderer.acceleration_time();

@@ -86,8 +86,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
     };
     for case in cases {
         let files = Files::new(case, &reporter)?;
-        let times = measure::case(&files.path, &scenes, &gpu, arguments.frames, &reporter)
-            .with_context(|| format!("{}", case.display()))?;
+        let times = measure::case(&files.path, &scenes, &gpu, arguments.frames, &reporter)?;
         bench.cases.push(times);
     }
     print!("{}", table::text(&bench));

@@ -63,6 +63,7 @@ struct Reach {
 #[derive(Debug)]
 pub struct Flood {
     rocks: Vec<Rock>,
+    pub(super) wells: Vec<String>,
     gas_oil: f64,
     oil_water: f64,
     relief: f64,
@@ -100,8 +101,10 @@ impl Flood {
         let depths = rocks.iter().map(|r| f64::from(r.depth));
         let (top, bottom) = depths.fold((f64::MAX, f64::MIN), |(a, b), z| (a.min(z), b.max(z)));
         let relief = (bottom - top).max(1.0);
+        let numbered = |letter: char| (1..=PAIRS).map(move |n| format!("{letter}{n}"));
         Self {
             rocks,
+            wells: numbered('I').chain(numbered('P')).collect(),
             gas_oil: top + 0.1 * relief,
             oil_water: top + 0.7 * relief,
             relief,
@@ -121,12 +124,6 @@ impl Flood {
             _ => return None,
         };
         Some(self.rocks.par_iter().map(|r| of(r) as f32).collect())
-    }
-
-    #[expect(clippy::unused_self, reason = "a flood with other wells names others")]
-    pub(super) fn well_names(&self) -> Vec<String> {
-        let numbered = |letter: char| (1..=PAIRS).map(move |n| format!("{letter}{n}"));
-        numbered('I').chain(numbered('P')).collect()
     }
 
     /// Hydrostatic pressure, and what injection and production have done to it so far.

@@ -83,7 +83,7 @@ impl Recipe {
         RECIPES.iter().find(|r| r.name.eq_ignore_ascii_case(name))
     }
 
-    /// Makes the model.
+    /// Makes the model with `steps` report steps; the box is the same for every seed.
     ///
     /// # Errors
     /// When there are no cells or more than 2^31-1, or not enough memory for their corners.
@@ -202,10 +202,10 @@ impl Fields {
     }
 
     /// Names of the wells.
-    pub fn wells(&self) -> Vec<String> {
+    pub fn wells(&self) -> &[String] {
         match self {
-            Self::Linear(_) => Vec::new(),
-            Self::Flood(flood) => flood.well_names(),
+            Self::Linear(_) => &[],
+            Self::Flood(flood) => &flood.wells,
         }
     }
 }

@@ -267,7 +267,7 @@ fn layers(nk: usize, thickness: f64, shape: Shape, random: &mut fastrand::Rng) -
         let mean = thickness / nk as f64 * (0.5 + random.f64());
         let pinches = shape.pinching_every > 0 && k % shape.pinching_every == 2;
         // Gaps lie at a third and at two thirds of the layers.
-        let gap = shape.gaps && nk >= 4 && (k + 1) % nk.div_ceil(3) == 0 && k + 1 < nk;
+        let gap = shape.gaps && nk >= 4 && (k + 1).is_multiple_of(nk.div_ceil(3)) && k + 1 < nk;
         let (bias, weight) = if pinches { (0.3, 0.1) } else { (1.0, 0.25) };
         let mut weights = std::array::from_fn(|_| weight * (2.0 * random.f64() - 1.0));
         if pinches {
