@@ -1,11 +1,11 @@
 //! StrataRay: volume ray casting of corner-point reservoir grids and their simulation results.
 //!
 //! Modules in the order in which data flows:
-//! [`load`] turns files into a [`case::Case`] (a [`model`] and its results), a [`scene`] says what
-//! to look at and is resolved against the case, [`transfer`] maps values to color and extinction,
-//! [`gpu`] holds the compact grid on the device, [`strategies`] cast the rays, a [`renderer`] remakes
-//! only what a view changes, [`mod@reference`] does the same on the CPU in plain f64, [`metrics`]
-//! compare the two, and [`picture`] turns the result into a file.
+//! [`load`] turns files into a [`case::Case`] (a [`model`] and its results; [`save`] writes the files
+//! of synthetic ones), a [`scene`] says what to look at and is resolved against the case, [`transfer`]
+//! maps values to color and extinction, [`gpu`] holds the compact grid on the device, [`strategies`]
+//! cast the rays, a [`renderer`] remakes only what a view changes, [`mod@reference`] does the same on
+//! the CPU in plain f64, [`metrics`] compare the two, and [`picture`] turns the result into a file.
 
 pub mod case;
 pub mod gpu;
@@ -15,6 +15,7 @@ pub mod model;
 pub mod picture;
 pub mod reference;
 pub mod renderer;
+pub mod save;
 pub mod scene;
 pub mod strategies;
 pub mod transfer;

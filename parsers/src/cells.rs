@@ -1,11 +1,17 @@
 //! Cell arrays of the global grid: the part that INIT and restart steps have in common.
 
+use std::io::{self, Write};
 use std::ops::Range;
 use std::sync::Arc;
 
 use crate::error::ParseError;
-use crate::records::{Entry, RecordFile};
+use crate::records::{Entry, RecordFile, RecordWriter, refused};
 use crate::units::UnitSystem;
+
+/// Items of an INTEHEAD array that is written, of LOGIHEAD, and the simulator that item 95 names.
+const INTEHEAD_ITEMS: usize = 411;
+const LOGIHEAD_ITEMS: usize = 121;
+const SIMULATOR: i32 = 100;
 
 /// A run of arrays that belongs to the global grid.
 #[derive(Debug, Clone)]
@@ -96,7 +102,7 @@ impl CellArrays {
             active: item(12),
             phases: item(15),
             date: if year > 0 {
-                format!("{year:04}-{month:02}-{day:02}")
+                date_text([year, month, day])
             } else {
                 String::new()
             },
@@ -105,4 +111,71 @@ impl CellArrays {
             strings_a_well: item(28),
         })
     }
+}
+
+impl Head {
+    /// The INTEHEAD array that [`CellArrays::head`] reads as this.
+    ///
+    /// # Errors
+    /// When the date is neither empty nor `YYYY-MM-DD`.
+    fn items(&self) -> io::Result<Vec<i32>> {
+        let [year, month, day] = match self.date.as_str() {
+            "" => [0; 3],
+            date => {
+                let parts: Option<Vec<i32>> = date.split('-').map(|p| p.parse().ok()).collect();
+                let parts = parts.and_then(|p| <[i32; 3]>::try_from(p).ok());
+                let known = parts.filter(|p| p[0] > 0 && self.date == date_text(*p));
+                known.ok_or_else(|| refused(format!("{date:?} is no date like 2001-06-30")))?
+            }
+        };
+        let mut items = vec![0; INTEHEAD_ITEMS];
+        let mut set = |n: usize, value: i32| items[n - 1] = value;
+        set(3, self.units.map_or(0, UnitSystem::code));
+        (9..).zip(self.dims).for_each(|(n, size)| set(n, size));
+        set(12, self.active);
+        set(15, self.phases);
+        set(17, self.wells);
+        set(28, self.strings_a_well);
+        set(65, day);
+        set(66, month);
+        set(67, year);
+        set(95, SIMULATOR);
+        set(207, self.clock[0]);
+        set(208, self.clock[1]);
+        set(411, self.clock[2]);
+        Ok(items)
+    }
+}
+
+fn date_text([year, month, day]: [i32; 3]) -> String {
+    format!("{year:04}-{month:02}-{day:02}")
+}
+
+/// Writes INTEHEAD, LOGIHEAD (all false) and DOUBHEAD (the days).
+pub(crate) fn write_heads<W: Write>(
+    out: &mut RecordWriter<W>,
+    head: &Head,
+    days: f64,
+) -> io::Result<()> {
+    out.inte("INTEHEAD", &head.items()?)?;
+    out.logi("LOGIHEAD", &[false; LOGIHEAD_ITEMS])?;
+    out.doub("DOUBHEAD", &[days])
+}
+
+/// Writes arrays of one value an active cell, each made only when its turn comes.
+pub(crate) fn write_arrays<W: Write, N: AsRef<str>>(
+    out: &mut RecordWriter<W>,
+    head: &Head,
+    arrays: impl IntoIterator<Item = (N, Vec<f32>)>,
+) -> io::Result<()> {
+    for (name, values) in arrays {
+        let name = name.as_ref();
+        if usize::try_from(head.active) != Ok(values.len()) {
+            let (expected, found) = (head.active, values.len());
+            let message = format!("{name}: expected {expected} values, found {found}");
+            return Err(refused(message));
+        }
+        out.real(name, &values)?;
+    }
+    Ok(())
 }

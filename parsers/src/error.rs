@@ -38,9 +38,9 @@ pub struct ParseError {
     pub message: String,
     /// Files that included this one, innermost first, with the line of the INCLUDE.
     pub included_from: Vec<(PathBuf, usize)>,
-    /// The cause given by the operating system, if any.
-    #[source]
-    pub source: Option<std::io::Error>,
+    /// The cause given by the operating system, if any; the message tells it already, so that a
+    /// chain of errors does not tell it twice.
+    pub cause: Option<std::io::Error>,
 }
 
 impl ParseError {
@@ -52,14 +52,14 @@ impl ParseError {
             keyword: keyword.trim().to_owned(),
             message: message.into(),
             included_from: Vec::new(),
-            source: None,
+            cause: None,
         }
     }
 
     /// An error of the operating system about the whole file.
-    pub fn io(path: &Path, what: &str, source: std::io::Error) -> Self {
-        let mut error = Self::new(path, At::File, "", format!("{what}: {source}"));
-        error.source = Some(source);
+    pub fn io(path: &Path, what: &str, cause: std::io::Error) -> Self {
+        let mut error = Self::new(path, At::File, "", format!("{what}: {cause}"));
+        error.cause = Some(cause);
         error
     }
 }

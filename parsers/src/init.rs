@@ -1,11 +1,12 @@
 //! INIT: static properties of the global grid.
 
+use std::io::{self, Write};
 use std::path::Path;
 use std::sync::Arc;
 
-use crate::cells::CellArrays;
+use crate::cells::{CellArrays, Head, write_arrays, write_heads};
 use crate::error::ParseError;
-use crate::records::RecordFile;
+use crate::records::{RecordFile, RecordWriter};
 
 /// Opens an INIT file; sections of local grids (LGR to LGRSGONE or ENDLGR) are left out.
 ///
@@ -15,4 +16,19 @@ pub fn open(path: &Path) -> Result<CellArrays, ParseError> {
     let file = Arc::new(RecordFile::open(path)?);
     let all = 0..file.entries().len();
     Ok(CellArrays::new(&file, all, &["LGRSGONE", "ENDLGR"]))
+}
+
+/// Writes an INIT file; each of `arrays` has one value an active cell and is made when its turn comes.
+///
+/// # Errors
+/// When writing fails, an array has not `head.active` values, or a name or the date is none.
+pub fn write<W: Write, N: AsRef<str>>(
+    out: W,
+    head: &Head,
+    arrays: impl IntoIterator<Item = (N, Vec<f32>)>,
+) -> io::Result<W> {
+    let mut out = RecordWriter::new(out);
+    write_heads(&mut out, head, 0.0)?;
+    write_arrays(&mut out, head, arrays)?;
+    out.finish()
 }

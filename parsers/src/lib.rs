@@ -1,4 +1,4 @@
-//! Readers of Eclipse-style reservoir files, as written: no geometry, no GPU.
+//! Readers and writers of Eclipse-style reservoir files, as written: no geometry, no GPU.
 //!
 //! Three levels: bytes (a memory map, records, tokens), typed records ([`egrid`], [`init`],
 //! [`restart`], [`deck`]), and the [`case`] that finds the files belonging together. Bad files
@@ -10,6 +10,7 @@ pub mod cells;
 pub mod deck;
 pub mod egrid;
 pub mod error;
+mod geometry;
 pub mod init;
 pub mod mapped;
 pub mod records;

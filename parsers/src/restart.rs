@@ -1,12 +1,13 @@
 //! Restarts: dynamic properties by report step, unified (UNRST) or one file a step (X0000, ...).
 
 use std::collections::HashSet;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use crate::cells::{CellArrays, Head};
+use crate::cells::{CellArrays, Head, write_arrays, write_heads};
 use crate::error::{At, ParseError, Warnings};
-use crate::records::RecordFile;
+use crate::records::{RecordFile, RecordWriter, refused};
 
 /// One report step of the global grid.
 #[derive(Debug, Clone)]
@@ -151,5 +152,62 @@ impl Step {
         let wells = usize::try_from(self.head.wells).unwrap_or(0);
         let names = strings.chunks(each).take(wells).filter_map(|s| s.first());
         Ok(names.filter(|n| !n.is_empty()).cloned().collect())
+    }
+}
+
+/// Writes a unified restart, step by step.
+///
+/// Call [`Self::finish`] at the end: it is what reports a failure to write the last bytes.
+#[derive(Debug)]
+pub struct RestartWriter<W: Write> {
+    out: RecordWriter<W>,
+}
+
+impl<W: Write> RestartWriter<W> {
+    /// A writer to `out`, which needs no buffer of its own.
+    pub fn new(out: W) -> Self {
+        let out = RecordWriter::new(out);
+        Self { out }
+    }
+
+    /// Writes a step: SEQNUM, the heads, the wells' names as ZWEL, and `arrays` between STARTSOL and ENDSOL.
+    ///
+    /// Each array has one value an active cell and is made when its turn comes; the numbers of
+    /// wells and of their strings in `head` are not read but follow from `wells`.
+    ///
+    /// # Errors
+    /// When writing fails, an array has not `head.active` values, a name is longer than 8 bytes, or
+    /// the date is none.
+    pub fn step<N: AsRef<str>>(
+        &mut self,
+        report: u32,
+        days: f64,
+        head: &Head,
+        wells: &[impl AsRef<str>],
+        arrays: impl IntoIterator<Item = (N, Vec<f32>)>,
+    ) -> io::Result<()> {
+        let number = |n: usize| i32::try_from(n).map_err(|_| refused(format!("{n} wells")));
+        let head = Head {
+            wells: number(wells.len())?,
+            strings_a_well: i32::from(!wells.is_empty()),
+            ..head.clone()
+        };
+        let report = i32::try_from(report).map_err(|_| refused(format!("report {report}")))?;
+        self.out.inte("SEQNUM", &[report])?;
+        write_heads(&mut self.out, &head, days)?;
+        if !wells.is_empty() {
+            self.out.chars("ZWEL", wells)?;
+        }
+        self.out.mess("STARTSOL")?;
+        write_arrays(&mut self.out, &head, arrays)?;
+        self.out.mess("ENDSOL")
+    }
+
+    /// Writes what is still in the buffer and hands back the underlying writer.
+    ///
+    /// # Errors
+    /// When writing fails.
+    pub fn finish(self) -> io::Result<W> {
+        self.out.finish()
     }
 }

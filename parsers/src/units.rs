@@ -25,6 +25,11 @@ impl UnitSystem {
         })
     }
 
+    /// What stands in item 3 of INTEHEAD.
+    pub fn code(self) -> i32 {
+        self as i32 + 1
+    }
+
     /// Unit of a property; empty for one without dimension or not in the table.
     pub fn unit_of(self, property: &str) -> &'static str {
         let length = self.length();

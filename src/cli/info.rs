@@ -44,8 +44,8 @@ fn facts(case: &Case, stats: &[String]) -> anyhow::Result<Value> {
     let grid = &case.grid;
     let dims = grid.dims();
     let faults = grid.fault_faces();
-    let active = || grid.active_cells().par_iter().map(|&c| dims.ijk(c));
     let signed = grid.signed_bulk_volume();
+    let thin = grid.active_by_column().filter(|&c| !grid.has_thickness(c));
     let mut facts = json!({
         "case": case.about.name,
         "files": case.about.files.iter().map(|f| f.display().to_string()).collect::<Vec<_>>(),
@@ -57,7 +57,7 @@ fn facts(case: &Case, stats: &[String]) -> anyhow::Result<Value> {
         "handedness": if signed < 0.0 { "left" } else { "right" },
         "bounds": grid.bounds().map(|[a, b]| json!({"min": a.to_array(), "max": b.to_array()})),
         "bulk_volume": signed.abs(),
-        "thin_cells": active().filter(|&c| !grid.has_thickness(c)).count(),
+        "thin_cells": thin.count(),
         "fault_faces": {
             "i": faults[0],
             "j": faults[1],

@@ -1,10 +1,12 @@
 //! The command line: one file per command.
 
-mod cpu_time;
+mod bench;
 mod info;
 mod probe;
+mod process;
 mod progress;
 mod render;
+mod sample;
 mod scene_options;
 
 use std::path::PathBuf;
@@ -15,6 +17,8 @@ use clap::{Parser, Subcommand};
 const EXAMPLES: &str = "Examples:
   strataray info samples/scissor/SCISSOR.EGRID
   strataray render samples/scissor/SCISSOR.EGRID --property SWAT --step last -o swat.png
+  strataray sample faulted -o models
+  strataray bench R1 samples/scissor/SCISSOR.EGRID
   strataray probe samples/scissor/SCISSOR.EGRID --property PORO --points points.csv";
 
 /// Sees oil and gas reservoirs from the inside: volume ray casting of corner-point grids.
@@ -39,10 +43,10 @@ enum Command {
     Animate(Later),
     /// Strategies side by side (not in this version).
     Compare(Later),
-    /// Times loading and rendering (not in this version).
-    Bench(Later),
-    /// Writes a synthetic model (not in this version).
-    Sample(Later),
+    /// Times loading and rendering on this machine.
+    Bench(bench::Arguments),
+    /// Writes a synthetic faulted model with time steps.
+    Sample(sample::Arguments),
 }
 
 /// Arguments of a command that a later version brings.
@@ -72,8 +76,8 @@ pub fn run() -> ExitCode {
         Some(Command::Probe(a)) => probe::run(&a),
         Some(Command::Animate(a)) => later("animate", &a),
         Some(Command::Compare(a)) => later("compare", &a),
-        Some(Command::Bench(a)) => later("bench", &a),
-        Some(Command::Sample(a)) => later("sample", &a),
+        Some(Command::Bench(a)) => bench::run(&a),
+        Some(Command::Sample(a)) => sample::run(&a),
         None => Err(anyhow::anyhow!(
             "the viewer is not part of this version; use `strataray render {}` for a picture, or `strataray --help`",
             arguments

@@ -13,7 +13,7 @@ use strataray::renderer::{Frame, Renderer};
 use strataray::scene::{self, View};
 
 use super::Verbosity;
-use super::cpu_time::cpu_time;
+use super::process::cpu_time;
 use super::progress::Reporter;
 use super::scene_options::{SceneOptions, open_case};
 

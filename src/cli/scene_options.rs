@@ -15,7 +15,7 @@ use super::progress::Reporter;
 pub struct SceneOptions {
     /// Scene file (JSON); the options below override it.
     #[arg(long)]
-    scene: Option<PathBuf>,
+    pub scene: Option<PathBuf>,
     /// Property, or a difference such as PRESSURE-PRESSURE@0.
     #[arg(long)]
     property: Option<String>,
@@ -24,13 +24,13 @@ pub struct SceneOptions {
     step: Option<String>,
     /// Ray-casting strategy: plts or libc.
     #[arg(long)]
-    strategy: Option<String>,
+    pub strategy: Option<String>,
     /// Values within a cell.
     #[arg(long)]
     interpolation: Option<Interpolation>,
     /// Picture size, such as 1000x1000.
     #[arg(long, value_name = "WxH")]
-    size: Option<String>,
+    pub size: Option<String>,
     /// Occlusion: only off in this version.
     #[arg(long)]
     occlusion: Option<String>,

@@ -15,6 +15,8 @@
 //!      2----3
 //! ```
 
+use std::iter::Sum;
+
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
@@ -53,6 +55,9 @@ pub enum ModelError {
     /// The dimensions are zero or too large.
     #[error("a grid of {0} x {1} x {2} cells is not supported; 1 to 2^31-1 cells are")]
     Dimensions(usize, usize, usize),
+    /// The corners of so many cells do not fit in memory.
+    #[error("there is not enough memory for the corners of {0} x {1} x {2} cells")]
+    Memory(usize, usize, usize),
 }
 
 /// A coordinate line: the straight line on which corners lie.
@@ -235,6 +240,27 @@ impl Grid {
         &self.active_cells
     }
 
+    /// The active cells of a column (`i + ni * j`), downwards.
+    pub fn active_in_column(&self, column: usize) -> impl Iterator<Item = Ijk> + '_ {
+        let (i, j) = (column % self.dims.ni, column / self.dims.ni);
+        let layers = (0..self.dims.nk).map(move |k| Ijk { i, j, k });
+        layers.filter(|&ijk| self.is_active(ijk))
+    }
+
+    /// The active cells column by column: the order in which their depths lie in memory, for work on
+    /// all of them whose order does not matter.
+    pub fn active_by_column(&self) -> impl ParallelIterator<Item = Ijk> + '_ {
+        let columns = (0..self.dims.columns()).into_par_iter();
+        columns.flat_map_iter(|column| self.active_in_column(column))
+    }
+
+    /// The sum of a quantity over the active cells; the same bits with any number of threads.
+    pub fn sum_active<T: Sum + Send>(&self, of: impl Fn(Ijk) -> T + Sync) -> T {
+        let columns = (0..self.dims.columns()).into_par_iter();
+        let sums = columns.map(|column| self.active_in_column(column).map(&of).sum());
+        sums.collect::<Vec<T>>().into_iter().sum()
+    }
+
     /// Rank of a cell among the active ones, `None` where it is inactive.
     pub fn active_index(&self, cell: CellIndex) -> Option<ActiveIndex> {
         let rank = self.active_rank[cell.0 as usize];
@@ -260,15 +286,13 @@ impl Grid {
 
     /// Sum of the active cells' volumes, negative where the grid is left-handed (x, y, depth).
     pub fn signed_bulk_volume(&self) -> f64 {
-        let volume = |&cell: &CellIndex| self.hexahedron(self.dims.ijk(cell)).signed_volume();
-        self.active_cells.par_iter().map(volume).sum()
+        self.sum_active(|ijk| self.hexahedron(ijk).signed_volume())
     }
 
     /// Smallest and largest corner of the active cells in grid space; `None` without any.
     pub fn bounds(&self) -> Option<[DVec3; 2]> {
-        self.active_cells
-            .par_iter()
-            .map(|&cell| self.hexahedron(self.dims.ijk(cell)).bounds())
+        self.active_by_column()
+            .map(|ijk| self.hexahedron(ijk).bounds())
             .reduce_with(|a, b| [a[0].min(b[0]), a[1].max(b[1])])
     }
 }
@@ -279,18 +303,12 @@ where
     Z: Copy + Into<f64> + Sync,
 {
     let Dims { ni, nj, nk } = input.dims;
-    let cells = ni.checked_mul(nj).and_then(|n| n.checked_mul(nk));
-    if !cells.is_some_and(|n| (1..1 << 31).contains(&n)) {
-        return Err(ModelError::Dimensions(ni, nj, nk));
-    }
+    let cells = input.dims.checked_cells();
+    let cells = cells.ok_or(ModelError::Dimensions(ni, nj, nk))?;
     let lengths = [
         ("COORD", 6 * input.dims.pillars(), input.coord.len()),
-        ("ZCORN", 8 * input.dims.cells(), input.zcorn.len()),
-        (
-            "ACTNUM",
-            input.dims.cells(),
-            input.actnum.map_or(input.dims.cells(), <[_]>::len),
-        ),
+        ("ZCORN", 8 * cells, input.zcorn.len()),
+        ("ACTNUM", cells, input.actnum.map_or(cells, <[_]>::len)),
     ];
     for (keyword, expected, found) in lengths {
         if expected != found {
@@ -305,17 +323,21 @@ where
     finite("ZCORN", input.zcorn)
 }
 
+/// Values looked at between two questions whether another thread has found one.
+const PIECE: usize = 1 << 14;
+
 fn finite<T: Copy + Into<f64> + Sync>(
     keyword: &'static str,
     values: &[T],
 ) -> Result<(), ModelError> {
-    match values.par_iter().position_first(|&v| !v.into().is_finite()) {
-        None => Ok(()),
-        Some(at) => Err(ModelError::NotFinite {
-            keyword,
-            index: at + 1,
-        }),
-    }
+    let pieces = values.par_chunks(PIECE).enumerate();
+    let bad = pieces.find_map_first(|(piece, values)| {
+        let at = values.iter().position(|&v| !v.into().is_finite())?;
+        Some(piece * PIECE + at + 1)
+    });
+    bad.map_or(Ok(()), |index| {
+        Err(ModelError::NotFinite { keyword, index })
+    })
 }
 
 pub(super) fn list(offset: usize, gapped: bool) -> DepthList {

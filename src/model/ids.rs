@@ -17,6 +17,12 @@ impl Dims {
         self.ni * self.nj * self.nk
     }
 
+    /// All cells, where that is at least one and at most 2^31-1, as files can number them.
+    pub fn checked_cells(self) -> Option<usize> {
+        let cells = self.ni.checked_mul(self.nj)?.checked_mul(self.nk)?;
+        (1..1 << 31).contains(&cells).then_some(cells)
+    }
+
     /// Columns of cells.
     pub fn columns(self) -> usize {
         self.ni * self.nj

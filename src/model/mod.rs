@@ -7,6 +7,7 @@ pub mod fields;
 pub mod grid;
 pub mod ids;
 pub mod spaces;
+pub mod synthetic;
 pub mod topology;
 
 pub use corner_point::Hexahedron;

@@ -131,14 +131,8 @@ impl Grid {
     /// cells of equal k whose corners do not all coincide.
     pub fn fault_faces(&self) -> [usize; 2] {
         [Face::IPlus, Face::JPlus].map(|face| {
-            self.active_cells()
-                .par_iter()
-                .filter(|&&cell| {
-                    matches!(
-                        self.behind(self.dims().ijk(cell), face),
-                        Behind::Displaced(_)
-                    )
-                })
+            self.active_by_column()
+                .filter(|&ijk| matches!(self.behind(ijk, face), Behind::Displaced(_)))
                 .count()
         })
     }

@@ -2,7 +2,8 @@
 
 use std::sync::Arc;
 
-use glam::DVec3;
+use glam::{DVec3, DVec4};
+use rayon::prelude::*;
 
 use super::{
     Camera, CameraSpec, ClipSpec, ColorSpec, CutFace, Filter, Interpolation, LibcSettings, Scene,
@@ -276,17 +277,18 @@ fn box_corners(spaces: &Spaces, [low, high]: [DVec3; 2]) -> [DVec3; 8] {
 /// Mean edge lengths of the drawn cells along s, t and r, in world space.
 fn mean_world_edges(case: &Case, exaggeration: f64) -> DVec3 {
     let grid = &case.grid;
-    let cells = grid.active_cells().iter().map(|&c| grid.dims().ijk(c));
-    let (mut sum, mut count) = (DVec3::ZERO, 0.0f64);
-    for ijk in cells.filter(|&ijk| grid.has_thickness(ijk)) {
+    let edges_and_one = |ijk: Ijk| {
+        if !grid.has_thickness(ijk) {
+            return DVec4::ZERO;
+        }
         let mut hexahedron = grid.hexahedron(ijk);
         for corner in &mut hexahedron.0 {
             corner.z *= exaggeration;
         }
-        sum += hexahedron.mean_edges();
-        count += 1.0;
-    }
-    (sum / count.max(1.0)).max(DVec3::splat(1e-6))
+        hexahedron.mean_edges().extend(1.0)
+    };
+    let sum = grid.sum_active(edges_and_one);
+    (sum.truncate() / sum.w.max(1.0)).max(DVec3::splat(1e-6))
 }
 
 fn default_property(case: &Case) -> String {
@@ -343,7 +345,7 @@ fn drawn(
         |ijk: Ijk| within(filter.i, ijk.i) && within(filter.j, ijk.j) && within(filter.k, ijk.k);
     let mut drawn: Vec<bool> = grid
         .active_cells()
-        .iter()
+        .par_iter()
         .zip(field.values())
         .map(|(&cell, value)| {
             let ijk = dims.ijk(cell);

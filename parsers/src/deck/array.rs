@@ -113,6 +113,9 @@ fn piece(text: &[u8], rule: Rule) -> Result<Piece, Mistake> {
         if let Some((value, length)) = leading_number(&text[start..]) {
             piece.values.push(value);
             at = start + length;
+        } else if let Some((count, value, length)) = repeated_number(&text[start..]) {
+            piece.push(value, count);
+            at = start + length;
         } else {
             at = unusual_token(text, start, rule, &mut piece)?;
         }
@@ -138,6 +141,18 @@ fn next_token(text: &[u8], mut at: usize) -> Option<usize> {
         }
     }
     None
+}
+
+/// A number behind a repeat count of at most 8 digits, and the length of both, where
+/// [`leading_number`] can read it: corner depths of neighbors are often equal in pairs.
+#[inline]
+fn repeated_number(text: &[u8]) -> Option<(usize, f64, usize)> {
+    let digits = text.iter().take(9).position(|b| !b.is_ascii_digit())?;
+    let (count, behind) = text.split_at(digits);
+    let number = behind.strip_prefix(b"*")?;
+    let count = count.iter().fold(0, |n, d| 10 * n + usize::from(d - b'0'));
+    let (value, length) = leading_number(number)?;
+    (count > 0).then_some((count, value, digits + 1 + length))
 }
 
 /// Reads a comment, a repeat count, a number in another notation; returns the offset behind it.

@@ -15,11 +15,13 @@ mod operations;
 mod scan;
 mod skip;
 mod source;
+mod write;
 
 use std::path::{Path, PathBuf};
 
 use crate::error::{ParseError, Warnings};
 pub use crate::units::UnitSystem;
+pub use write::{DeckWriter, GridText, Number};
 
 /// A corner-point grid as its deck gives it, without any geometry computed from it.
 ///

@@ -14,6 +14,7 @@ use crate::error::{At, ParseError, Warnings};
 use crate::mapped::MappedFile;
 
 pub use write::RecordWriter;
+pub(crate) use write::refused;
 
 /// Elements in a block by convention: numbers, strings.
 const NUMBERS_A_BLOCK: u64 = 1000;

@@ -164,6 +164,7 @@ impl<W: Write> RecordWriter<W> {
     }
 }
 
-fn refused(message: String) -> io::Error {
+/// The error of a writer that was given what a file cannot hold.
+pub(crate) fn refused(message: String) -> io::Error {
     io::Error::new(io::ErrorKind::InvalidInput, message)
 }

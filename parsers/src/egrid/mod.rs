@@ -3,9 +3,12 @@
 //! Keywords: FILEHEAD, MAPUNITS, MAPAXES, GRIDUNIT, GRIDHEAD, COORD, ZCORN, ACTNUM, NNC1 with NNC2;
 //! sections of local grids start at LGR and end at ENDLGR. The README lists what is skipped.
 
+mod write;
+
 use std::path::Path;
 
 use crate::error::{At, ParseError, Warnings};
+use crate::geometry::first_not;
 use crate::records::{Entry, RecordFile};
 
 /// Unit of the grid's coordinates.
@@ -44,7 +47,7 @@ pub struct LocalGrid {
 }
 
 /// The global grid of an EGRID file.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Egrid {
     /// Cells along i, j and k.
     pub dims: [usize; 3],
@@ -225,8 +228,8 @@ fn sized(
         return Err(file.error(entry, format!("expected {expected} values, found {found}")));
     }
     let values = file.f32s(entry)?;
-    match values.iter().position(|v| !v.is_finite()) {
-        Some(at) => Err(file.error(entry, format!("value {} is not a finite number", at + 1))),
+    match first_not(&values, |v| v.is_finite()) {
+        Some(number) => Err(file.error(entry, format!("value {number} is not a finite number"))),
         None => Ok(values),
     }
 }

@@ -1,0 +1,72 @@
+//! Writing an EGRID file.
+
+use std::io::{self, Write};
+
+use super::{Egrid, PorosityModel};
+use crate::geometry;
+use crate::records::{RecordWriter, refused};
+
+/// Items of FILEHEAD and GRIDHEAD.
+const HEAD_ITEMS: usize = 100;
+/// The version and release year of the format, as simulators name them in FILEHEAD.
+const VERSION: [i32; 2] = [3, 2007];
+
+impl Egrid {
+    /// Writes the grid; MAPAXES are rounded to f32, as files hold them.
+    ///
+    /// # Errors
+    /// When writing fails, an array has the wrong length, a coordinate is not finite, or there are
+    /// local grids, which are known by name only.
+    pub fn write<W: Write>(&self, out: W) -> io::Result<W> {
+        if !self.local_grids.is_empty() || self.local_connections > 0 {
+            return Err(refused("local grids cannot be written".into()));
+        }
+        let actnum = self.actnum.as_deref();
+        let finite = |v: &f32| v.is_finite();
+        geometry::check(self.dims, &self.coord, &self.zcorn, actnum, finite)?;
+        let [ni, nj, nk] = self.dims.map(|n| n as i32);
+        let mut out = RecordWriter::new(out);
+        out.inte("FILEHEAD", &file_head(self.porosity_model))?;
+        if let Some(units) = &self.map_units {
+            out.chars("MAPUNITS", &[units])?;
+        }
+        if let Some(axes) = self.map_axes {
+            out.real("MAPAXES", &axes.map(|v| v as f32))?;
+        }
+        if let Some(unit) = &self.grid_unit {
+            let system = if unit.is_map { "MAP" } else { "" };
+            out.chars("GRIDUNIT", &[unit.length.as_str(), system])?;
+        }
+        let mut head = vec![0; HEAD_ITEMS];
+        head[..4].copy_from_slice(&[1, ni, nj, nk]);
+        // One coordinate system of one segment.
+        head[24..26].fill(1);
+        out.inte("GRIDHEAD", &head)?;
+        out.real("COORD", &self.coord)?;
+        out.real("ZCORN", &self.zcorn)?;
+        if let Some(actnum) = actnum {
+            out.inte("ACTNUM", actnum)?;
+        }
+        out.inte("ENDGRID", &[])?;
+        if !self.nnc.is_empty() {
+            let side = |n: usize| self.nnc.iter().map(|pair| pair[n]).collect::<Vec<_>>();
+            out.inte("NNCHEAD", &[self.nnc.len() as i32, 0])?;
+            out.inte("NNC1", &side(0))?;
+            out.inte("NNC2", &side(1))?;
+        }
+        out.finish()
+    }
+}
+
+/// FILEHEAD of a corner-point grid (items 5 and 7).
+fn file_head(model: PorosityModel) -> Vec<i32> {
+    let mut head = vec![0; HEAD_ITEMS];
+    head[..2].copy_from_slice(&VERSION);
+    head[5] = match model {
+        PorosityModel::Single => 0,
+        PorosityModel::Dual => 1,
+        PorosityModel::DualPermeability => 2,
+    };
+    head[6] = 1;
+    head
+}

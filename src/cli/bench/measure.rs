@@ -1,0 +1,159 @@
+//! The figures of one case.
+
+use std::path::Path;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use anyhow::Context;
+use serde::Serialize;
+use strataray::case::Case;
+use strataray::gpu::{Gpu, GpuBytes};
+use strataray::renderer::{Frame, Renderer};
+use strataray::scene::{self, Scene, View};
+
+use crate::cli::process::{cpu_time, forget_peak, peak_memory};
+use crate::cli::progress::Reporter;
+use crate::cli::scene_options::open_case;
+
+/// What a case costs up to the first frame, and each strategy's frames.
+#[derive(Serialize)]
+pub struct CaseTimes {
+    pub case: String,
+    pub dims: [usize; 3],
+    pub active: usize,
+    pub property: String,
+    /// Reading the files, without building the model.
+    pub open_ms: f64,
+    pub model_ms: f64,
+    /// Finding all fault faces.
+    pub topology_ms: f64,
+    /// Reading the values of the property alone.
+    pub property_ms: f64,
+    /// Resolving the scene, which reads the property too.
+    pub read_ms: f64,
+    pub upload_ms: f64,
+    pub acceleration_ms: f64,
+    /// Most memory of the process; with `peak_of_all` over all cases so far.
+    pub peak_memory_bytes: Option<u64>,
+    pub peak_of_all: bool,
+    pub strategies: Vec<StrategyTimes>,
+}
+
+/// What a strategy costs. Times without `first` and `prepare` are of the median frame.
+#[derive(Serialize)]
+pub struct StrategyTimes {
+    pub strategy: &'static str,
+    /// Wall time of the first frame with all that it compiles and prepares.
+    pub first_frame_ms: f64,
+    /// Of it, what the strategy makes beside the grid.
+    pub prepare_ms: f64,
+    /// The rays by the adapter's clock, where it has one.
+    pub frame_ms: f64,
+    pub frame_wall_ms: f64,
+    pub frame_cpu_ms: f64,
+    pub samples: u64,
+    pub samples_per_second: f64,
+    pub newton_iterations_per_sample: f64,
+    pub recovered_rays: u64,
+    pub lost_rays: u64,
+    pub gpu_bytes: GpuBytes,
+}
+
+/// Opens a case and renders it by each of the scenes.
+pub fn case(
+    path: &Path,
+    scenes: &[Scene],
+    gpu: &Arc<Gpu>,
+    frames: u32,
+    reporter: &Reporter,
+) -> anyhow::Result<CaseTimes> {
+    let peak_of_all = !forget_peak();
+    let (case, open) = timed(|| open_case(path, reporter));
+    let case = case?;
+    let model = case.about.load_times.model;
+    let (_, topology) = timed(|| case.grid.fault_faces());
+    let first = scenes.first().context("there is no strategy to time")?;
+    let (view, read) = timed(|| scene::resolve(first, &case));
+    let View { property, step, .. } = view?;
+    let (field, property_time) = timed(|| case.field(&property, step));
+    field?;
+    let (renderer, upload) = timed(|| Renderer::new(gpu.clone(), &case.grid));
+    let mut renderer = renderer?;
+    let mut strategies = Vec::new();
+    for scene in scenes {
+        let view = scene::resolve(scene, &case)?;
+        let times = strategy(&mut renderer, &case, &view, frames, reporter);
+        let what = || format!("{} by {}", case.about.name, view.strategy.name());
+        strategies.push(times.with_context(what)?);
+    }
+    let dims = case.grid.dims();
+    let acceleration = renderer.acceleration_time();
+    Ok(CaseTimes {
+        case: case.about.name.clone(),
+        dims: [dims.ni, dims.nj, dims.nk],
+        active: case.grid.active_cells().len(),
+        property,
+        open_ms: ms(open.saturating_sub(model)),
+        model_ms: ms(model),
+        topology_ms: ms(topology),
+        property_ms: ms(property_time),
+        read_ms: ms(read),
+        upload_ms: ms(upload.saturating_sub(acceleration)),
+        acceleration_ms: ms(acceleration),
+        peak_memory_bytes: peak_memory(),
+        peak_of_all,
+        strategies,
+    })
+}
+
+fn strategy(
+    renderer: &mut Renderer,
+    case: &Case,
+    view: &View,
+    frames: u32,
+    reporter: &Reporter,
+) -> anyhow::Result<StrategyTimes> {
+    let mut render = || -> anyhow::Result<(Frame, Duration)> {
+        let cpu = cpu_time();
+        let frame = reporter.bar("rendering", |progress| {
+            renderer.render(&case.grid, view, &|f| progress(f))
+        })?;
+        let cpu = cpu_time().saturating_sub(cpu);
+        Ok((frame.context("the picture was cancelled")?, cpu))
+    };
+    let (warm_up, first_frame) = timed(&mut render);
+    let prepare = warm_up?.0.prepare;
+    let mut times = Vec::new();
+    for _ in 0..frames {
+        times.push(render()?);
+    }
+    times.sort_by_key(|(frame, _)| frame.stats.frame);
+    let (median, cpu) = times.swap_remove(times.len() / 2);
+    let stats = &median.stats;
+    let samples = stats.samples as f64;
+    Ok(StrategyTimes {
+        strategy: view.strategy.name(),
+        first_frame_ms: ms(first_frame),
+        prepare_ms: ms(prepare),
+        frame_ms: ms(stats.frame),
+        frame_wall_ms: ms(stats.wall),
+        frame_cpu_ms: ms(cpu),
+        samples: stats.samples,
+        samples_per_second: samples / stats.frame.as_secs_f64(),
+        newton_iterations_per_sample: stats.newton_iterations as f64 / samples.max(1.0),
+        recovered_rays: stats.recovered_rays,
+        lost_rays: stats.lost_rays,
+        gpu_bytes: median.bytes,
+    })
+}
+
+fn timed<T>(work: impl FnOnce() -> T) -> (T, Duration) {
+    let start = Instant::now();
+    let result = work();
+    (result, start.elapsed())
+}
+
+/// Milliseconds, to the microsecond.
+fn ms(duration: Duration) -> f64 {
+    duration.as_micros() as f64 / 1e3
+}

@@ -1,0 +1,160 @@
+//! The figures for people: one table for loading, one for the strategies.
+
+use std::fmt::Write;
+
+use super::Bench;
+
+/// Both tables, in Markdown that reads well as plain text.
+pub fn text(bench: &Bench) -> String {
+    let [width, height] = bench.size;
+    let mut text = format!(
+        "{}, {} threads, {width}x{height}, median of {} frames\n\n",
+        bench.adapter, bench.threads, bench.frames
+    );
+    text += &aligned(&loading(bench));
+    text.push('\n');
+    text += &aligned(&frames(bench));
+    text
+}
+
+type Rows = Vec<Vec<String>>;
+
+fn row<const N: usize>(cells: [&str; N]) -> Vec<String> {
+    cells.map(str::to_owned).to_vec()
+}
+
+fn loading(bench: &Bench) -> Rows {
+    let mut rows = vec![row([
+        "case",
+        "cells",
+        "active",
+        "open ms",
+        "model ms",
+        "topology ms",
+        "property ms",
+        "read ms",
+        "upload ms",
+        "acceleration ms",
+        "peak MB",
+    ])];
+    for case in &bench.cases {
+        let peak = case
+            .peak_memory_bytes
+            .map_or("-".into(), |b| (b >> 20).to_string());
+        let times = [
+            case.open_ms,
+            case.model_ms,
+            case.topology_ms,
+            case.property_ms,
+            case.read_ms,
+            case.upload_ms,
+            case.acceleration_ms,
+        ];
+        let mut cells = vec![
+            case.case.clone(),
+            case.dims.map(|n| n.to_string()).join("x"),
+            case.active.to_string(),
+        ];
+        cells.extend(times.map(|ms| format!("{ms:.1}")));
+        cells.push(peak);
+        rows.push(cells);
+    }
+    rows
+}
+
+fn frames(bench: &Bench) -> Rows {
+    let mut rows = vec![row([
+        "case",
+        "strategy",
+        "prepare ms",
+        "first ms",
+        "frame ms",
+        "wall ms",
+        "CPU ms",
+        "Msamples/s",
+        "Newton/sample",
+        "lost rays",
+        "geometry B/cell",
+        "acceleration",
+        "property",
+        "resampled",
+        "lighting",
+    ])];
+    for case in &bench.cases {
+        for s in &case.strategies {
+            let mut cells = vec![case.case.clone(), s.strategy.to_owned()];
+            let times = [
+                s.prepare_ms,
+                s.first_frame_ms,
+                s.frame_ms,
+                s.frame_wall_ms,
+                s.frame_cpu_ms,
+            ];
+            cells.extend(times.map(|ms| format!("{ms:.1}")));
+            cells.push(format!("{:.2}", 1e-6 * s.samples_per_second));
+            cells.push(format!("{:.2}", s.newton_iterations_per_sample));
+            cells.push(s.lost_rays.to_string());
+            let bytes = &s.gpu_bytes;
+            let purposes = [
+                bytes.geometry,
+                bytes.acceleration,
+                bytes.property,
+                bytes.resampled,
+                bytes.lighting,
+            ];
+            let per_cell = |b: u64| format!("{:.1}", b as f64 / case.active.max(1) as f64);
+            cells.extend(purposes.map(per_cell));
+            rows.push(cells);
+        }
+    }
+    rows
+}
+
+/// Leading columns that hold words, not numbers.
+const WORDS: usize = 2;
+
+/// Columns as wide as their widest cell: words to the left, numbers to the right.
+fn aligned(rows: &Rows) -> String {
+    let columns = rows.first().map_or(0, Vec::len);
+    let width = |n: usize| rows.iter().map(|r| r[n].chars().count()).max().unwrap_or(0);
+    let widths: Vec<usize> = (0..columns).map(width).collect();
+    let mut text = String::new();
+    for (at, row) in rows.iter().enumerate() {
+        for (n, (cell, &width)) in row.iter().zip(&widths).enumerate() {
+            let _ = match n < WORDS {
+                true => write!(text, "| {cell:<width$} "),
+                false => write!(text, "| {cell:>width$} "),
+            };
+        }
+        text += "|\n";
+        if at == 0 {
+            for (n, &width) in widths.iter().enumerate() {
+                let end = if n < WORDS { "-" } else { ":" };
+                text += &format!("| {}{end} ", "-".repeat(width - 1));
+            }
+            text += "|\n";
+        }
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn columns_are_as_wide_as_their_widest_cell() {
+        let rows = vec![
+            row(["case", "strategy", "ms"]),
+            row(["A", "plts", "1234.5"]),
+            row(["LONGER", "srg", "1"]),
+        ];
+        let expected = "\
+| case   | strategy |     ms |
+| ------ | -------- | -----: |
+| A      | plts     | 1234.5 |
+| LONGER | srg      |      1 |
+";
+        assert_eq!(aligned(&rows), expected);
+    }
+}
