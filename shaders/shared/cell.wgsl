@@ -3,6 +3,9 @@
 // their digits.
 #import grid
 
+// All pillars of the grid are vertical: the inverse of the map has a closed form.
+override VERTICAL: bool = false;
+
 struct Cell {
     column: u32,
     layer: u32,
@@ -108,6 +111,9 @@ fn is_inside(q: vec3f) -> bool {
 // Stops once a step is below `enough`; convergence is quadratic, so the step after it is far smaller.
 // In layers of millimeters f32 cannot get there: a small step that no longer shrinks is the end too.
 fn solve(cell: Cell, point: vec3f, start: vec3f, enough: f32) -> Solution {
+    if VERTICAL {
+        return solve_vertical(cell, point);
+    }
     var s: Solution;
     s.uvw = start;
     var converged = false;
@@ -154,4 +160,37 @@ fn solve(cell: Cell, point: vec3f, start: vec3f, enough: f32) -> Solution {
     }
     s.inside = converged && is_inside(s.uvw);
     return s;
+}
+
+// The parameters of `point` where the pillars are vertical: x and y do not depend on w, so u solves a
+// quadratic equation, v and w linear ones.
+fn solve_vertical(cell: Cell, point: vec3f) -> Solution {
+    let a = cell.ku.xy;
+    let b = cell.kv.xy;
+    let c = cell.kuv.xy;
+    let p = point.xy - cell.k0.xy;
+    // cross(p - u a, b + u c) = 0; of its roots the one that stays finite as the sides become parallel.
+    let linear = cross2(p, c) - cross2(a, b);
+    let constant = cross2(p, b);
+    let discriminant = linear * linear + 4.0 * cross2(a, c) * constant;
+    let root = linear + select(-1.0, 1.0, linear >= 0.0) * sqrt(max(discriminant, 0.0));
+    var s: Solution;
+    s.uvw = vec3f(-1.0);
+    if discriminant < 0.0 || abs(root) < 1e-30 {
+        return s;
+    }
+    let u = clamp(-2.0 * constant / root, -1.0, 2.0);
+    let across = b + u * c;
+    let v = clamp(dot(p - u * a, across) / max(dot(across, across), 1e-30), -1.0, 2.0);
+    let top = evaluate(cell, vec3f(u, v, 0.0)).z;
+    let thickness = evaluate(cell, vec3f(u, v, 1.0)).z - top;
+    // Without thickness there is no inside.
+    let w = select(-1.0, clamp((point.z - top) / thickness, -1.0, 2.0), abs(thickness) > 1e-9);
+    s.uvw = vec3f(u, v, w);
+    s.inside = is_inside(s.uvw);
+    return s;
+}
+
+fn cross2(a: vec2f, b: vec2f) -> f32 {
+    return a.x * b.y - a.y * b.x;
 }

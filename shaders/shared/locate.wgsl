@@ -161,10 +161,6 @@ fn steps_to_section(q0: vec2f, q1: vec2f, q2: vec2f, q3: vec2f, motion: vec2f, m
     return steps;
 }
 
-fn cross2(a: vec2f, b: vec2f) -> f32 {
-    return a.x * b.y - a.y * b.x;
-}
-
 // Cell widths that a step crosses, at most.
 fn section_speed(q0: vec2f, q1: vec2f, q2: vec2f, q3: vec2f, motion: vec2f) -> f32 {
     let least = min(min(abs(cross2(q1 - q0, q2 - q0)), abs(cross2(q1 - q0, q3 - q1))),

@@ -56,6 +56,8 @@ pub struct GpuGrid {
     pub origin: DVec3,
     /// Box of the active cells relative to the origin.
     pub bounds: [DVec3; 2],
+    /// True where all pillars are vertical, so that points are located in closed form.
+    pub vertical: bool,
     /// True where the layers of some column cross, so that cells may overlap.
     pub layers_cross: bool,
     /// +1 where the cells are right-handed in grid space, else -1.
@@ -125,6 +127,7 @@ impl GpuGrid {
         Ok(Self {
             origin,
             bounds: bounds.map(|b| b - origin),
+            vertical: grid.pillars().iter().all(|p| p.slope() == DVec2::ZERO),
             layers_cross: lists.iter().any(|l| l[0] & COLUMN_FLAG != 0),
             handedness: if grid.signed_bulk_volume() < 0.0 {
                 -1.0
@@ -194,6 +197,11 @@ impl GpuGrid {
         ];
         let resources = buffers.map(wgpu::Buffer::as_entire_binding);
         gpu.bind(gpu.layouts.group(1), &resources)
+    }
+
+    /// Values of the constants of shaders that locate points.
+    pub fn constants(&self) -> [(&'static str, f64); 1] {
+        [("VERTICAL", f64::from(u8::from(self.vertical)))]
     }
 
     /// Bytes by purpose.

@@ -28,6 +28,7 @@ pub struct Libc {
 struct Variant {
     settings: LibcSettings,
     interpolation: Interpolation,
+    vertical: bool,
 }
 
 impl Variant {
@@ -52,6 +53,7 @@ impl Libc {
         let variant = Variant {
             settings: LibcSettings::default(),
             interpolation: Interpolation::Vertex,
+            vertical: false,
         };
         Ok(Self {
             begin: Pipeline::variant(gpu, "libc", "begin", &[])?,
@@ -89,8 +91,12 @@ impl RenderStrategy for Libc {
         let variant = Variant {
             settings: what.view.libc,
             interpolation: what.view.interpolation,
+            vertical: what.grid.vertical,
         };
         if variant != self.variant {
+            let located = what.grid.constants();
+            self.begin = Pipeline::variant(what.gpu, "libc", "begin", &located)?;
+            self.set_right = Pipeline::variant(what.gpu, "libc", "set_right", &located)?;
             self.walk = variant.compile(what.gpu)?;
             self.variant = variant;
         }

@@ -1,16 +1,18 @@
 //! PLTS, point location with topological search: the accurate strategy.
 //!
-//! Each sample is located exactly by Newton's method on the trilinear map, from the previous sample's
-//! cell through shared faces, through the acceleration grid where the topology ends
-//! (campagnolo-2021, 4.1.3). Cost: about one Newton iteration a sample inside a cell, a point location
-//! at each entry into the model.
+//! Each sample is located exactly, by Newton's method on the trilinear map from the previous sample's
+//! cell through shared faces (in closed form where all pillars are vertical), and through the
+//! acceleration grid where the topology ends (campagnolo-2021, 4.1.3). Cost: about one Newton iteration
+//! a sample inside a cell, a point location at each entry into the model.
 
-use super::RenderStrategy;
+use super::{Preparation, RenderStrategy};
 use crate::gpu::{Gpu, GpuError, Pipeline, Place, Round};
 
 /// The strategy with its compiled shader.
 pub struct Plts {
     pipeline: Pipeline,
+    /// Whether it is the variant for vertical pillars.
+    vertical: bool,
 }
 
 impl Plts {
@@ -21,6 +23,7 @@ impl Plts {
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         Ok(Self {
             pipeline: Pipeline::new(gpu, "plts")?,
+            vertical: false,
         })
     }
 }
@@ -28,6 +31,14 @@ impl Plts {
 impl RenderStrategy for Plts {
     fn ray_state_bytes(&self) -> u64 {
         32
+    }
+
+    fn prepare(&mut self, what: &Preparation<'_>) -> Result<bool, GpuError> {
+        if what.grid.vertical != self.vertical {
+            self.pipeline = Pipeline::variant(what.gpu, "plts", "main", &what.grid.constants())?;
+            self.vertical = what.grid.vertical;
+        }
+        Ok(true)
     }
 
     fn encode(&mut self, round: &Round<'_>, encoder: &mut wgpu::CommandEncoder) {
