@@ -533,6 +533,10 @@ fn integrate(walk: ptr<function, Walk>, sum: ptr<function, Accumulated>, ray: Ra
     }
     if BY_SEGMENT {
         let from_t = max(max(s.t, (*walk).done), ray.enter);
+        if is_ghost((*walk).column, (*walk).layer) {
+            *sum = absorb(*sum, frame.ghost, frame.ghost.w * max(0.0, min(t, ray.leave) - from_t));
+            return;
+        }
         integrate_segment(s, sum, from_t, min(t, ray.leave), tally);
         return;
     }
@@ -541,26 +545,33 @@ fn integrate(walk: ptr<function, Walk>, sum: ptr<function, Accumulated>, ray: Ra
     let end = min(ceil(t / frame.step - 0.5) - ray.first, ray.count);
     var n = max((*walk).n, first);
     let count = max(0.0, end - n);
-    if !BY_VERTEX {
-        let entry = transfer(s.top.x);
+    if !BY_VERTEX || is_ghost((*walk).column, (*walk).layer) {
+        var entry = transfer(s.top.x);
+        if is_ghost((*walk).column, (*walk).layer) {
+            entry = frame.ghost;
+        }
         let depth = entry.w * frame.step;
         // Not beyond the sample at which the ray ends.
         let needed = ceil(log(max(frame.early_termination, 1e-30) / (*sum).transmittance) / -max(depth, 1e-20));
-        let passed = exp(-depth * min(count, max(needed, 1.0)));
-        (*sum).color += (*sum).transmittance * (1.0 - passed) * entry.rgb;
-        (*sum).transmittance *= passed;
+        *sum = absorb(*sum, entry, depth * min(count, max(needed, 1.0)));
         (*tally).samples += u32(count);
         (*tally).work += 1u;
         n += count;
     }
     while n < end && is_open(*sum) {
         let at = (ray.first + n + 0.5) * frame.step;
-        *sum = accumulate(*sum, segment_value(s, at));
+        *sum = accumulate(*sum, transfer(segment_value(s, at)));
         n += 1.0;
         (*tally).samples += 1u;
         (*tally).work += 1u;
     }
     (*walk).n = max(max((*walk).n, end), n);
+}
+
+// Adds a stretch of one color and an optical depth.
+fn absorb(a: Accumulated, color: vec4f, optical_depth: f32) -> Accumulated {
+    let passed = exp(-optical_depth);
+    return Accumulated(a.color + a.transmittance * (1.0 - passed) * color.rgb, a.transmittance * passed);
 }
 
 // The segment in pieces so small that the order of colors within one does not matter; in each the means
@@ -580,10 +591,7 @@ fn integrate_segment(s: Segment, sum: ptr<function, Accumulated>, from_t: f32, t
     for (var n = 1.0; n <= pieces && is_open(*sum); n += 1.0) {
         let value = segment_value(s, from_t + length * n / pieces);
         let mean = transfer_mean(before, value);
-        let optical = mean.w * length / pieces;
-        let passed = exp(-optical);
-        (*sum).color += (*sum).transmittance * (1.0 - passed) * mean.rgb / max(mean.w, 1e-30);
-        (*sum).transmittance *= passed;
+        *sum = absorb(*sum, mean / max(mean.w, 1e-30), mean.w * length / pieces);
         before = value;
         (*tally).samples += 1u;
         (*tally).work += 1u;

@@ -62,7 +62,11 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         }
         while have_cell {
             samples += 1u;
-            sum = accumulate(sum, evaluate(cell, clamp(s.uvw, vec3f(0.0), vec3f(1.0))).w);
+            var entry = transfer(evaluate(cell, clamp(s.uvw, vec3f(0.0), vec3f(1.0))).w);
+            if is_ghost(cell.column, cell.layer) {
+                entry = frame.ghost;
+            }
+            sum = accumulate(sum, entry);
             n += 1.0;
             if n >= ray.count || !is_open(sum) || work >= tile.work_limit {
                 break;

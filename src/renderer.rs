@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 use crate::gpu::{FrameRenderer, FrameStats, Gpu, GpuBytes, GpuError, GpuGrid};
 use crate::model::{CellField, Grid};
 use crate::picture::Image;
+use crate::scene::ghosts::shown_grid;
 use crate::scene::{Interpolation, View};
 use crate::strategies::{Preparation, RenderStrategy, StrategyKind};
 
@@ -24,6 +25,8 @@ struct Shown {
     field: Arc<CellField>,
     drawn: Arc<Vec<bool>>,
     interpolation: Interpolation,
+    /// Which cells are ghosts, where there are any.
+    is_ghost: Option<Vec<bool>>,
 }
 
 /// A picture and what it cost.
@@ -75,6 +78,7 @@ impl Renderer {
         progress: &dyn Fn(f64) -> bool,
     ) -> Result<Option<Frame>, GpuError> {
         let start = Instant::now();
+        let grid = shown_grid(grid, view.ghosts.as_ref());
         self.show(grid, view)?;
         let Self {
             gpu,
@@ -114,12 +118,20 @@ impl Renderer {
             field: view.field.clone(),
             drawn: view.drawn.clone(),
             interpolation: view.interpolation,
+            is_ghost: view.ghosts.as_ref().map(|g| g.is_ghost.clone()),
         };
+        let ghosts_now = self.shown.as_ref().and_then(|s| s.is_ghost.as_ref());
+        if ghosts_now != wanted.is_ghost.as_ref() {
+            self.grid = self
+                .grid
+                .remade(&self.gpu, grid, wanted.is_ghost.as_deref())?;
+        }
         if self.shown.as_ref() != Some(&wanted) {
             let Shown {
                 field,
                 drawn,
                 interpolation,
+                ..
             } = &wanted;
             self.grid
                 .show(&self.gpu, grid, field, drawn, *interpolation)?;

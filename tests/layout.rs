@@ -69,6 +69,7 @@ fn structs_agree() {
         world_handedness,
         view_z,
         grid_handedness,
+        ghost,
         clip_planes
     );
     agrees!(

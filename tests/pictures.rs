@@ -4,10 +4,11 @@
 mod common;
 
 use strataray::metrics::{fraction_within, psnr_8bit, ssim_8bit};
+use strataray::model::CellIndex;
 use strataray::picture::Image;
 use strataray::renderer::Renderer;
 use strataray::scene::{
-    self, CameraSpec, ClipSpec, CutFace, FramingCamera, Interpolation, Scene, View,
+    self, CameraSpec, ClipSpec, CutFace, FramingCamera, Inactive, Interpolation, Scene, View,
 };
 use strataray::strategies::StrategyKind;
 use strataray::{case::Case, load, reference};
@@ -192,6 +193,50 @@ fn clip_planes_and_their_sections_agree_with_the_reference() {
                     strategy.name()
                 );
                 assert!(db >= 38.0 && not_clipped < 35.0, "{}", strategy.name());
+            }
+        }
+    }
+}
+
+#[test]
+fn ghosts_of_inactive_cells_agree_with_the_reference() {
+    let Some(gpu) = common::gpu() else { return };
+    for model in common::models() {
+        let case = load::open(&model).unwrap();
+        // Only where there is something to see.
+        let all = case.grid.with_inactive();
+        let thick = |&&c: &&CellIndex| all.has_thickness(all.dims().ijk(c));
+        if all.active_cells().iter().filter(thick).count() * 20
+            < case.grid.active_cells().len() * 21
+        {
+            continue;
+        }
+        let mut renderer = Renderer::new(gpu.clone(), &case.grid).unwrap();
+        for interpolation in [Interpolation::Vertex, Interpolation::Cell] {
+            let mut scene = scene(205.0, 35.0, interpolation);
+            let without = scene::resolve(&scene, &case).unwrap();
+            scene.show.inactive = Inactive::Ghost;
+            let view = scene::resolve(&scene, &case).unwrap();
+            // The same camera for both, so that only the ghosts differ.
+            let without = View {
+                camera: view.camera,
+                ..without
+            };
+            let truth = reference::render(&case.grid, &view, &|_| true).unwrap();
+            for strategy in StrategyKind::ALL {
+                let db = psnr(
+                    &on_gpu(&mut renderer, &case, &view, strategy),
+                    &truth,
+                    &view,
+                );
+                let hidden = on_gpu(&mut renderer, &case, &without, strategy);
+                let hidden = psnr(&hidden, &truth, &view);
+                println!(
+                    "{} {} {interpolation:?}: {db:.1} dB, {hidden:.1} dB without ghosts",
+                    case.about.name,
+                    strategy.name()
+                );
+                assert!(db >= least(strategy)[0] && hidden + 6.0 < db);
             }
         }
     }

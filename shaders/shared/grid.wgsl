@@ -15,6 +15,11 @@
 // Acceleration grid over x and y: first entry in bin_columns, and the depth range in 2 x 16 bits.
 @group(1) @binding(6) var<storage, read> bins: array<vec2u>;
 @group(1) @binding(7) var<storage, read> bin_columns: array<u32>;
+// One bit a cell, column by column: inactive cells that are shown.
+@group(1) @binding(8) var<storage, read> ghost_cells: array<u32>;
+
+// Inactive cells are shown, and drawn as any other but for their look.
+override GHOSTS: bool = false;
 
 struct Pillar {
     at: vec2f,
@@ -44,6 +49,14 @@ fn pillar_index(column: u32) -> vec4u {
 fn is_drawn(column: u32, layer: u32) -> bool {
     let slot = column * grid.nk + layer;
     return (drawn_cells[slot >> 5u].x >> (slot & 31u) & 1u) == 1u;
+}
+
+fn is_ghost(column: u32, layer: u32) -> bool {
+    if !GHOSTS {
+        return false;
+    }
+    let slot = column * grid.nk + layer;
+    return (ghost_cells[slot >> 5u] >> (slot & 31u) & 1u) == 1u;
 }
 
 // Rank among the drawn cells.

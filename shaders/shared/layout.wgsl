@@ -38,6 +38,8 @@ struct Frame {
     view_z: vec3f,
     // The same in grid space.
     grid_handedness: f32,
+    // Linear color and extinction of inactive cells.
+    ghost: vec4f,
     // Kept is where dot(xyz, point) + w >= 0, grid space relative to the origin.
     clip_planes: array<vec4f, MAX_CLIP_PLANES>,
 }

@@ -38,8 +38,8 @@ struct Accumulated {
     transmittance: f32,
 }
 
-fn accumulate(a: Accumulated, value: f32) -> Accumulated {
-    let entry = transfer(value);
+// Adds a sample of a color and an extinction.
+fn accumulate(a: Accumulated, entry: vec4f) -> Accumulated {
     let passed = exp(-entry.w * frame.step);
     return Accumulated(a.color + a.transmittance * (1.0 - passed) * entry.rgb, a.transmittance * passed);
 }

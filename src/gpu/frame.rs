@@ -14,9 +14,10 @@ use super::pipeline::Pipeline;
 use super::target;
 use super::tiles::{self, Pace, Rect};
 use crate::picture::Image;
-use crate::scene::{Interpolation, View};
+use crate::scene::{Interpolation, View, ghosts};
 use crate::strategies::RenderStrategy;
 use crate::transfer::TransferFunction;
+use crate::transfer::function::linear_from_srgb;
 
 /// What a frame cost.
 #[derive(Debug, Clone, Copy, Default)]
@@ -460,8 +461,15 @@ fn frame_uniform(grid: &GpuGrid, view: &View) -> Frame {
         world_handedness: grid.handedness * linear.determinant().signum() as f32,
         view_z: f32s(to_camera * camera.forward),
         grid_handedness: grid.handedness,
+        ghost: ghost(view),
         clip_planes: clip_planes(grid, view),
     }
+}
+
+/// Linear color and extinction of inactive cells.
+fn ghost(view: &View) -> [f32; 4] {
+    let [r, g, b] = ghosts::COLOR.map(|v| linear_from_srgb(v) as f32);
+    [r, g, b, view.transfer.extinction_of(ghosts::OPACITY) as f32]
 }
 
 /// Distance from the eye to the farthest corner of the model's box.

@@ -41,6 +41,26 @@ impl std::ops::Add for GpuBytes {
     }
 }
 
+/// What is constant in shaders that locate points in a grid.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Constants {
+    /// All pillars are vertical.
+    pub vertical: bool,
+    /// Inactive cells are shown.
+    pub ghosts: bool,
+}
+
+impl Constants {
+    /// Names and values of the shaders' `override` constants.
+    pub fn pairs(self) -> [(&'static str, f64); 2] {
+        let value = |is_set| f64::from(u8::from(is_set));
+        [
+            ("VERTICAL", value(self.vertical)),
+            ("GHOSTS", value(self.ghosts)),
+        ]
+    }
+}
+
 /// Counts up with each change, so that what is made from the grid knows when it is stale.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Versions {
@@ -76,6 +96,10 @@ pub struct GpuGrid {
     /// What `drawn_cells` holds.
     drawn_words: Vec<[u32; 2]>,
     values: wgpu::Buffer,
+    /// Bits of the cells that are ghosts, where they are shown.
+    ghost_cells: Option<wgpu::Buffer>,
+    /// What is bound where they are not.
+    no_ghosts: wgpu::Buffer,
 }
 
 impl GpuGrid {
@@ -145,7 +169,31 @@ impl GpuGrid {
             bin_columns: gpu.storage("acceleration columns", &accel.columns)?,
             drawn_cells: gpu.storage("drawn cells", &drawn_words(grid, &[]))?,
             values: gpu.storage::<f32>("values", &[])?,
+            ghost_cells: None,
+            no_ghosts: gpu.storage::<u32>("ghost cells", &[])?,
         })
+    }
+
+    /// Uploads another form of the grid in place of this one: with inactive cells as ghosts (by active
+    /// index of `grid`), or without.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn remade(
+        &self,
+        gpu: &Gpu,
+        grid: &Grid,
+        is_ghost: Option<&[bool]>,
+    ) -> Result<Self, GpuError> {
+        let mut made = Self::new(gpu, grid)?;
+        made.versions.drawn = self.versions.drawn + 1;
+        made.versions.values = self.versions.values + 1;
+        if let Some(is_ghost) = is_ghost {
+            let words = drawn_words(grid, is_ghost);
+            let bits: Vec<u32> = words.iter().map(|w| w[0]).collect();
+            made.ghost_cells = Some(gpu.storage("ghost cells", &bits)?);
+        }
+        Ok(made)
     }
 
     /// Puts the values of a field on the device, for the cells that `drawn` (by active index) names.
@@ -194,14 +242,18 @@ impl GpuGrid {
             &self.values,
             &self.bins,
             &self.bin_columns,
+            self.ghost_cells.as_ref().unwrap_or(&self.no_ghosts),
         ];
         let resources = buffers.map(wgpu::Buffer::as_entire_binding);
         gpu.bind(gpu.layouts.group(1), &resources)
     }
 
     /// Values of the constants of shaders that locate points.
-    pub fn constants(&self) -> [(&'static str, f64); 1] {
-        [("VERTICAL", f64::from(u8::from(self.vertical)))]
+    pub fn constants(&self) -> Constants {
+        Constants {
+            vertical: self.vertical,
+            ghosts: self.ghost_cells.is_some(),
+        }
     }
 
     /// Bytes by purpose.
@@ -214,7 +266,7 @@ impl GpuGrid {
                 &self.column_lists,
                 &self.depths,
                 &self.drawn_cells,
-            ]),
+            ]) + self.ghost_cells.as_ref().map_or(0, wgpu::Buffer::size),
             acceleration: sum(&[&self.bins, &self.bin_columns]),
             property: sum(&[&self.values]),
             ..GpuBytes::default()
@@ -334,7 +386,9 @@ fn column_major(grid: &Grid, field: &CellField, drawn: &[bool]) -> Vec<f32> {
             if let Some(active) = grid.active_index(dims.cell(ijk)) {
                 let active = active.0 as usize;
                 if drawn.get(active) == Some(&true) {
-                    values.push(field.values()[active]);
+                    // Ghosts have none; NaN stays off the device.
+                    let value = field.values()[active];
+                    values.push(if value.is_nan() { 0.0 } else { value });
                 }
             }
         }

@@ -31,6 +31,7 @@ pub struct Frame {
     pub world_handedness: f32,
     pub view_z: [f32; 3],
     pub grid_handedness: f32,
+    pub ghost: [f32; 4],
     pub clip_planes: [[f32; 4]; MAX_CLIP_PLANES],
 }
 

@@ -34,7 +34,7 @@ pub fn locate(
     points_in_grid: &[DVec3],
     interpolation: Interpolation,
 ) -> Result<Vec<Option<Located>>, GpuError> {
-    let pipeline = Pipeline::variant(gpu, "probe", "main", &gpu_grid.constants())?;
+    let pipeline = Pipeline::variant(gpu, "probe", "main", &gpu_grid.constants().pairs())?;
     let grid_group = gpu_grid.bind(gpu);
     let mut located = Vec::with_capacity(points_in_grid.len());
     for batch in points_in_grid.chunks(BATCH) {

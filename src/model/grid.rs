@@ -131,7 +131,7 @@ pub struct GridInput<'a, C, Z> {
 }
 
 /// A corner-point grid in its file's own coordinates (grid space).
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Grid {
     dims: Dims,
     pillars: Vec<Pillar>,
@@ -198,6 +198,16 @@ impl Grid {
     /// The pillar at corner `corner` (`di + 2 dj`) of column (`i`, `j`).
     pub fn pillar(&self, i: usize, j: usize, corner: usize) -> &Pillar {
         &self.pillars[(i + (corner & 1)) + (self.dims.ni + 1) * (j + (corner >> 1 & 1))]
+    }
+
+    /// The same grid with its inactive cells active too.
+    pub fn with_inactive(&self) -> Self {
+        let cells = self.dims.cells() as u32;
+        Self {
+            active_cells: (0..cells).map(CellIndex).collect(),
+            active_rank: (0..cells).collect(),
+            ..self.clone()
+        }
     }
 
     /// The four depth lists of a column (`i + ni * j`), by corner `di + 2 dj`.

@@ -114,6 +114,7 @@ mod tests {
             early_termination: 0.0,
             drawn: Vec::new().into(),
             clip: Vec::new(),
+            ghosts: None,
             libc: crate::scene::LibcSettings::default(),
             show_box: true,
             show_legend: true,

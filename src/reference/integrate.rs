@@ -5,7 +5,9 @@ use glam::DVec3;
 use super::locate::{Located, Locator};
 use crate::model::corner_point::weights;
 use crate::model::{CellField, Grid, VertexField};
+use crate::scene::ghosts::{self, shown_grid};
 use crate::scene::{ClipPlane, Interpolation, View};
+use crate::transfer::function::linear_from_srgb;
 
 /// A ray in world space.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -57,7 +59,10 @@ pub struct Integrator<'a> {
 
 impl<'a> Integrator<'a> {
     /// Prepares the search for cells and, where asked for, the averages at the vertices.
+    ///
+    /// `grid` is the case's; where the view shows inactive cells, it brings its own.
     pub fn new(grid: &'a Grid, view: &'a View) -> Self {
+        let grid = shown_grid(grid, view.ghosts.as_ref());
         let by_vertex = view.interpolation == Interpolation::Vertex;
         Self {
             grid,
@@ -82,11 +87,9 @@ impl<'a> Integrator<'a> {
         while (number + 0.5) * step <= leave && transmittance >= self.view.early_termination {
             let position = ray.origin + (number + 0.5) * step * ray.direction;
             if self.is_kept(position)
-                && let Some(value) = self.value(position)
+                && let Some((rgb, extinction)) = self.medium(position)
             {
-                let position = self.view.transfer.position(value);
-                let alpha = 1.0 - (-self.view.transfer.extinction(position) * step).exp();
-                let rgb = self.view.transfer.linear_rgb(position);
+                let alpha = 1.0 - (-extinction * step).exp();
                 for (sum, channel) in color.iter_mut().zip(rgb) {
                     *sum += transmittance * alpha * channel;
                 }
@@ -124,25 +127,41 @@ impl<'a> Integrator<'a> {
         if !plane.opaque || t > leave || !kept {
             return None;
         }
-        let position = self.view.transfer.position(self.value(position)?);
+        let located = self.drawn_at(position)?;
+        let value = self.value(&located)?;
+        let position = self.view.transfer.position(value);
         Some(self.view.transfer.linear_rgb(position))
     }
 
-    /// The value at a point of world space; `None` where nothing is drawn.
-    fn value(&self, position: DVec3) -> Option<f64> {
+    /// Linear color and extinction at a point of world space; `None` where nothing is drawn.
+    fn medium(&self, position: DVec3) -> Option<([f64; 3], f64)> {
+        let located = self.drawn_at(position)?;
+        let transfer = &self.view.transfer;
+        match self.value(&located) {
+            Some(value) => {
+                let position = transfer.position(value);
+                Some((transfer.linear_rgb(position), transfer.extinction(position)))
+            }
+            None if self.view.ghosts.is_some() => Some((
+                ghosts::COLOR.map(linear_from_srgb),
+                transfer.extinction_of(ghosts::OPACITY),
+            )),
+            None => None,
+        }
+    }
+
+    /// The drawn cell at a point of world space.
+    fn drawn_at(&self, position: DVec3) -> Option<Located> {
         let point = self.view.spaces.grid_from_world.transform_point3(position);
         let located = self.locator.locate(point)?;
         let cell = self.grid.dims().cell(located.ijk);
         let active = self.grid.active_index(cell)?;
-        if !self.view.drawn[active.0 as usize] {
-            return None;
-        }
-        value_at(
-            self.grid,
-            &located,
-            &self.view.field,
-            self.vertices.as_ref(),
-        )
+        self.view.drawn[active.0 as usize].then_some(located)
+    }
+
+    /// The value at a place in a cell; `None` where it has none, as inactive cells.
+    fn value(&self, located: &Located) -> Option<f64> {
+        value_at(self.grid, located, &self.view.field, self.vertices.as_ref())
     }
 }
 

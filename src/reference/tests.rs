@@ -116,6 +116,7 @@ fn view(grid: &Grid, field: CellField, extinction: f64, sampling_step: f64) -> V
         early_termination: 0.0,
         drawn: vec![true; grid.active_cells().len()].into(),
         clip: Vec::new(),
+        ghosts: None,
         libc: crate::scene::LibcSettings::default(),
         field: field.into(),
         show_box: false,

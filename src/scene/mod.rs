@@ -1,6 +1,7 @@
 //! The scene file: what to look at and how, as JSON. Every field has a default.
 
 pub mod camera;
+pub mod ghosts;
 pub mod resolve;
 mod settings;
 
@@ -219,12 +220,23 @@ pub struct PropertyFilter {
     pub max: f64,
 }
 
+/// How inactive cells look.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Inactive {
+    /// Not at all.
+    #[default]
+    Hidden,
+    /// Faint and gray.
+    Ghost,
+}
+
 /// What is drawn beside the volume.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Show {
-    /// Inactive cells: `hidden` or `ghost`.
-    pub inactive: String,
+    /// Inactive cells.
+    pub inactive: Inactive,
     /// Fault surfaces.
     pub faults: bool,
     /// Wells.
@@ -240,7 +252,7 @@ pub struct Show {
 impl Default for Show {
     fn default() -> Self {
         Self {
-            inactive: "hidden".into(),
+            inactive: Inactive::Hidden,
             faults: false,
             wells: true,
             cell_edges: false,

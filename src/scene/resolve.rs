@@ -5,9 +5,10 @@ use std::sync::Arc;
 use glam::{DVec3, DVec4};
 use rayon::prelude::*;
 
+use super::ghosts::{Ghosts, shown_grid};
 use super::{
-    Camera, CameraSpec, ClipSpec, ColorSpec, CutFace, Filter, Interpolation, LibcSettings, Scene,
-    StepSpec,
+    Camera, CameraSpec, ClipSpec, ColorSpec, CutFace, Filter, Inactive, Interpolation,
+    LibcSettings, Scene, StepSpec,
 };
 use crate::case::{Case, CaseError};
 use crate::model::{CellField, Ijk, Spaces};
@@ -77,6 +78,8 @@ pub struct View {
     pub early_termination: f64,
     /// By active index: true where the cell is drawn (has thickness and a value, passes the filter).
     pub drawn: Arc<Vec<bool>>,
+    /// Where inactive cells are shown: the grid that field and selection go by then.
+    pub ghosts: Option<Arc<Ghosts>>,
     /// Planes that cut parts away.
     pub clip: Vec<ClipPlane>,
     /// Settings of the cell-to-cell strategy.
@@ -107,16 +110,12 @@ pub const MAX_CLIP_PLANES: usize = 8;
 /// When a value is out of its range, or asks for what the case or this version does not have.
 pub fn resolve(scene: &Scene, case: &Case) -> Result<View, SceneError> {
     refuse_later_work(scene)?;
-    let grid_bounds = case.grid.bounds().ok_or(SceneError::Empty)?;
+    let active_bounds = case.grid.bounds().ok_or(SceneError::Empty)?;
     let exaggeration = match scene.vertical_exaggeration {
         Some(v) => positive("vertical_exaggeration", v)?,
-        None => automatic_exaggeration(grid_bounds),
+        None => automatic_exaggeration(active_bounds),
     };
     let spaces = Spaces::new(case.grid.map_axes(), exaggeration);
-    let box_corners = box_corners(&spaces, grid_bounds);
-    let start = [DVec3::INFINITY, DVec3::NEG_INFINITY];
-    let bounds = box_corners.iter();
-    let world_bounds = bounds.fold(start, |[a, b], p| [a.min(*p), b.max(*p)]);
     let edges = mean_world_edges(case, exaggeration);
     let property = match &scene.property {
         Some(name) => name.clone(),
@@ -126,6 +125,18 @@ pub fn resolve(scene: &Scene, case: &Case) -> Result<View, SceneError> {
     let field = case.field(&property, step)?;
     let range = range(scene, &field)?;
     let drawn = drawn(case, &field, &scene.filter, step)?;
+    let (ghosts, field, drawn) = match scene.show.inactive {
+        Inactive::Hidden => (None, field, drawn),
+        Inactive::Ghost => {
+            let (ghosts, field, drawn) = Ghosts::new(&case.grid, &field, &drawn);
+            (Some(Arc::new(ghosts)), field, drawn)
+        }
+    };
+    let bounds = shown_grid(&case.grid, ghosts.as_ref()).bounds();
+    let box_corners = box_corners(&spaces, bounds.unwrap_or(active_bounds));
+    let start = [DVec3::INFINITY, DVec3::NEG_INFINITY];
+    let bounds = box_corners.iter();
+    let world_bounds = bounds.fold(start, |[a, b], p| [a.min(*p), b.max(*p)]);
     let strategy = StrategyKind::from_name(&scene.strategy)
         .ok_or_else(|| wrong("strategy", StrategyKind::refusal(&scene.strategy)))?;
     if !(0.0..1.0).contains(&scene.early_termination) {
@@ -153,6 +164,7 @@ pub fn resolve(scene: &Scene, case: &Case) -> Result<View, SceneError> {
         property,
         field: Arc::new(field),
         drawn: Arc::new(drawn),
+        ghosts,
         clip: clip(&scene.clip)?,
         libc: scene.libc,
         show_box: scene.show.r#box,
@@ -190,11 +202,6 @@ fn refuse_later_work(scene: &Scene) -> Result<(), SceneError> {
             "srg",
             scene.srg.is_some(),
             "the resampled-grid strategy is not supported yet; leave its settings out",
-        ),
-        (
-            "show.inactive",
-            scene.show.inactive != "hidden",
-            "only \"hidden\" is supported yet",
         ),
         (
             "show.faults",

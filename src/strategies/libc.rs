@@ -7,6 +7,7 @@
 
 use super::{Preparation, RenderStrategy};
 use crate::gpu::faces::{BoundaryFaces, FaceMode, FaceTarget};
+use crate::gpu::grid_upload::Constants;
 use crate::gpu::{Gpu, GpuBytes, GpuError, Pipeline, Place, Round, tiles};
 use crate::scene::{Integration, Interpolation, LibcSettings};
 
@@ -28,7 +29,7 @@ pub struct Libc {
 struct Variant {
     settings: LibcSettings,
     interpolation: Interpolation,
-    vertical: bool,
+    grid: Constants,
 }
 
 impl Variant {
@@ -39,7 +40,8 @@ impl Variant {
             ("BY_SEGMENT", by_segment),
             ("BY_VERTEX", self.interpolation == Interpolation::Vertex),
         ];
-        let constants = constants.map(|(name, value)| (name, f64::from(u8::from(value))));
+        let own = constants.map(|(name, value)| (name, f64::from(u8::from(value))));
+        let constants: Vec<_> = own.into_iter().chain(self.grid.pairs()).collect();
         Pipeline::variant(gpu, "libc", "walk", &constants)
     }
 }
@@ -53,7 +55,7 @@ impl Libc {
         let variant = Variant {
             settings: LibcSettings::default(),
             interpolation: Interpolation::Vertex,
-            vertical: false,
+            grid: Constants::default(),
         };
         Ok(Self {
             begin: Pipeline::variant(gpu, "libc", "begin", &[])?,
@@ -91,10 +93,10 @@ impl RenderStrategy for Libc {
         let variant = Variant {
             settings: what.view.libc,
             interpolation: what.view.interpolation,
-            vertical: what.grid.vertical,
+            grid: what.grid.constants(),
         };
         if variant != self.variant {
-            let located = what.grid.constants();
+            let located = variant.grid.pairs();
             self.begin = Pipeline::variant(what.gpu, "libc", "begin", &located)?;
             self.set_right = Pipeline::variant(what.gpu, "libc", "set_right", &located)?;
             self.walk = variant.compile(what.gpu)?;

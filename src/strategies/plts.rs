@@ -6,13 +6,14 @@
 //! a sample inside a cell, a point location at each entry into the model.
 
 use super::{Preparation, RenderStrategy};
+use crate::gpu::grid_upload::Constants;
 use crate::gpu::{Gpu, GpuError, Pipeline, Place, Round};
 
 /// The strategy with its compiled shader.
 pub struct Plts {
     pipeline: Pipeline,
-    /// Whether it is the variant for vertical pillars.
-    vertical: bool,
+    /// Constants that it was compiled with.
+    constants: Constants,
 }
 
 impl Plts {
@@ -23,7 +24,7 @@ impl Plts {
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         Ok(Self {
             pipeline: Pipeline::new(gpu, "plts")?,
-            vertical: false,
+            constants: Constants::default(),
         })
     }
 }
@@ -34,9 +35,10 @@ impl RenderStrategy for Plts {
     }
 
     fn prepare(&mut self, what: &Preparation<'_>) -> Result<bool, GpuError> {
-        if what.grid.vertical != self.vertical {
-            self.pipeline = Pipeline::variant(what.gpu, "plts", "main", &what.grid.constants())?;
-            self.vertical = what.grid.vertical;
+        let constants = what.grid.constants();
+        if constants != self.constants {
+            self.pipeline = Pipeline::variant(what.gpu, "plts", "main", &constants.pairs())?;
+            self.constants = constants;
         }
         Ok(true)
     }

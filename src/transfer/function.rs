@@ -47,9 +47,14 @@ impl TransferFunction {
         a + (b - a) * f
     }
 
-    /// Extinction at a position, per world-space length: `-ln(1 - alpha) / L`.
+    /// Extinction at a position, per world-space length.
     pub fn extinction(&self, position: f64) -> f64 {
-        -(-self.opacity(position).min(MAX_OPACITY)).ln_1p() / self.reference_length
+        self.extinction_of(self.opacity(position))
+    }
+
+    /// Extinction of an opacity per reference length, per world-space length: `-ln(1 - alpha) / L`.
+    pub fn extinction_of(&self, opacity: f64) -> f64 {
+        -(-opacity.min(MAX_OPACITY)).ln_1p() / self.reference_length
     }
 }
 

@@ -1,0 +1,57 @@
+//! Inactive cells shown as a faint ghost.
+
+use std::sync::Arc;
+
+use crate::model::{CellField, Grid};
+
+/// Color (sRGB, 0..1) of inactive cells.
+pub const COLOR: [f64; 3] = [0.45, 0.45, 0.5];
+/// Their opacity per reference length: enough to see where they are, not to hide what is behind.
+pub const OPACITY: f64 = 0.012;
+
+/// The grid in which inactive cells are active, and which of its cells these are.
+///
+/// **Invariants**: `is_ghost` goes by the active index of this grid, as field and selection of the view
+/// do. Ghosts have no value.
+#[derive(Debug)]
+pub struct Ghosts {
+    /// Every cell is active here.
+    pub grid: Grid,
+    /// True for the cells that the case has as inactive.
+    pub is_ghost: Vec<bool>,
+}
+
+impl Ghosts {
+    /// Makes ghosts of the inactive cells of `grid`, with field and selection extended to them.
+    pub fn new(grid: &Grid, field: &CellField, drawn: &[bool]) -> (Self, CellField, Vec<bool>) {
+        let all = grid.with_inactive();
+        let cells = all.active_cells();
+        let active: Vec<Option<usize>> = cells
+            .iter()
+            .map(|&cell| grid.active_index(cell).map(|a| a.0 as usize))
+            .collect();
+        let values = active
+            .iter()
+            .map(|a| a.map_or(f32::NAN, |a| field.values()[a]));
+        let field = CellField::new(values.collect());
+        let shown = cells.iter().zip(&active).map(|(&cell, a)| match a {
+            Some(a) => drawn[*a],
+            None => all.has_thickness(all.dims().ijk(cell)),
+        });
+        let drawn = shown.collect();
+        let is_ghost = active.iter().map(Option::is_none).collect();
+        (
+            Self {
+                grid: all,
+                is_ghost,
+            },
+            field,
+            drawn,
+        )
+    }
+}
+
+/// What a view's field and selection go by: the case's grid, or the one with the ghosts.
+pub fn shown_grid<'a>(grid: &'a Grid, ghosts: Option<&'a Arc<Ghosts>>) -> &'a Grid {
+    ghosts.map_or(grid, |g| &g.grid)
+}
