@@ -1,6 +1,6 @@
 //! The contact sheet: a line for each view, with the reference and each strategy beside its differences.
 
-use super::tables::{decibels, figure};
+use super::tables::{figure, with_unit};
 use super::{Compared, Outcome, Plan, Row};
 use crate::picture::{Rgb8, SheetError, Tile, contact_sheet, difference_colors};
 
@@ -73,10 +73,10 @@ fn quality(row: &Row) -> String {
         return String::new();
     }
     format!(
-        "{} against {}\n{} dB, CIEDE2000 {}",
+        "{} against {}\n{}, CIEDE2000 {}",
         row.strategy,
         row.reference,
-        decibels(row.psnr_db),
+        with_unit(row.psnr_db),
         figure(row.ciede2000_mean, 3)
     )
 }

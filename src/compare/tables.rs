@@ -111,9 +111,10 @@ fn verdict(digests: &[Digest]) -> String {
     let measured = others.filter_map(|d| Some((d, d.mean_ciede2000?)));
     if let Some((closest, difference)) = measured.min_by(|a, b| a.1.total_cmp(&b.1)) {
         text += &format!(
-            "- Closest to the reference: **{}**, CIEDE2000 {difference:.4} in the mean, {} dB in its worst view.\n",
+            "- Closest to the reference: **{}**, CIEDE2000 {} in the mean, {} in its worst view.\n",
             closest.strategy,
-            decibels(closest.worst_psnr_db)
+            figure(Some(difference), 4),
+            with_unit(closest.worst_psnr_db)
         );
     }
     let timed = || digests.iter().filter_map(|d| Some((d, d.median_ms?)));
@@ -272,8 +273,14 @@ fn links(plan: &Plan, row: &Row) -> String {
 /// What stands for a figure that is absent.
 const ABSENT: &str = "-";
 
+/// A figure not below 0; only 0 itself is shown as 0.
 pub(super) fn figure(value: Option<f64>, decimals: usize) -> String {
-    value.map_or_else(|| ABSENT.to_owned(), |v| format!("{v:.decimals$}"))
+    let least = 0.1f64.powi(decimals as i32);
+    match value {
+        None => ABSENT.to_owned(),
+        Some(v) if v > 0.0 && v < 0.5 * least => format!("<{least:.decimals$}"),
+        Some(v) => format!("{v:.decimals$}"),
+    }
 }
 
 /// A PSNR; infinite where two pictures are equal.
@@ -284,6 +291,65 @@ pub(super) fn decibels(psnr_db: Option<f64>) -> String {
     }
 }
 
+/// A PSNR with its unit.
+pub(super) fn with_unit(psnr_db: Option<f64>) -> String {
+    match psnr_db {
+        Some(db) if db.is_finite() => format!("{} dB", decibels(psnr_db)),
+        _ => decibels(psnr_db),
+    }
+}
+
 fn megabytes(bytes: Option<u64>) -> String {
     figure(bytes.map(|b| b as f64 / 1e6), 1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_zero_is_shown_as_zero() {
+        let texts = [0.0, 1e-9, 0.004, 0.006, 1.236].map(|v| figure(Some(v), 2));
+        assert_eq!(texts, ["0.00", "<0.01", "<0.01", "0.01", "1.24"]);
+        assert_eq!([figure(None, 2), decibels(None)], ["-"; 2]);
+        assert_eq!(decibels(Some(f64::INFINITY)), "equal");
+        assert_eq!(decibels(Some(61.29)), "61.3");
+    }
+
+    /// A row with the figures that the verdict goes by.
+    fn figures(strategy: &'static str, reference: &'static str, figures: [f64; 3]) -> Row {
+        let [psnr_db, ciede2000, ms] = figures.map(Some);
+        Row {
+            strategy,
+            reference,
+            psnr_db,
+            ciede2000_mean: ciede2000,
+            frame_ms: ms,
+            ..Row::default()
+        }
+    }
+
+    #[test]
+    fn verdict_names_the_closest_and_the_fastest() {
+        let rows = |reference| {
+            [
+                figures("a", reference, [50.0, 0.1, 10.0]),
+                figures("a", reference, [40.0, 0.3, 90.0]),
+                figures("a", reference, [45.0, 0.2, 20.0]),
+                figures("b", reference, [f64::INFINITY, 0.0, 50.0]),
+            ]
+        };
+        let against_cpu = summary(&rows("cpu"));
+        assert!(against_cpu.contains("Closest to the reference: **b**, CIEDE2000 0.0000"));
+        assert!(against_cpu.contains("equal in its worst") && !against_cpu.contains("(reference)"));
+        assert!(against_cpu.contains("Fastest: **a**, 20.0 ms a frame, 2.5 times as fast as b."));
+        // The reference is not the closest to itself.
+        let against_b = summary(&rows("b"));
+        let closest = "Closest to the reference: **a**, CIEDE2000 0.2000 in the mean, 40.0 dB";
+        assert!(against_b.contains(closest), "{against_b}");
+        assert!(against_b.contains("b (reference)"));
+        // Nobody is faster than nobody.
+        assert!(!summary(&rows("b")[3..]).contains("- "));
+        assert!(!summary(&[]).contains("- "));
+    }
 }

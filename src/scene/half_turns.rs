@@ -68,7 +68,7 @@ impl TurnAxis {
 
     /// Which of the axes view `n` of `count` has come to, and the angle about it.
     fn place(self, n: usize, count: usize) -> (usize, f64) {
-        // The way back to the start is one more part of the whole way than there are views after it.
+        // All three end at the start, which is not shown again; one alone shows its end.
         let parts = match self {
             Self::All => count,
             _ => (count - 1).max(1),
