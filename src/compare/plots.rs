@@ -3,6 +3,7 @@
 use super::{Plan, Row};
 use crate::case::Case;
 use crate::picture::{Plot, Rgb8, Series};
+use crate::strategies::StrategyKind;
 
 /// Width and height of the plots.
 const SIZE: [u32; 2] = [900, 420];
@@ -57,25 +58,31 @@ pub fn all(case: &Case, plan: &Plan, rows: &[Row]) -> Vec<(&'static str, Rgb8)> 
     FIGURES.iter().map(drawn).collect()
 }
 
+fn x_label(plan: &Plan) -> String {
+    match plan.views.as_slice() {
+        [] => String::new(),
+        [only] => format!("View: {}", only.name),
+        [first, .., last] => format!("View, from {} to {}", first.name, last.name),
+    }
+}
+
 impl Figure {
     fn plot(&self, case: &Case, plan: &Plan, rows: &[Row]) -> Plot {
-        let names = plan.views.iter().map(|named| named.name.as_str());
-        let [first, last] = [names.clone().next(), names.last()].map(Option::unwrap_or_default);
         let against = match self.is_quality {
             true => format!(" against {}", plan.reference.name()),
             false => String::new(),
         };
-        let compared = plan.strategies.iter();
-        let compared = compared.filter(|k| !(self.is_quality && plan.reference.is(**k)));
+        let series = |kind: &StrategyKind| match self.is_quality && plan.reference.is(*kind) {
+            // Nothing to see, but a strategy keeps its color in all plots.
+            true => Series::default(),
+            false => self.series(kind.name(), rows),
+        };
         Plot {
             title: format!("{}{against}", case.about.name),
-            x_label: match first == last {
-                true => format!("View: {first}"),
-                false => format!("View, from {first} to {last}"),
-            },
+            x_label: x_label(plan),
             y_label: self.label.into(),
             log_y: self.log,
-            series: compared.map(|k| self.series(k.name(), rows)).collect(),
+            series: plan.strategies.iter().map(series).collect(),
         }
     }
 
