@@ -41,6 +41,15 @@ pub struct Frame {
     pub bytes: GpuBytes,
 }
 
+impl Frame {
+    /// The frame whose rays took the median time; `None` of none.
+    pub fn median(mut frames: Vec<Self>) -> Option<Self> {
+        frames.sort_by_key(|f| f.stats.frame);
+        let middle = frames.len() / 2;
+        (middle < frames.len()).then(|| frames.swap_remove(middle))
+    }
+}
+
 impl Renderer {
     /// Uploads a grid.
     ///
@@ -113,7 +122,12 @@ impl Renderer {
         }))
     }
 
-    fn show(&mut self, grid: &Grid, view: &View) -> Result<(), GpuError> {
+    /// Brings field and selection of a view to the device. Rendering does so by itself; done before,
+    /// it is no part of what the first picture takes.
+    ///
+    /// # Errors
+    /// When the values are too large for the adapter.
+    pub fn show(&mut self, grid: &Grid, view: &View) -> Result<(), GpuError> {
         let wanted = Shown {
             field: view.field.clone(),
             drawn: view.drawn.clone(),

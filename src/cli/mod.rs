@@ -1,6 +1,7 @@
 //! The command line: one file per command.
 
 mod bench;
+mod compare;
 mod info;
 mod probe;
 mod process;
@@ -17,6 +18,7 @@ use clap::{Parser, Subcommand};
 const EXAMPLES: &str = "Examples:
   strataray info samples/scissor/SCISSOR.EGRID
   strataray render samples/scissor/SCISSOR.EGRID --property SWAT --step last -o swat.png
+  strataray compare samples/scissor/SCISSOR.EGRID --views 6 -o compared
   strataray sample faulted -o models
   strataray bench R1 samples/scissor/SCISSOR.EGRID
   strataray probe samples/scissor/SCISSOR.EGRID --property PORO --points points.csv";
@@ -41,8 +43,8 @@ enum Command {
     Probe(probe::Arguments),
     /// Films over time steps or a camera turn (not in this version).
     Animate(Later),
-    /// Strategies side by side (not in this version).
-    Compare(Later),
+    /// Strategies side by side: pictures, difference maps, figures.
+    Compare(compare::Arguments),
     /// Times loading and rendering on this machine.
     Bench(bench::Arguments),
     /// Writes a synthetic faulted model with time steps.
@@ -75,7 +77,7 @@ pub fn run() -> ExitCode {
         Some(Command::Render(a)) => render::run(&a),
         Some(Command::Probe(a)) => probe::run(&a),
         Some(Command::Animate(a)) => later("animate", &a),
-        Some(Command::Compare(a)) => later("compare", &a),
+        Some(Command::Compare(a)) => compare::run(&a),
         Some(Command::Bench(a)) => bench::run(&a),
         Some(Command::Sample(a)) => sample::run(&a),
         None => Err(anyhow::anyhow!(

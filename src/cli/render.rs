@@ -128,8 +128,7 @@ fn on_gpu(
         again.prepare = prepare;
         timed.push(again);
     }
-    timed.sort_by_key(|f| f.stats.frame);
-    let median = timed.swap_remove(timed.len() / 2);
+    let median = Frame::median(timed).context("no frame was timed")?;
     let stats = statistics(case, view, &gpu, &median, &stages);
     write_json(path, &stats)?;
     Ok(median.image)

@@ -26,6 +26,21 @@ pub struct GpuBytes {
     pub targets: u64,
 }
 
+impl GpuBytes {
+    /// All of them.
+    pub fn total(self) -> u64 {
+        let Self {
+            geometry,
+            acceleration,
+            property,
+            resampled,
+            lighting,
+            targets,
+        } = self;
+        geometry + acceleration + property + resampled + lighting + targets
+    }
+}
+
 impl std::ops::Add for GpuBytes {
     type Output = Self;
 

@@ -65,6 +65,25 @@ impl Rgb8 {
         Self { size, pixels }
     }
 
+    /// This picture at most `widest` pixels wide; where it was wider, each pixel is the mean of those
+    /// that it covers.
+    #[must_use]
+    pub fn shrunk(&self, widest: u32) -> Self {
+        let [width, height] = self.size;
+        let pixels = self.pixels.as_flattened().to_vec();
+        let large = image::RgbImage::from_raw(width, height, pixels);
+        let Some(large) = large.filter(|_| width > widest.max(1)) else {
+            return self.clone();
+        };
+        let share = f64::from(widest.max(1)) / f64::from(width);
+        let size = [width, height].map(|n| (share * f64::from(n)).round().max(1.0) as u32);
+        let small = image::imageops::thumbnail(&large, size[0], size[1]);
+        Self {
+            size,
+            pixels: small.pixels().map(|p| p.0).collect(),
+        }
+    }
+
     /// Copies another picture into this one, its upper left corner at `at`; what would lie outside
     /// is left out.
     pub fn paste(&mut self, other: &Self, at: [u32; 2]) {
@@ -110,6 +129,24 @@ mod tests {
         let over_white = image.over_background_8bit([1.0; 3]);
         // Linear 0.5 is sRGB 0.7354 = 188; half white and a quarter red: 0.75 -> 225, 0.5 -> 188.
         assert_eq!(over_white, [[255; 3], [188; 3], [225, 188, 188]]);
+    }
+
+    #[test]
+    fn shrunk_pixels_are_means_of_what_they_cover() {
+        let mut picture = Rgb8::filled([6, 4], [0; 3]);
+        for pixel in picture.pixels.iter_mut().step_by(2) {
+            *pixel = [200; 3];
+        }
+        let small = picture.shrunk(3);
+        assert_eq!(small, Rgb8::filled([3, 2], [100; 3]));
+        assert_eq!(picture.shrunk(1).size, [1, 1]);
+        for widest in [6, 7, u32::MAX] {
+            assert_eq!(picture.shrunk(widest), picture);
+        }
+        // Nothing to shrink, and a broken one.
+        assert_eq!(Rgb8::filled([0, 3], [0; 3]).shrunk(0).size, [0, 3]);
+        picture.pixels.pop();
+        assert_eq!(picture.shrunk(3), picture);
     }
 
     #[test]

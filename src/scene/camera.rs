@@ -1,6 +1,6 @@
 //! A perspective camera in world space.
 
-use glam::{DVec2, DVec3};
+use glam::{DQuat, DVec2, DVec3};
 
 /// A pinhole camera with an orthonormal frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -54,18 +54,35 @@ impl Camera {
             DVec3::Z
         };
         let mut camera = Self::look_at(center + towards_eye, center, up, fovy)?;
-        let tan = DVec2::new(camera.tan_half_fovy * aspect, camera.tan_half_fovy) / 1.08;
-        // The nearest distance at which all corners of the box are inside the picture.
-        let distance = corners
-            .iter()
-            .map(|corner| {
-                let corner = corner - center;
-                let (x, y) = (corner.dot(camera.right).abs(), corner.dot(camera.up).abs());
-                (x / tan.x).max(y / tan.y) - corner.dot(camera.forward)
-            })
-            .fold(0.0, f64::max);
-        camera.eye = center + towards_eye * (distance.max(1e-9) / zoom);
+        camera.eye = center + towards_eye * (camera.framing_distance(corners, aspect) / zoom);
         Some(camera)
+    }
+
+    /// The nearest distance from the middle of a box, given by its corners, at which all of them are
+    /// inside the picture of a camera that looks there in this one's direction.
+    pub fn framing_distance(&self, corners: &[DVec3; 8], aspect: f64) -> f64 {
+        let center = corners.iter().sum::<DVec3>() / 8.0;
+        let tan = DVec2::new(self.tan_half_fovy * aspect, self.tan_half_fovy) / 1.08;
+        let distances = corners.iter().map(|corner| {
+            let corner = corner - center;
+            let (x, y) = (corner.dot(self.right).abs(), corner.dot(self.up).abs());
+            (x / tan.x).max(y / tan.y) - corner.dot(self.forward)
+        });
+        distances.fold(1e-9, f64::max)
+    }
+
+    /// This camera carried around a point.
+    #[must_use]
+    pub fn turned(self, middle: DVec3, turn: DQuat) -> Self {
+        let arm = self.eye - middle;
+        Self {
+            // Written such that no turn is exactly no change.
+            eye: self.eye + (turn * arm - arm),
+            forward: turn * self.forward,
+            right: turn * self.right,
+            up: turn * self.up,
+            ..self
+        }
     }
 
     /// Picture position (x right, y down, 0..1) of a world point in front of the camera.

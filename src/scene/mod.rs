@@ -2,12 +2,14 @@
 
 pub mod camera;
 pub mod ghosts;
+mod half_turns;
 pub mod resolve;
 mod settings;
 
 use serde::{Deserialize, Serialize};
 
 pub use camera::Camera;
+pub use half_turns::{NamedView, TurnAxis, half_turns};
 pub use resolve::{ClipPlane, SceneError, View, resolve};
 pub use settings::{ClipSpec, CutFace, Integration, LibcSettings};
 

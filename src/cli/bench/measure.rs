@@ -113,22 +113,22 @@ fn strategy(
     frames: u32,
     reporter: &Reporter,
 ) -> anyhow::Result<StrategyTimes> {
-    let mut render = || -> anyhow::Result<(Frame, Duration)> {
+    let mut render = || -> anyhow::Result<Frame> {
         let cpu = cpu_time();
         let frame = reporter.bar("rendering", |progress| {
             renderer.render(&case.grid, view, &|f| progress(f))
         })?;
-        let cpu = cpu_time().saturating_sub(cpu);
-        Ok((frame.context("the picture was cancelled")?, cpu))
+        let mut frame = frame.context("the picture was cancelled")?;
+        frame.stats.cpu = cpu_time().saturating_sub(cpu);
+        Ok(frame)
     };
     let (warm_up, first_frame) = timed(&mut render);
-    let prepare = warm_up?.0.prepare;
+    let prepare = warm_up?.prepare;
     let mut times = Vec::new();
     for _ in 0..frames {
         times.push(render()?);
     }
-    times.sort_by_key(|(frame, _)| frame.stats.frame);
-    let (median, cpu) = times.swap_remove(times.len() / 2);
+    let median = Frame::median(times).context("no frame was timed")?;
     let stats = &median.stats;
     let samples = stats.samples as f64;
     Ok(StrategyTimes {
@@ -137,7 +137,7 @@ fn strategy(
         prepare_ms: ms(prepare),
         frame_ms: ms(stats.frame),
         frame_wall_ms: ms(stats.wall),
-        frame_cpu_ms: ms(cpu),
+        frame_cpu_ms: ms(stats.cpu),
         samples: stats.samples,
         samples_per_second: samples / stats.frame.as_secs_f64(),
         newton_iterations_per_sample: stats.newton_iterations as f64 / samples.max(1.0),

@@ -1,6 +1,6 @@
 //! The figures for people: one table for loading, one for the strategies.
 
-use std::fmt::Write;
+use strataray::markdown::{Row, row, table};
 
 use super::Bench;
 
@@ -11,19 +11,13 @@ pub fn text(bench: &Bench) -> String {
         "{}, {} threads, {width}x{height}, median of {} frames\n\n",
         bench.adapter, bench.threads, bench.frames
     );
-    text += &aligned(&loading(bench));
+    text += &table(&loading(bench), WORDS);
     text.push('\n');
-    text += &aligned(&frames(bench));
+    text += &table(&frames(bench), WORDS);
     text
 }
 
-type Rows = Vec<Vec<String>>;
-
-fn row<const N: usize>(cells: [&str; N]) -> Vec<String> {
-    cells.map(str::to_owned).to_vec()
-}
-
-fn loading(bench: &Bench) -> Rows {
+fn loading(bench: &Bench) -> Vec<Row> {
     let mut rows = vec![row([
         "case",
         "cells",
@@ -62,7 +56,7 @@ fn loading(bench: &Bench) -> Rows {
     rows
 }
 
-fn frames(bench: &Bench) -> Rows {
+fn frames(bench: &Bench) -> Vec<Row> {
     let mut rows = vec![row([
         "case",
         "strategy",
@@ -112,49 +106,3 @@ fn frames(bench: &Bench) -> Rows {
 
 /// Leading columns that hold words, not numbers.
 const WORDS: usize = 2;
-
-/// Columns as wide as their widest cell: words to the left, numbers to the right.
-fn aligned(rows: &Rows) -> String {
-    let columns = rows.first().map_or(0, Vec::len);
-    let width = |n: usize| rows.iter().map(|r| r[n].chars().count()).max().unwrap_or(0);
-    let widths: Vec<usize> = (0..columns).map(width).collect();
-    let mut text = String::new();
-    for (at, row) in rows.iter().enumerate() {
-        for (n, (cell, &width)) in row.iter().zip(&widths).enumerate() {
-            let _ = match n < WORDS {
-                true => write!(text, "| {cell:<width$} "),
-                false => write!(text, "| {cell:>width$} "),
-            };
-        }
-        text += "|\n";
-        if at == 0 {
-            for (n, &width) in widths.iter().enumerate() {
-                let end = if n < WORDS { "-" } else { ":" };
-                text += &format!("| {}{end} ", "-".repeat(width - 1));
-            }
-            text += "|\n";
-        }
-    }
-    text
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn columns_are_as_wide_as_their_widest_cell() {
-        let rows = vec![
-            row(["case", "strategy", "ms"]),
-            row(["A", "plts", "1234.5"]),
-            row(["LONGER", "srg", "1"]),
-        ];
-        let expected = "\
-| case   | strategy |     ms |
-| ------ | -------- | -----: |
-| A      | plts     | 1234.5 |
-| LONGER | srg      |      1 |
-";
-        assert_eq!(aligned(&rows), expected);
-    }
-}

@@ -1,0 +1,149 @@
+//! `strataray compare`: strategies side by side, in pictures and figures.
+
+use std::path::PathBuf;
+
+use anyhow::{Context, ensure};
+use strataray::case::Case;
+use strataray::compare::{Comparer, Plan, Reference, Report, Setting, summary};
+use strataray::scene::{self, NamedView, Scene, TurnAxis, half_turns};
+use strataray::strategies::StrategyKind;
+
+use super::Verbosity;
+use super::progress::Reporter;
+use super::scene_options::{SceneOptions, open_case};
+
+#[derive(clap::Args)]
+#[command(after_help = "\
+Writes into DIR, each time anew:
+  compare.md     who is right and who is fast: tables with links to all else
+  compare.json   a row of figures for each strategy and view
+  sheet.png      all pictures side by side with their difference maps
+  time.png, psnr.png, ssim.png, ciede2000.png   figures over the views
+  view_N_STRATEGY.png, view_N_STRATEGY_difference.png   pictures and CIEDE2000 difference maps
+
+Without --reference the accurate strategy is what the others are measured against.
+
+Examples:
+  strataray compare REEK.EGRID -o reek
+  strataray compare REEK.EGRID --scene scene.json --reference --size 500x400 -o reek
+  strataray compare REEK.EGRID --views 18 -o turns
+  strataray compare REEK.EGRID --views 7 --turn z --frames 5 -o turn")]
+pub struct Arguments {
+    /// Any file of the case, or its base name.
+    case: PathBuf,
+    #[command(flatten)]
+    options: SceneOptions,
+    /// Strategies by name, with commas between; all by default.
+    #[arg(
+        long,
+        value_name = "NAMES",
+        value_delimiter = ',',
+        conflicts_with = "strategy"
+    )]
+    strategies: Vec<String>,
+    /// Measure against the f64 reference on the CPU, which is slow.
+    #[arg(long)]
+    reference: bool,
+    /// Compare in N views, half a turn of the camera about each of x, y and z in all; one view by default.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    views: Option<u32>,
+    /// Axis of the turn: x east, y north, z up, or all three one after another [default: all].
+    #[arg(long, value_enum, requires = "views", hide_possible_values = true)]
+    turn: Option<TurnAxis>,
+    /// Frames to time for each picture, after one that is not timed.
+    #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..))]
+    frames: u32,
+    /// CIEDE2000 difference at which the colors of difference maps end.
+    #[arg(long, value_name = "DIFFERENCE", default_value_t = 5.0)]
+    difference_scale: f64,
+    /// Folder to write into.
+    #[arg(short, long, value_name = "DIR")]
+    output: PathBuf,
+    #[command(flatten)]
+    verbosity: Verbosity,
+}
+
+pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    let reporter = Reporter::new(arguments.verbosity);
+    ensure!(
+        arguments.difference_scale.is_finite() && arguments.difference_scale > 0.0,
+        "--difference-scale must be above 0"
+    );
+    arguments.options.set_threads()?;
+    let scene = arguments.options.scene()?;
+    let strategies = strategies(arguments)?;
+    let case = open_case(&arguments.case, &reporter)?;
+    let plan = Plan {
+        strategies,
+        reference: match arguments.reference {
+            true => Reference::Cpu,
+            false => Reference::Strategy(StrategyKind::accurate()),
+        },
+        views: views(arguments, &scene, &case)?,
+        frames: arguments.frames as usize,
+    };
+    let gpu = arguments.options.open_gpu(&reporter)?;
+    let setting = Setting {
+        case: &case,
+        plan: &plan,
+        adapter: gpu.describe(),
+        difference_scale: arguments.difference_scale,
+    };
+    let mut report = Report::begin(&arguments.output, setting)?;
+    let mut comparer = Comparer::new(gpu, &case.grid, &plan)?;
+    let all = plan.views.len();
+    let done = reporter.bar("comparing", |progress| {
+        for n in 0..all {
+            let done = |f: f64| progress((n as f64 + f) / all as f64);
+            let Some(compared) = comparer.view(n, &done) else {
+                return Ok(n);
+            };
+            report.add(compared)?;
+        }
+        anyhow::Ok(all)
+    })?;
+    ensure!(
+        done > 0,
+        "the comparison was cancelled before a view was done"
+    );
+    let rows = report.finish()?;
+    print!("{}", summary(&rows));
+    let folder = arguments.output.display();
+    ensure!(
+        done == all,
+        "the comparison was cancelled; {folder} holds {done} of {all} views"
+    );
+    Ok(())
+}
+
+/// The strategies asked for, each once; all where none is.
+fn strategies(arguments: &Arguments) -> anyhow::Result<Vec<StrategyKind>> {
+    let mut asked: Vec<&str> = arguments.strategies.iter().map(String::as_str).collect();
+    asked.extend(arguments.options.strategy.as_deref());
+    if asked.is_empty() {
+        return Ok(StrategyKind::ALL.to_vec());
+    }
+    let mut found = Vec::new();
+    for name in asked {
+        let kind = StrategyKind::from_name(name)
+            .with_context(|| format!("--strategies: {}", StrategyKind::refusal(name)))?;
+        if !found.contains(&kind) {
+            found.push(kind);
+        }
+    }
+    Ok(found)
+}
+
+fn views(arguments: &Arguments, scene: &Scene, case: &Case) -> anyhow::Result<Vec<NamedView>> {
+    let view = scene::resolve(scene, case)?;
+    Ok(match arguments.views {
+        Some(count) => {
+            let about = arguments.turn.unwrap_or(TurnAxis::All);
+            half_turns(scene, &view, about, count as usize)
+        }
+        None => vec![NamedView {
+            name: "the scene's".into(),
+            view,
+        }],
+    })
+}

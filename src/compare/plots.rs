@@ -1,0 +1,97 @@
+//! Figures over the views as line plots.
+
+use super::{Plan, Row};
+use crate::case::Case;
+use crate::picture::{Plot, Rgb8, Series};
+use crate::strategies::StrategyKind;
+
+/// Width and height of the plots.
+const SIZE: [u32; 2] = [900, 420];
+
+/// A figure that is drawn over the views.
+pub struct Figure {
+    /// File of the plot.
+    pub file: &'static str,
+    /// Over the y axis.
+    label: &'static str,
+    log: bool,
+    /// Whether the reference has it only in comparison with itself.
+    is_quality: bool,
+    value: fn(&Row) -> Option<f64>,
+}
+
+/// The figures that are drawn.
+pub const FIGURES: [Figure; 4] = [
+    Figure {
+        file: "time.png",
+        label: "Time of a frame [ms]",
+        log: true,
+        is_quality: false,
+        value: |row| row.frame_ms,
+    },
+    Figure {
+        file: "psnr.png",
+        label: "PSNR [dB]",
+        log: false,
+        is_quality: true,
+        value: |row| row.psnr_db,
+    },
+    Figure {
+        file: "ssim.png",
+        label: "SSIM",
+        log: false,
+        is_quality: true,
+        value: |row| row.ssim,
+    },
+    Figure {
+        file: "ciede2000.png",
+        label: "Mean CIEDE2000",
+        log: false,
+        is_quality: true,
+        value: |row| row.ciede2000_mean,
+    },
+];
+
+/// All plots by their files.
+pub fn all(case: &Case, plan: &Plan, rows: &[Row]) -> Vec<(&'static str, Rgb8)> {
+    let drawn = |figure: &Figure| (figure.file, figure.plot(case, plan, rows).draw(SIZE));
+    FIGURES.iter().map(drawn).collect()
+}
+
+fn x_label(plan: &Plan) -> String {
+    match plan.views.as_slice() {
+        [] => String::new(),
+        [only] => format!("View: {}", only.name),
+        [first, .., last] => format!("View, from {} to {}", first.name, last.name),
+    }
+}
+
+impl Figure {
+    fn plot(&self, case: &Case, plan: &Plan, rows: &[Row]) -> Plot {
+        let against = match self.is_quality {
+            true => format!(" against {}", plan.reference.name()),
+            false => String::new(),
+        };
+        let series = |kind: &StrategyKind| match self.is_quality && plan.reference.is(*kind) {
+            // Nothing to see, but a strategy keeps its color in all plots.
+            true => Series::default(),
+            false => self.series(kind.name(), rows),
+        };
+        Plot {
+            title: format!("{}{against}", case.about.name),
+            x_label: x_label(plan),
+            y_label: self.label.into(),
+            log_y: self.log,
+            series: plan.strategies.iter().map(series).collect(),
+        }
+    }
+
+    fn series(&self, strategy: &str, rows: &[Row]) -> Series {
+        let own = rows.iter().filter(|row| row.strategy == strategy);
+        let point = |row: &Row| [row.view as f64, (self.value)(row).unwrap_or(f64::NAN)];
+        Series {
+            name: strategy.to_owned(),
+            points: own.map(point).collect(),
+        }
+    }
+}

@@ -1,0 +1,171 @@
+//! A comparison as files: pictures, difference maps, contact sheet, plots and tables.
+
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use super::sheet::Sheet;
+use super::{Compared, Outcome, Plan, Row, plots, tables};
+use crate::case::Case;
+use crate::picture::{PictureError, Rgb8, SheetError, difference_picture, write_png};
+
+/// Files that stand for all views.
+pub(super) const SHEET: &str = "sheet.png";
+const ROWS: &str = "compare.json";
+const PAGE: &str = "compare.md";
+
+/// What a report tells of its pictures beside their figures.
+#[derive(Clone)]
+pub struct Setting<'a> {
+    /// The case.
+    pub case: &'a Case,
+    /// What is compared.
+    pub plan: &'a Plan,
+    /// The adapter in words.
+    pub adapter: String,
+    /// CIEDE2000 difference at which the colors of difference maps end.
+    pub difference_scale: f64,
+}
+
+/// A folder in which a comparison is written, view by view.
+pub struct Report<'a> {
+    folder: &'a Path,
+    setting: Setting<'a>,
+    rows: Vec<Row>,
+    reference_times: Vec<Duration>,
+    sheet: Sheet,
+}
+
+/// Why a report could not be written.
+#[derive(Debug, thiserror::Error)]
+pub enum ReportError {
+    /// A picture could not be written.
+    #[error(transparent)]
+    Picture(#[from] PictureError),
+    /// The contact sheet cannot be made.
+    #[error(transparent)]
+    Sheet(#[from] SheetError),
+    /// The folder or a table could not be written.
+    #[error("cannot write {path}: {cause}")]
+    Write {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        cause: io::Error,
+    },
+}
+
+impl ReportError {
+    fn write(path: &Path) -> impl FnOnce(io::Error) -> Self {
+        |cause| Self::Write {
+            path: path.to_owned(),
+            cause,
+        }
+    }
+}
+
+impl<'a> Report<'a> {
+    /// Begins a report in a folder, which is made where it is missing; files of the same names in it
+    /// are replaced.
+    ///
+    /// # Errors
+    /// When the folder cannot be made.
+    pub fn begin(folder: &'a Path, setting: Setting<'a>) -> Result<Self, ReportError> {
+        fs::create_dir_all(folder).map_err(ReportError::write(folder))?;
+        Ok(Self {
+            folder,
+            setting,
+            rows: Vec::new(),
+            reference_times: Vec::new(),
+            sheet: Sheet::default(),
+        })
+    }
+
+    /// Writes the pictures and difference maps of a view.
+    ///
+    /// # Errors
+    /// When a file cannot be written.
+    pub fn add(&mut self, compared: Compared) -> Result<(), ReportError> {
+        let Setting {
+            plan,
+            difference_scale,
+            ..
+        } = self.setting;
+        self.sheet.add(plan, &compared, difference_scale);
+        if let Ok(reference) = &compared.reference {
+            self.reference_times.push(compared.reference_time);
+            if !plan.has_reference() {
+                let name = plan.picture_file(compared.view, plan.reference.name());
+                self.write(&name, reference)?;
+            }
+        }
+        for outcome in compared.outcomes {
+            let row = self.files_of(outcome)?;
+            self.rows.push(row);
+        }
+        Ok(())
+    }
+
+    /// Writes what is over all views that were added: contact sheet, plots, `compare.json` with the rows and
+    /// `compare.md`; gives the rows.
+    ///
+    /// # Errors
+    /// When there are no views or a file cannot be written.
+    pub fn finish(self) -> Result<Vec<Row>, ReportError> {
+        let Setting { case, plan, .. } = self.setting;
+        self.write(SHEET, &self.sheet.picture()?)?;
+        for (file, picture) in plots::all(case, plan, &self.rows) {
+            self.write(file, &picture)?;
+        }
+        let json = serde_json::to_string_pretty(&self.rows);
+        self.write_text(ROWS, json.map_err(io::Error::from))?;
+        let page = tables::page(&self.setting, &self.rows, &self.reference_times);
+        self.write_text(PAGE, Ok(page))?;
+        Ok(self.rows)
+    }
+
+    /// Writes picture and difference map of an outcome; gives its row with their names.
+    fn files_of(&self, outcome: Outcome) -> Result<Row, ReportError> {
+        let plan = self.setting.plan;
+        let Outcome {
+            mut row,
+            picture,
+            differences,
+        } = outcome;
+        if let Some(picture) = &picture {
+            let name = plan.picture_file(row.view, row.strategy);
+            self.write(&name, picture)?;
+            row.picture = Some(name);
+        }
+        if let Some(differences) = &differences {
+            let name = plan.picture_file(row.view, &format!("{}_difference", row.strategy));
+            let [strategy, reference] = [row.strategy, row.reference];
+            let title = format!("{strategy} against {reference}, view {}", row.view_title());
+            let size = plan.views[row.view].view.size;
+            let scale = self.setting.difference_scale;
+            self.write(&name, &difference_picture(differences, size, scale, &title))?;
+            row.difference = Some(name);
+        }
+        Ok(row)
+    }
+
+    fn write(&self, name: &str, picture: &Rgb8) -> Result<(), ReportError> {
+        let path = self.folder.join(name);
+        Ok(write_png(&path, picture.size, &picture.pixels)?)
+    }
+
+    fn write_text(&self, name: &str, text: io::Result<String>) -> Result<(), ReportError> {
+        let path = self.folder.join(name);
+        let written = text.and_then(|text| fs::write(&path, text));
+        written.map_err(ReportError::write(&path))
+    }
+}
+
+impl Plan {
+    /// File of a picture of a view; sorted by name they stand in the order of the views.
+    pub(super) fn picture_file(&self, view: usize, what: &str) -> String {
+        let digits = self.views.len().saturating_sub(1).to_string().len();
+        format!("view_{view:0digits$}_{what}.png")
+    }
+}

@@ -1,0 +1,88 @@
+//! The figures of one strategy and view.
+
+use std::time::Duration;
+
+use serde::Serialize;
+
+use super::Reference;
+use crate::metrics::Comparison;
+use crate::renderer::Frame;
+use crate::strategies::StrategyKind;
+
+/// Figures of a strategy's picture of a view; those that could not be had are absent, `null` in JSON.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct Row {
+    /// The strategy's name.
+    pub strategy: &'static str,
+    /// Number of the view, from 0.
+    pub view: usize,
+    /// Name of the view.
+    pub view_name: String,
+    /// What the picture was measured against: `cpu` or a strategy's name.
+    pub reference: &'static str,
+    /// See [`Comparison::psnr_db`]: infinite where the pictures are equal, `null` in JSON.
+    pub psnr_db: Option<f64>,
+    /// See [`Comparison::ssim`].
+    pub ssim: Option<f64>,
+    /// See [`Comparison::ciede2000_mean`].
+    pub ciede2000_mean: Option<f64>,
+    /// See [`Comparison::ciede2000_p99`].
+    pub ciede2000_p99: Option<f64>,
+    /// Time of the rays, of the median frame.
+    pub frame_ms: Option<f64>,
+    /// What the strategy's first preparation took: shaders and what it keeps beside the grid.
+    pub prepare_ms: Option<f64>,
+    /// Bytes on the device for all purposes together.
+    pub gpu_bytes: Option<u64>,
+    /// See [`crate::gpu::FrameStats::recovered_rays`].
+    pub recovered_rays: Option<u64>,
+    /// See [`crate::gpu::FrameStats::lost_rays`].
+    pub lost_rays: Option<u64>,
+    /// File of the picture.
+    pub picture: Option<String>,
+    /// File of the difference map.
+    pub difference: Option<String>,
+    /// Why figures are absent.
+    pub error: Option<String>,
+}
+
+impl Row {
+    /// A row without figures.
+    pub(super) fn of(kind: StrategyKind, view: usize, name: &str, reference: Reference) -> Self {
+        Self {
+            strategy: kind.name(),
+            view,
+            view_name: name.to_owned(),
+            reference: reference.name(),
+            ..Self::default()
+        }
+    }
+
+    pub(super) fn quality(&mut self, found: &Comparison) {
+        self.psnr_db = Some(found.psnr_db);
+        self.ssim = Some(found.ssim);
+        self.ciede2000_mean = Some(found.ciede2000_mean);
+        self.ciede2000_p99 = Some(found.ciede2000_p99);
+    }
+
+    pub(super) fn cost(&mut self, frame: &Frame) {
+        self.frame_ms = Some(ms(frame.stats.frame));
+        self.gpu_bytes = Some(frame.bytes.total());
+        self.recovered_rays = Some(frame.stats.recovered_rays);
+        self.lost_rays = Some(frame.stats.lost_rays);
+    }
+
+    /// Number and name of the view.
+    pub(super) fn view_title(&self) -> String {
+        format!("{} ({})", self.view, self.view_name)
+    }
+
+    /// True where this is the reference itself.
+    pub fn is_reference(&self) -> bool {
+        self.strategy == self.reference
+    }
+}
+
+pub(super) fn ms(duration: Duration) -> f64 {
+    1e3 * duration.as_secs_f64()
+}

@@ -1,0 +1,82 @@
+//! The contact sheet: a line for each view, with the reference and each strategy beside its differences.
+
+use super::tables::{figure, with_unit};
+use super::{Compared, Outcome, Plan, Row};
+use crate::picture::{Rgb8, SheetError, Tile, contact_sheet, difference_colors};
+
+/// Width of the pictures on the sheet at most.
+const WIDEST: u32 = 360;
+
+/// The pictures so far, made smaller, with captions.
+#[derive(Default)]
+pub struct Sheet {
+    tiles: Vec<(Rgb8, String)>,
+    views: usize,
+}
+
+impl Sheet {
+    /// Adds the line of a view.
+    pub fn add(&mut self, plan: &Plan, compared: &Compared, difference_scale: f64) {
+        let named = &plan.views[compared.view];
+        let empty = Rgb8::filled(named.view.size, [255; 3]);
+        let mut add = |picture: Option<&Rgb8>, caption: String| {
+            let tile = picture.unwrap_or(&empty).shrunk(WIDEST);
+            self.tiles.push((tile, caption));
+        };
+        let view = format!("view {}, {}", compared.view, named.name);
+        let reference = plan.reference.name();
+        let said = match &compared.reference {
+            Ok(_) => {
+                let ms = 1e3 * compared.reference_time.as_secs_f64();
+                format!("{reference}, the reference: {ms:.0} ms")
+            }
+            Err(error) => format!("{reference}, the reference, failed: {error}"),
+        };
+        add(compared.reference.as_ref().ok(), format!("{view}\n{said}"));
+        let others = compared.outcomes.iter();
+        for outcome in others.filter(|o| !o.row.is_reference()) {
+            let Outcome {
+                row,
+                picture,
+                differences,
+            } = outcome;
+            add(picture.as_ref(), format!("{view}\n{}", cost(row)));
+            let map = differences.as_ref();
+            let map = map.map(|d| difference_colors(d, named.view.size, difference_scale));
+            add(map.as_ref(), quality(row));
+        }
+        self.views += 1;
+    }
+
+    /// The sheet.
+    ///
+    /// # Errors
+    /// When there are no views, or so many that the sheet would be too large.
+    pub fn picture(&self) -> Result<Rgb8, SheetError> {
+        let tile = |(picture, caption)| Tile { picture, caption };
+        let tiles: Vec<Tile> = self.tiles.iter().map(|(p, c)| tile((p, c))).collect();
+        let columns = tiles.len() / self.views.max(1);
+        contact_sheet(&tiles, columns, [1.0; 3])
+    }
+}
+
+fn cost(row: &Row) -> String {
+    match (row.frame_ms, &row.error) {
+        (Some(ms), _) => format!("{}: {ms:.0} ms", row.strategy),
+        (None, Some(error)) => format!("{} failed: {error}", row.strategy),
+        (None, None) => row.strategy.to_owned(),
+    }
+}
+
+fn quality(row: &Row) -> String {
+    if row.psnr_db.is_none() {
+        return String::new();
+    }
+    format!(
+        "{} against {}\n{}, CIEDE2000 {}",
+        row.strategy,
+        row.reference,
+        with_unit(row.psnr_db),
+        figure(row.ciede2000_mean, 3)
+    )
+}
