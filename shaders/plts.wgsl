@@ -9,11 +9,7 @@
 // has done tile.work_limit loop iterations pauses: drivers end long loops without a word (llvmpipe
 // after 65,535 iterations of all loops together), and no submission may run for long.
 #import section
-#import facing
-
-const TOPOLOGICAL_LIMIT: u32 = 6u;
-// Steps below this end the iteration while marching; the error left is of its square.
-const MARCH_ENOUGH: f32 = 5e-4;
+#import topology
 
 @compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
@@ -36,61 +32,25 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         let section = section_color(ray);
         sum = Accumulated(section.rgb, 1.0 - section.a);
     }
-    var cell: Cell;
-    var s: Solution;
-    var have_cell = false;
+    var track: Track;
     var samples = 0u;
-    var iterations = 0u;
-    var topological_steps = 0u;
-    var fallbacks = 0u;
-    var work = 0u;
     // Two phases, so that rays side by side locate together and march together.
-    while n < ray.count && is_open(sum) && work < tile.work_limit {
-        while !have_cell && n < ray.count && work < tile.work_limit {
-            let query = Query(ray.base + n * ray.advance, vec3f(0.0), MARCH_ENOUGH, frame.interpolation);
-            let location = locate(query, ray.advance);
-            fallbacks += 1u;
-            iterations += location.iterations;
-            work += location.work + 2u;
-            have_cell = location.found;
-            if location.found {
-                cell = location.cell;
-                s = location.solution;
-            } else {
-                n += location.skip;
-            }
+    while n < ray.count && is_open(sum) && track.work < tile.work_limit {
+        while !track.has_cell && n < ray.count && track.work < tile.work_limit {
+            n += find(&track, ray.base + n * ray.advance, ray.advance, frame.interpolation);
         }
-        while have_cell {
+        while track.has_cell {
             samples += 1u;
-            var entry = transfer(evaluate(cell, clamp(s.uvw, vec3f(0.0), vec3f(1.0))).w);
-            if is_ghost(cell.column, cell.layer) {
+            var entry = transfer(value_on(track));
+            if is_ghost(track.cell.column, track.cell.layer) {
                 entry = frame.ghost;
             }
             sum = accumulate(sum, entry);
             n += 1.0;
-            if n >= ray.count || !is_open(sum) || work >= tile.work_limit {
+            if n >= ray.count || !is_open(sum) || track.work >= tile.work_limit {
                 break;
             }
-            let point = ray.base + n * ray.advance;
-            let ahead = vec3f(dot(s.inverse_u, ray.advance), dot(s.inverse_v, ray.advance),
-                dot(s.inverse_w, ray.advance));
-            var start = clamp(s.uvw + ahead, vec3f(-1.0), vec3f(2.0));
-            have_cell = false;
-            for (var attempt = 0u; attempt <= TOPOLOGICAL_LIMIT; attempt++) {
-                s = solve(cell, relative_to(cell, point), start, MARCH_ENOUGH);
-                iterations += s.iterations;
-                work += s.iterations + 2u;
-                if s.inside {
-                    have_cell = true;
-                    break;
-                }
-                var next = s.uvw;
-                if attempt == TOPOLOGICAL_LIMIT || !step_to_neighbor(&cell, &next) {
-                    break;
-                }
-                topological_steps += 1u;
-                start = next;
-            }
+            follow(&track, ray.base + n * ray.advance, ray.advance, frame.interpolation);
         }
     }
     if n < ray.count && is_open(sum) {
@@ -102,56 +62,8 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         count(COUNT_FINISHED, 1u);
     }
     count(COUNT_SAMPLES, samples);
-    count(COUNT_ITERATIONS, iterations);
-    count(COUNT_STEPS, topological_steps);
-    count(COUNT_FALLBACKS, fallbacks);
-    count(COUNT_WORK, work);
-}
-
-// Loads the drawn cell that shares the whole face which `uvw` overshoots most; `uvw` becomes a start
-// in it. False where the cells do not join: hull, fault, gap, a cell that is not drawn.
-fn step_to_neighbor(cell: ptr<function, Cell>, uvw: ptr<function, vec3f>) -> bool {
-    let q = *uvw;
-    let excess = max(-q, q - vec3f(1.0));
-    let axis = select(select(2u, 1u, excess.y >= excess.z), 0u, excess.x >= max(excess.y, excess.z));
-    let plus = q[axis] > 0.5;
-    let i = (*cell).column % grid.ni;
-    let j = (*cell).column / grid.ni;
-    let layer = (*cell).layer;
-    var column = (*cell).column;
-    var next_layer = layer;
-    if axis == 0u {
-        if (plus && i + 1u >= grid.ni) || (!plus && i == 0u) {
-            return false;
-        }
-        column = select(column - 1u, column + 1u, plus);
-    } else if axis == 1u {
-        if (plus && j + 1u >= grid.nj) || (!plus && j == 0u) {
-            return false;
-        }
-        column = select(column - grid.ni, column + grid.ni, plus);
-    } else {
-        if (plus && layer + 1u >= grid.nk) || (!plus && layer == 0u) {
-            return false;
-        }
-        next_layer = select(layer - 1u, layer + 1u, plus);
-    }
-    if !is_drawn(column, next_layer) || !faces_join((*cell).column, layer, column, next_layer, axis, plus) {
-        return false;
-    }
-    *cell = load_cell(column, next_layer, frame.interpolation);
-    var start = q;
-    start[axis] = select(q[axis] + 1.0, q[axis] - 1.0, plus);
-    *uvw = clamp(start, vec3f(-1.0), vec3f(2.0));
-    return true;
-}
-
-fn faces_join(a: u32, a_layer: u32, b: u32, b_layer: u32, axis: u32, plus: bool) -> bool {
-    let a_lists = column_lists[a];
-    if axis == 2u {
-        let mine = depths_at(layer_entries(a_lists, a_layer, select(0u, 1u, plus)));
-        return all_coincide(mine, depths_at(layer_entries(a_lists, b_layer, select(1u, 0u, plus))));
-    }
-    let face = 2u * axis + select(0u, 1u, plus);
-    return sides_join(side_lists(a_lists, face), side_lists(column_lists[b], face ^ 1u), a_layer);
+    count(COUNT_ITERATIONS, track.iterations);
+    count(COUNT_STEPS, track.topological_steps);
+    count(COUNT_FALLBACKS, track.fallbacks);
+    count(COUNT_WORK, track.work);
 }

@@ -16,6 +16,7 @@ sources! {
     "locate" => "shared/locate.wgsl",
     "frame" => "shared/frame.wgsl",
     "transfer" => "shared/transfer.wgsl",
+    "topology" => "shared/topology.wgsl",
     "section" => "shared/section.wgsl",
     "facing" => "shared/facing.wgsl",
     "groups" => "shared/groups.wgsl",

@@ -1,0 +1,115 @@
+// Samples of a line, each from the one before it: by Newton's method in the same cell, then in the
+// neighbor across the face that the result overshoots most, and through the acceleration grid where the
+// cells do not join (campagnolo-2021, 4.1.3).
+#import locate
+#import facing
+
+const TOPOLOGICAL_LIMIT: u32 = 6u;
+// Steps below this end the iteration while marching; the error left is of its square.
+const MARCH_ENOUGH: f32 = 5e-4;
+
+// Where a line of samples has come to, and what that cost.
+struct Track {
+    // The last sample lies in `cell`, at `solution`.
+    has_cell: bool,
+    cell: Cell,
+    solution: Solution,
+    iterations: u32,
+    topological_steps: u32,
+    fallbacks: u32,
+    work: u32,
+}
+
+// Value at the last sample.
+fn value_on(track: Track) -> f32 {
+    return evaluate(track.cell, clamp(track.solution.uvw, vec3f(0.0), vec3f(1.0))).w;
+}
+
+// Locates a sample anew. Where it lies in no cell, so do as many samples as are returned, this one
+// included.
+fn find(track: ptr<function, Track>, point: vec3f, advance: vec3f, interpolation: u32) -> f32 {
+    let location = locate(Query(point, vec3f(0.0), MARCH_ENOUGH, interpolation), advance);
+    (*track).fallbacks += 1u;
+    (*track).iterations += location.iterations;
+    (*track).work += location.work + 2u;
+    (*track).has_cell = location.found;
+    if location.found {
+        (*track).cell = location.cell;
+        (*track).solution = location.solution;
+        return 0.0;
+    }
+    return location.skip;
+}
+
+// Goes on to the next sample of a line that has a cell; it has none where the cells do not join.
+fn follow(track: ptr<function, Track>, point: vec3f, advance: vec3f, interpolation: u32) {
+    let last = (*track).solution;
+    // Extrapolated with the last inverse Jacobian, so that one iteration usually does.
+    let ahead = vec3f(dot(last.inverse_u, advance), dot(last.inverse_v, advance), dot(last.inverse_w, advance));
+    var start = clamp(last.uvw + ahead, vec3f(-1.0), vec3f(2.0));
+    (*track).has_cell = false;
+    for (var attempt = 0u; attempt <= TOPOLOGICAL_LIMIT; attempt++) {
+        let s = solve((*track).cell, relative_to((*track).cell, point), start, MARCH_ENOUGH);
+        (*track).solution = s;
+        (*track).iterations += s.iterations;
+        (*track).work += s.iterations + 2u;
+        if s.inside {
+            (*track).has_cell = true;
+            break;
+        }
+        start = s.uvw;
+        if attempt == TOPOLOGICAL_LIMIT || !step_to_neighbor(track, &start, interpolation) {
+            break;
+        }
+        (*track).topological_steps += 1u;
+    }
+}
+
+// Loads the drawn cell that shares the whole face which `uvw` overshoots most; `uvw` becomes a start
+// in it. False where the cells do not join: hull, fault, gap, a cell that is not drawn.
+fn step_to_neighbor(track: ptr<function, Track>, uvw: ptr<function, vec3f>, interpolation: u32) -> bool {
+    let here = (*track).cell.column;
+    let q = *uvw;
+    let excess = max(-q, q - vec3f(1.0));
+    let axis = select(select(2u, 1u, excess.y >= excess.z), 0u, excess.x >= max(excess.y, excess.z));
+    let plus = q[axis] > 0.5;
+    let i = here % grid.ni;
+    let j = here / grid.ni;
+    let layer = (*track).cell.layer;
+    var column = here;
+    var next_layer = layer;
+    if axis == 0u {
+        if (plus && i + 1u >= grid.ni) || (!plus && i == 0u) {
+            return false;
+        }
+        column = select(column - 1u, column + 1u, plus);
+    } else if axis == 1u {
+        if (plus && j + 1u >= grid.nj) || (!plus && j == 0u) {
+            return false;
+        }
+        column = select(column - grid.ni, column + grid.ni, plus);
+    } else {
+        if (plus && layer + 1u >= grid.nk) || (!plus && layer == 0u) {
+            return false;
+        }
+        next_layer = select(layer - 1u, layer + 1u, plus);
+    }
+    if !is_drawn(column, next_layer) || !faces_join(here, layer, column, next_layer, axis, plus) {
+        return false;
+    }
+    (*track).cell = load_cell(column, next_layer, interpolation);
+    var start = q;
+    start[axis] = select(q[axis] + 1.0, q[axis] - 1.0, plus);
+    *uvw = clamp(start, vec3f(-1.0), vec3f(2.0));
+    return true;
+}
+
+fn faces_join(a: u32, a_layer: u32, b: u32, b_layer: u32, axis: u32, plus: bool) -> bool {
+    let a_lists = column_lists[a];
+    if axis == 2u {
+        let mine = depths_at(layer_entries(a_lists, a_layer, select(0u, 1u, plus)));
+        return all_coincide(mine, depths_at(layer_entries(a_lists, b_layer, select(1u, 0u, plus))));
+    }
+    let face = 2u * axis + select(0u, 1u, plus);
+    return sides_join(side_lists(a_lists, face), side_lists(column_lists[b], face ^ 1u), a_layer);
+}
