@@ -3,7 +3,7 @@
 
 use std::mem::{offset_of, size_of};
 
-use strataray::gpu::layout::{self, Found, Frame, GridInfo, Tile};
+use strataray::gpu::layout::{self, BricksInfo, Found, Frame, GridInfo, Slab, Tile, VolumeInfo};
 use strataray::gpu::shader;
 use wgpu::naga::{Expression, Literal, Module, TypeInner, front::wgsl};
 
@@ -90,6 +90,31 @@ fn structs_agree() {
         depth_scale
     );
     agrees!(
+        m,
+        VolumeInfo,
+        box_low,
+        value_low,
+        box_extent,
+        value_scale,
+        size,
+        interpolation
+    );
+    agrees!(m, Slab, first, row, size, level);
+    agrees!(
+        m,
+        BricksInfo,
+        count,
+        levels,
+        position_low,
+        position_scale,
+        empty,
+        even,
+        thin,
+        averages,
+        reserved0,
+        reserved1
+    );
+    agrees!(
         m, Found, column, layer, reserved0, reserved1, parameters, value
     );
 }
@@ -106,6 +131,8 @@ fn constants_agree() {
         ("COLUMN_FLAG", layout::COLUMN_FLAG),
         ("LIST_OFFSET", layout::LIST_OFFSET),
         ("MAX_CLIP_PLANES", layout::MAX_CLIP_PLANES as u32),
+        ("BRICK", layout::BRICK),
+        ("RUN", layout::RUN),
         ("COUNTERS", layout::COUNTERS),
         ("COUNT_SAMPLES", layout::COUNT_SAMPLES),
         ("COUNT_ITERATIONS", layout::COUNT_ITERATIONS),

@@ -70,6 +70,46 @@ struct GridInfo {
     depth_scale: f32,
 }
 
+// A volume resampled over a box, in voxels; grid space relative to the origin.
+struct VolumeInfo {
+    box_low: vec3f,
+    // Stored values are 0 here and grow by `value_scale` per unit of the property.
+    value_low: f32,
+    box_extent: vec3f,
+    value_scale: f32,
+    size: vec3u,
+    interpolation: u32,
+}
+
+// The part of a volume or pyramid that one dispatch makes.
+struct Slab {
+    first: vec3u,
+    // Words from one row of voxels to the next.
+    row: u32,
+    size: vec3u,
+    // Level of the pyramid.
+    level: u32,
+}
+
+// Bricks of BRICK^3 voxels, their pyramid, and what makes a part of it special.
+struct BricksInfo {
+    count: vec3u,
+    levels: u32,
+    // Transfer-function position of a stored value: low + scale * stored.
+    position_low: f32,
+    position_scale: f32,
+    // A part is empty where no extinction in it exceeds this; negative for never, as for the next two.
+    empty: f32,
+    // Even where its voxels are all present and its positions differ by no more.
+    even: f32,
+    // Thin where no extinction exceeds this.
+    thin: f32,
+    // Levels of the volume's average pyramid.
+    averages: u32,
+    reserved0: u32,
+    reserved1: u32,
+}
+
 // One found point for the probe: cell column and layer, or NOT_FOUND, and (s, t, r) and value.
 struct Found {
     column: u32,
@@ -91,6 +131,15 @@ const COLUMN_FLAG: u32 = 0x40000000u;
 const LIST_OFFSET: u32 = 0x3fffffffu;
 // Corners closer than this along their pillar coincide.
 const COINCIDENT: f32 = 1e-3;
+// Voxels along one side of a brick.
+const BRICK: u32 = 8u;
+// Voxels that a thread fills one after the other, downwards.
+const RUN: u32 = 16u;
+// How rays pass a part of a volume.
+const PASS_PLAIN: u32 = 0u;
+const PASS_EMPTY: u32 = 1u;
+const PASS_EVEN: u32 = 2u;
+const PASS_THIN: u32 = 3u;
 // Counters, each of a low and a high word.
 const COUNTERS: u32 = 12u;
 const COUNT_SAMPLES: u32 = 0u;

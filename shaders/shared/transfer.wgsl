@@ -8,9 +8,13 @@
 @group(2) @binding(1) var<storage, read> transfer_integrals: array<vec4f>;
 
 fn transfer(value: f32) -> vec4f {
-    let position = clamp((value - frame.value_low) * frame.value_scale, 0.0, 1.0) * f32(LUT_SIZE - 1u);
-    let entry = min(u32(position), LUT_SIZE - 2u);
-    return mix(transfer_table[entry], transfer_table[entry + 1u], position - f32(entry));
+    return transfer_at((value - frame.value_low) * frame.value_scale);
+}
+
+fn transfer_at(position: f32) -> vec4f {
+    let at = clamp(position, 0.0, 1.0) * f32(LUT_SIZE - 1u);
+    let entry = min(u32(at), LUT_SIZE - 2u);
+    return mix(transfer_table[entry], transfer_table[entry + 1u], at - f32(entry));
 }
 
 // Means over the values between two: of extinction times color, and of extinction.

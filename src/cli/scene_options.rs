@@ -22,7 +22,7 @@ pub struct SceneOptions {
     /// Time step: number from 0, date, first or last.
     #[arg(long)]
     step: Option<String>,
-    /// Ray-casting strategy: plts or libc.
+    /// Ray-casting strategy: plts, libc or srg.
     #[arg(long)]
     pub strategy: Option<String>,
     /// Values within a cell.

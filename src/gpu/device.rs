@@ -114,6 +114,8 @@ impl Gpu {
             max_buffer_size: offered.max_buffer_size,
             // Pictures as large as the adapter can make.
             max_texture_dimension_2d: offered.max_texture_dimension_2d,
+            // Resampled grids too.
+            max_texture_dimension_3d: offered.max_texture_dimension_3d,
             ..wgpu::Limits::default()
         };
         let features = adapter.features() & wgpu::Features::TIMESTAMP_QUERY;

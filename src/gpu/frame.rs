@@ -7,14 +7,12 @@ use glam::DVec3;
 
 use super::device::{Gpu, GpuError};
 use super::grid_upload::GpuGrid;
-use super::layout::{
-    self, Frame, INTERPOLATION_CELL, INTERPOLATION_VERTEX, LUT_SIZE, MAX_CLIP_PLANES, Tile,
-};
+use super::layout::{self, Frame, LUT_SIZE, MAX_CLIP_PLANES, Tile};
 use super::pipeline::Pipeline;
 use super::target;
 use super::tiles::{self, Pace, Rect};
 use crate::picture::Image;
-use crate::scene::{Interpolation, View, ghosts};
+use crate::scene::{View, ghosts};
 use crate::strategies::RenderStrategy;
 use crate::transfer::TransferFunction;
 use crate::transfer::function::linear_from_srgb;
@@ -384,7 +382,8 @@ fn queries(gpu: &Gpu) -> Option<(wgpu::QuerySet, wgpu::Buffer)> {
     Some((set, resolve))
 }
 
-fn transfer_table(transfer: &TransferFunction) -> Vec<[f32; 4]> {
+/// Linear red, green, blue and extinction at equal distances over the range.
+pub(super) fn transfer_table(transfer: &TransferFunction) -> Vec<[f32; 4]> {
     (0..LUT_SIZE)
         .map(|n| {
             let position = f64::from(n) / f64::from(LUT_SIZE - 1);
@@ -424,7 +423,7 @@ fn frame_uniform(grid: &GpuGrid, view: &View) -> Frame {
     let f32s = |v: DVec3| v.as_vec3().to_array();
     let linear = view.spaces.grid_from_world.matrix3;
     let eye = view.spaces.grid_from_world.transform_point3(camera.eye) - grid.origin;
-    let [low, high] = view.transfer.range;
+    
     let to_camera = view.spaces.world_from_grid.matrix3.transpose();
     Frame {
         eye: f32s(eye),
@@ -432,22 +431,15 @@ fn frame_uniform(grid: &GpuGrid, view: &View) -> Frame {
         forward: f32s(camera.forward),
         early_termination: view.early_termination as f32,
         right: f32s(camera.right * camera.tan_half_fovy * aspect),
-        value_low: low as f32,
+        value_low: view.transfer.range[0] as f32,
         up: f32s(camera.up * camera.tan_half_fovy),
-        value_scale: if high > low {
-            (1.0 / (high - low)) as f32
-        } else {
-            0.0
-        },
+        value_scale: layout::per_unit(view.transfer.range),
         grid_from_world_x: f32s(linear.x_axis),
         width: view.size[0],
         grid_from_world_y: f32s(linear.y_axis),
         height: view.size[1],
         grid_from_world_z: f32s(linear.z_axis),
-        interpolation: match view.interpolation {
-            Interpolation::Cell => INTERPOLATION_CELL,
-            Interpolation::Vertex => INTERPOLATION_VERTEX,
-        },
+        interpolation: layout::interpolation(view.interpolation),
         box_low: f32s(grid.bounds[0]),
         clip_count: view.clip.len() as u32,
         box_high: f32s(grid.bounds[1]),

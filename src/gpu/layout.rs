@@ -2,6 +2,8 @@
 
 use bytemuck::{Pod, Zeroable};
 
+use crate::scene::Interpolation;
+
 /// Camera, lattice and value range of a frame.
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 #[repr(C)]
@@ -65,6 +67,47 @@ pub struct GridInfo {
     pub depth_scale: f32,
 }
 
+/// A volume resampled over a box.
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+#[allow(missing_docs, reason = "described where the shader reads them")]
+pub struct VolumeInfo {
+    pub box_low: [f32; 3],
+    pub value_low: f32,
+    pub box_extent: [f32; 3],
+    pub value_scale: f32,
+    pub size: [u32; 3],
+    pub interpolation: u32,
+}
+
+/// The part of a volume or pyramid that one dispatch makes.
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+#[allow(missing_docs, reason = "described where the shader reads them")]
+pub struct Slab {
+    pub first: [u32; 3],
+    pub row: u32,
+    pub size: [u32; 3],
+    pub level: u32,
+}
+
+/// Bricks of a volume, their pyramid, and what makes a part of it special.
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+#[allow(missing_docs, reason = "described where the shader reads them")]
+pub struct BricksInfo {
+    pub count: [u32; 3],
+    pub levels: u32,
+    pub position_low: f32,
+    pub position_scale: f32,
+    pub empty: f32,
+    pub even: f32,
+    pub thin: f32,
+    pub averages: u32,
+    pub reserved0: u32,
+    pub reserved1: u32,
+}
+
 /// One answer of the probe.
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 #[repr(C)]
@@ -82,6 +125,24 @@ pub struct Found {
 pub const INTERPOLATION_CELL: u32 = 0;
 /// Value trilinear between the vertices.
 pub const INTERPOLATION_VERTEX: u32 = 1;
+
+/// The constant of an interpolation.
+pub fn interpolation(of: Interpolation) -> u32 {
+    match of {
+        Interpolation::Cell => INTERPOLATION_CELL,
+        Interpolation::Vertex => INTERPOLATION_VERTEX,
+    }
+}
+
+/// Part of a range per unit of the property; zero for an empty range.
+pub fn per_unit([low, high]: [f64; 2]) -> f32 {
+    if high > low {
+        (1.0 / (high - low)) as f32
+    } else {
+        0.0
+    }
+}
+
 /// Entries of the transfer table.
 pub const LUT_SIZE: u32 = 4096;
 /// Column of a point that lies in no cell.
@@ -92,6 +153,10 @@ pub const LIST_GAPPED: u32 = 0x8000_0000;
 pub const COLUMN_FLAG: u32 = 0x4000_0000;
 /// Mask of the offset in a list reference.
 pub const LIST_OFFSET: u32 = 0x3fff_ffff;
+/// Voxels along one side of a brick.
+pub const BRICK: u32 = 8;
+/// Voxels that a thread fills one after the other, downwards.
+pub const RUN: u32 = 16;
 /// Counters, each of a low and a high word.
 pub const COUNTERS: u32 = 12;
 /// Counter of the samples inside drawn cells.

@@ -8,6 +8,8 @@ pub mod grid_upload;
 pub mod layout;
 pub mod pipeline;
 pub mod probe;
+pub mod pyramids;
+pub mod resample;
 pub mod shader;
 mod target;
 pub mod tiles;

@@ -255,6 +255,22 @@ impl Pipeline {
         })
     }
 
+    /// Records a pass that covers `size` invocations, with bind groups by their number.
+    pub fn dispatch(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        groups: &[(u32, &wgpu::BindGroup)],
+        size: [u32; 3],
+    ) {
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+        pass.set_pipeline(&self.pipeline);
+        for (number, group) in groups {
+            pass.set_bind_group(*number, *group, &[]);
+        }
+        let [x, y, z] = self.groups_for(size);
+        pass.dispatch_workgroups(x, y, z);
+    }
+
     /// Workgroups that cover `size` invocations.
     pub fn groups_for(&self, size: [u32; 3]) -> [u32; 3] {
         std::array::from_fn(|axis| size[axis].div_ceil(self.workgroup[axis]))

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::device::{Gpu, GpuError};
 use super::grid_upload::GpuGrid;
-use super::layout::{Found, INTERPOLATION_CELL, INTERPOLATION_VERTEX, NOT_FOUND};
+use super::layout::{self, Found, NOT_FOUND};
 use super::pipeline::Pipeline;
 use crate::model::{Grid, Ijk};
 use crate::scene::Interpolation;
@@ -40,10 +40,7 @@ pub fn locate(
     for batch in points_in_grid.chunks(BATCH) {
         let points: Vec<[[f32; 4]; 2]> =
             batch.iter().map(|&p| split(p - gpu_grid.origin)).collect();
-        let interpolation = match interpolation {
-            Interpolation::Cell => INTERPOLATION_CELL,
-            Interpolation::Vertex => INTERPOLATION_VERTEX,
-        };
+        let interpolation = layout::interpolation(interpolation);
         let info = gpu.uniform("points", &[interpolation, batch.len() as u32, 0, 0]);
         let points = gpu.storage("points", &points)?;
         let bytes = (batch.len() * size_of::<Found>()) as u64;
@@ -59,13 +56,8 @@ pub fn locate(
         let mut encoder = gpu
             .device
             .create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        {
-            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
-            pass.set_pipeline(&pipeline.pipeline);
-            pass.set_bind_group(1, &grid_group, &[]);
-            pass.set_bind_group(3, &own_group, &[]);
-            pass.dispatch_workgroups((batch.len() as u32).div_ceil(pipeline.workgroup[0]), 1, 1);
-        }
+        let groups = [(1, &grid_group), (3, &own_group)];
+        pipeline.dispatch(&mut encoder, &groups, [batch.len() as u32, 1, 1]);
         gpu.queue.submit([encoder.finish()]);
         let found: Vec<Found> = bytemuck::pod_collect_to_vec(&gpu.read(&found, bytes)?);
         located.extend(found.iter().map(|f| from_device(f, grid)));

@@ -24,10 +24,15 @@ sources! {
     "libc" => "libc.wgsl",
     "plts" => "plts.wgsl",
     "probe" => "probe.wgsl",
+    "pyramids" => "pyramids.wgsl",
+    "resample" => "resample.wgsl",
+    "srg" => "srg.wgsl",
 }
 
 /// The stems of all shaders that are entry points of a pipeline.
-pub const ENTRIES: [&str; 4] = ["faces", "libc", "plts", "probe"];
+pub const ENTRIES: [&str; 7] = [
+    "faces", "libc", "plts", "probe", "pyramids", "resample", "srg",
+];
 
 /// The whole text of a shader with its imports in front, each once.
 ///

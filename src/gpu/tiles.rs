@@ -52,15 +52,20 @@ impl Default for Pace {
 }
 
 impl Pace {
+    /// How many pieces of so many loop iterations fit into a submission.
+    pub fn pieces(&self, each: u64) -> u64 {
+        self.units as u64 / each.max(1)
+    }
+
     /// Pixels of the next tile, at most, where a ray makes `least` loop iterations in a submission.
     fn area(&self, least: u64) -> u64 {
-        (self.units as u64 / least.max(1)).clamp(256, MAX_AREA)
+        self.pieces(least).clamp(256, MAX_AREA)
     }
 
     /// Loop iterations after which each ray of a tile pauses.
     pub fn work_limit(&self, area: u64, least: u64, most: u32) -> u32 {
         let most = u64::from(most);
-        (self.units as u64 / area.max(1)).clamp(least.min(most), most) as u32
+        self.pieces(area).clamp(least.min(most), most) as u32
     }
 
     /// Learns from a submission: what it took and the loop iterations that it made.

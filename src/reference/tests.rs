@@ -118,6 +118,7 @@ fn view(grid: &Grid, field: CellField, extinction: f64, sampling_step: f64) -> V
         clip: Vec::new(),
         ghosts: None,
         libc: crate::scene::LibcSettings::default(),
+        srg: crate::scene::SrgSettings::default(),
         field: field.into(),
         show_box: false,
         show_legend: false,

@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 pub use camera::Camera;
 pub use half_turns::{NamedView, TurnAxis, half_turns};
 pub use resolve::{ClipPlane, SceneError, View, resolve};
-pub use settings::{ClipSpec, CutFace, Integration, LibcSettings};
+pub use settings::{ClipSpec, CutFace, Integration, LibcSettings, SrgSettings};
 
 /// A scene as users write it. Unknown fields are errors; absent ones have defaults.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -44,7 +44,7 @@ pub struct Scene {
     /// Transmittance at which a ray ends; 0 turns early termination off.
     pub early_termination: f64,
     /// Settings of the resampled-grid strategy.
-    pub srg: Option<serde_json::Value>,
+    pub srg: SrgSettings,
     /// Settings of the cell-to-cell strategy.
     pub libc: LibcSettings,
     /// Occlusion and lights.
@@ -73,7 +73,7 @@ impl Default for Scene {
             strategy: "plts".into(),
             sampling_step: None,
             early_termination: 0.01,
-            srg: None,
+            srg: SrgSettings::default(),
             libc: LibcSettings::default(),
             lighting: None,
             filter: Filter::default(),

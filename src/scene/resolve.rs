@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use super::ghosts::{Ghosts, shown_grid};
 use super::{
     Camera, CameraSpec, ClipSpec, ColorSpec, CutFace, Filter, Inactive, Interpolation,
-    LibcSettings, Scene, StepSpec,
+    LibcSettings, Scene, SrgSettings, StepSpec,
 };
 use crate::case::{Case, CaseError};
 use crate::model::{CellField, Ijk, Spaces};
@@ -84,6 +84,8 @@ pub struct View {
     pub clip: Vec<ClipPlane>,
     /// Settings of the cell-to-cell strategy.
     pub libc: LibcSettings,
+    /// Settings of the resampled-grid strategy.
+    pub srg: SrgSettings,
     /// Draw the box and axes.
     pub show_box: bool,
     /// Draw legend and title.
@@ -167,6 +169,7 @@ pub fn resolve(scene: &Scene, case: &Case) -> Result<View, SceneError> {
         ghosts,
         clip: clip(&scene.clip)?,
         libc: scene.libc,
+        srg: srg(&scene.srg, case.grid.dims().cells())?,
         show_box: scene.show.r#box,
         show_legend: scene.show.legend,
     })
@@ -199,11 +202,6 @@ fn refuse_later_work(scene: &Scene) -> Result<(), SceneError> {
             "lighting is not supported yet; leave it out",
         ),
         (
-            "srg",
-            scene.srg.is_some(),
-            "the resampled-grid strategy is not supported yet; leave its settings out",
-        ),
-        (
             "show.faults",
             scene.show.faults,
             "fault surfaces are not supported yet; use false",
@@ -218,6 +216,34 @@ fn refuse_later_work(scene: &Scene) -> Result<(), SceneError> {
         Some((field, _, problem)) => Err(wrong(field, problem)),
         None => Ok(()),
     }
+}
+
+fn srg(settings: &SrgSettings, cells: usize) -> Result<SrgSettings, SceneError> {
+    let parts = [
+        ("srg.even", settings.even),
+        ("srg.thin", settings.thin),
+        ("srg.roulette", settings.roulette),
+    ];
+    if let Some((field, value)) = parts.iter().find(|p| !(0.0..1.0).contains(&p.1)) {
+        let problem = format!("{value} must be at least 0, which turns it off, and below 1");
+        return Err(wrong(field, problem));
+    }
+    if settings.budget_mb == Some(0) {
+        return Err(wrong("srg.budget_mb", "must be at least 1"));
+    }
+    if let Some(factor) = settings.factor {
+        let bytes = 4.0 * positive("srg.factor", factor)?.powi(3) * cells as f64;
+        let budget = settings.budget_bytes(false);
+        if bytes > budget as f64 {
+            let problem = format!(
+                "{factor} needs {:.0} MB of the {} in srg.budget_mb; change one of them",
+                (bytes / f64::from(1 << 20)).ceil(),
+                budget >> 20
+            );
+            return Err(wrong("srg.factor", problem));
+        }
+    }
+    Ok(*settings)
 }
 
 fn clip(planes: &[ClipSpec]) -> Result<Vec<ClipPlane>, SceneError> {

@@ -54,3 +54,49 @@ pub enum Integration {
     /// Each segment in a cell as a whole, with integrals of the transfer function.
     Segments,
 }
+
+/// Settings of the strategy SRG. A switch that is a number is off at 0.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct SrgSettings {
+    /// Megabytes (2^20 bytes) on the device, of volume and pyramids; chosen by the adapter where absent.
+    pub budget_mb: Option<u32>,
+    /// Voxels a cell along i, j and k; as large as the budget allows where absent.
+    pub factor: Option<f64>,
+    /// Values are divided by interpolated presence, so that they do not fade at the model's boundary.
+    pub weighted: bool,
+    /// What the transfer function makes empty is passed at once.
+    pub skip_empty: bool,
+    /// What varies by no more than this part of the color map's range is passed in one step.
+    pub even: f64,
+    /// Where no sample is more opaque than this, fewer samples are taken, of averages.
+    pub thin: f64,
+    /// Transmittance below which rays end by chance (Russian roulette).
+    pub roulette: f64,
+}
+
+impl Default for SrgSettings {
+    fn default() -> Self {
+        Self {
+            budget_mb: None,
+            factor: None,
+            weighted: true,
+            skip_empty: true,
+            even: 0.0,
+            thin: 0.0,
+            roulette: 0.0,
+        }
+    }
+}
+
+impl SrgSettings {
+    /// Megabytes where the scene says nothing: of a GPU, and of an adapter in software, where filling a
+    /// voxel takes as long as a sample of PLTS.
+    const BUDGET_MB: [u32; 2] = [512, 32];
+
+    /// Bytes that volume and pyramids may take.
+    pub fn budget_bytes(&self, is_software: bool) -> u64 {
+        let default = Self::BUDGET_MB[usize::from(is_software)];
+        u64::from(self.budget_mb.unwrap_or(default)) << 20
+    }
+}

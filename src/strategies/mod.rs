@@ -2,6 +2,7 @@
 
 pub mod libc;
 pub mod plts;
+pub mod srg;
 
 use crate::gpu::{Gpu, GpuBytes, GpuError, GpuGrid, Round};
 use crate::model::Grid;
@@ -60,11 +61,13 @@ pub enum StrategyKind {
     Libc,
     /// Point location with topological search.
     Plts,
+    /// Structured resampled grid.
+    Srg,
 }
 
 impl StrategyKind {
     /// All strategies.
-    pub const ALL: [Self; 2] = [Self::Libc, Self::Plts];
+    pub const ALL: [Self; 3] = [Self::Libc, Self::Plts, Self::Srg];
 
     /// The accurate one: what the others are measured against where the f64 reference takes too long.
     pub const fn accurate() -> Self {
@@ -76,6 +79,7 @@ impl StrategyKind {
         match self {
             Self::Libc => "libc",
             Self::Plts => "plts",
+            Self::Srg => "srg",
         }
     }
 
@@ -87,6 +91,7 @@ impl StrategyKind {
         Ok(match self {
             Self::Libc => Box::new(libc::Libc::new(gpu)?),
             Self::Plts => Box::new(plts::Plts::new(gpu)?),
+            Self::Srg => Box::new(srg::Srg::new(gpu)?),
         })
     }
 
@@ -98,9 +103,6 @@ impl StrategyKind {
     /// One sentence for a name that is no strategy of this version.
     pub fn refusal(name: &str) -> String {
         let known: Vec<_> = Self::ALL.iter().map(|s| s.name()).collect();
-        match name {
-            "srg" => format!("{name} is not supported yet; use {}", known.join(", ")),
-            _ => format!("{name} is not known; use {}", known.join(", ")),
-        }
+        format!("{name} is not known; use {}", known.join(", "))
     }
 }

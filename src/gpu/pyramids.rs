@@ -1,0 +1,335 @@
+//! Pyramids over a resampled volume: averages, and how rays may pass its bricks.
+
+use super::device::{Gpu, GpuError};
+use super::frame::transfer_table;
+use super::layout::{BRICK, BricksInfo, LUT_SIZE, Slab};
+use super::pipeline::Pipeline;
+use super::resample::{Slabs, Volume};
+use crate::transfer::TransferFunction;
+
+/// Bytes of a part of the pyramid: range, presence, extinction.
+const PART_BYTES: u64 = 16;
+/// Levels of [`range_maxima`].
+const MAXIMA_LEVELS: u32 = LUT_SIZE.ilog2() + 1;
+
+/// What bricks are classified by; each negative for never.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Limits {
+    /// Largest extinction of what is passed at once.
+    pub empty: f64,
+    /// Largest range, as a part of the transfer function's, of what is passed in one step.
+    pub even: f64,
+    /// Largest extinction of what is sampled from the average pyramid.
+    pub thin: f64,
+}
+
+impl Limits {
+    /// True where nothing is ever classified.
+    pub fn are_never(&self) -> bool {
+        self.empty < 0.0 && self.even < 0.0 && self.thin < 0.0
+    }
+}
+
+/// Shaders that make the pyramids.
+pub struct PyramidMaker {
+    average: Pipeline,
+    summarize: Pipeline,
+    /// Where absent voxels count as zero, and where values are divided by presence.
+    weigh: [Pipeline; 2],
+    reduce: Pipeline,
+    classify: Pipeline,
+    sampler: wgpu::Sampler,
+}
+
+/// The pyramid of a volume's bricks.
+pub struct Bricks {
+    count: [u32; 3],
+    levels: u32,
+    /// What shaders know of it: a [`BricksInfo`].
+    pub info: wgpu::Buffer,
+    /// How rays pass each brick.
+    pub passes: wgpu::Buffer,
+    parts: wgpu::Buffer,
+    maxima: wgpu::Buffer,
+}
+
+impl Bricks {
+    /// A pyramid whose bricks are all plain; without room for any where it `is_used` never.
+    pub fn new(gpu: &Gpu, size: [u32; 3], is_used: bool) -> Self {
+        let count = size.map(|n| n.div_ceil(BRICK));
+        let [parts, bricks, maxima] = match is_used {
+            true => Self::sizes(size),
+            false => [16; 3],
+        };
+        Self {
+            count,
+            levels: levels(count).count() as u32,
+            info: gpu.uniform("bricks", &<BricksInfo as bytemuck::Zeroable>::zeroed()),
+            passes: gpu.scratch("passes", bricks),
+            parts: gpu.scratch("parts", parts),
+            maxima: gpu.scratch("range maxima", maxima),
+        }
+    }
+
+    /// Bytes of the pyramid, of what is kept of each brick, and of the table of maxima.
+    fn sizes(size: [u32; 3]) -> [u64; 3] {
+        let number = |count: [u32; 3]| count.map(u64::from).iter().product::<u64>();
+        let count = size.map(|n| n.div_ceil(BRICK));
+        [
+            PART_BYTES * levels(count).map(number).sum::<u64>(),
+            4 * number(count),
+            u64::from(4 * MAXIMA_LEVELS * LUT_SIZE),
+        ]
+    }
+
+    /// Bytes for a volume of so many voxels.
+    pub fn bytes(size: [u32; 3]) -> u64 {
+        Self::sizes(size).iter().sum()
+    }
+}
+
+/// Parts along each axis, level by level, up to the one that is the whole.
+fn levels(bricks: [u32; 3]) -> impl Iterator<Item = [u32; 3]> {
+    std::iter::successors(Some(bricks), |size| {
+        (*size != [1; 3]).then(|| size.map(|n| n.div_ceil(2)))
+    })
+}
+
+/// Largest extinctions of a table: entry n of level l is that of 2^l entries from n on.
+fn range_maxima(transfer: &TransferFunction) -> Vec<f32> {
+    let entries: Vec<f32> = transfer_table(transfer).iter().map(|e| e[3]).collect();
+    let wider = |(level, below): &(u32, Vec<f32>)| {
+        let half = 1 << level;
+        let maximum = |n: usize| below[n].max(*below.get(n + half).unwrap_or(&0.0));
+        Some((level + 1, (0..below.len()).map(maximum).collect()))
+    };
+    std::iter::successors(Some((0, entries)), wider)
+        .take(MAXIMA_LEVELS as usize)
+        .flat_map(|(_, level)| level)
+        .collect()
+}
+
+impl PyramidMaker {
+    /// Compiles the shaders.
+    ///
+    /// # Errors
+    /// When the driver refuses one.
+    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+        let entry = |name| Pipeline::variant(gpu, "pyramids", name, &[]);
+        let weigh = |weighted| Pipeline::variant(gpu, "pyramids", "weigh", &[("WEIGHTED", weighted)]);
+        Ok(Self {
+            average: entry("average")?,
+            summarize: entry("summarize")?,
+            weigh: [weigh(0.0)?, weigh(1.0)?],
+            reduce: entry("reduce")?,
+            classify: entry("classify")?,
+            sampler: gpu.device.create_sampler(&wgpu::SamplerDescriptor {
+                mag_filter: wgpu::FilterMode::Linear,
+                min_filter: wgpu::FilterMode::Linear,
+                ..Default::default()
+            }),
+        })
+    }
+
+    fn record(
+        &self,
+        pipeline: &Pipeline,
+        gpu: &Gpu,
+        encoder: &mut wgpu::CommandEncoder,
+        bricks: &Bricks,
+        what: &What<'_>,
+    ) {
+        let slab = gpu.uniform("slab", &what.slab);
+        let own = [
+            bricks.info.as_entire_binding(),
+            slab.as_entire_binding(),
+            wgpu::BindingResource::TextureView(what.volume),
+            wgpu::BindingResource::Sampler(&self.sampler),
+            what.voxels.as_entire_binding(),
+            bricks.parts.as_entire_binding(),
+            bricks.passes.as_entire_binding(),
+            bricks.maxima.as_entire_binding(),
+        ];
+        let groups = [(3, &gpu.bind(&pipeline.own, &own))];
+        pipeline.dispatch(encoder, &groups, what.size);
+    }
+
+    /// Makes the coarser levels of a volume, each from the one below; false where it was cancelled.
+    ///
+    /// # Errors
+    /// When the device reports an error.
+    pub fn average(
+        &self,
+        slabs: &mut Slabs<'_>,
+        volume: &Volume,
+        bricks: &Bricks,
+    ) -> Result<bool, GpuError> {
+        let gpu = slabs.gpu;
+        for level in 1..volume.levels {
+            let finer = volume.level(level - 1);
+            let done = slabs.make_level(volume, level, &|encoder, slab, voxels| {
+                let what = What {
+                    slab: *slab,
+                    volume: &finer,
+                    voxels,
+                    size: slab.size,
+                };
+                self.record(&self.average, gpu, encoder, bricks, &what);
+            })?;
+            if !done {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
+
+    /// Finds range and presence of each brick; false where it was cancelled.
+    ///
+    /// # Errors
+    /// When the device reports an error.
+    pub fn summarize(
+        &self,
+        slabs: &mut Slabs<'_>,
+        volume: &Volume,
+        bricks: &Bricks,
+    ) -> Result<bool, GpuError> {
+        let gpu = slabs.gpu;
+        let finest = volume.level(0);
+        let unused = gpu.scratch("no voxels", 16);
+        let work = u64::from(BRICK + 2).pow(3);
+        slabs.cover(bricks.count, [u32::MAX, 1], work, &|encoder, slab| {
+            let what = What {
+                slab: *slab,
+                volume: &finest,
+                voxels: &unused,
+                size: slab.size,
+            };
+            self.record(&self.summarize, gpu, encoder, bricks, &what);
+        })
+    }
+
+    /// Weighs the bricks by a transfer function and classifies them.
+    ///
+    /// `range` has the values that are stored as 0 and 1; `weighted` says that values are divided by
+    /// presence when they are sampled.
+    ///
+    /// # Errors
+    /// When the device reports an error.
+    pub fn classify(
+        &self,
+        gpu: &Gpu,
+        volume: &Volume,
+        bricks: &Bricks,
+        by: &Classifier<'_>,
+    ) -> Result<(), GpuError> {
+        let info = by.info(volume, bricks);
+        gpu.queue
+            .write_buffer(&bricks.info, 0, bytemuck::bytes_of(&info));
+        if by.limits.are_never() {
+            return Ok(());
+        }
+        let maxima = range_maxima(by.transfer);
+        gpu.queue
+            .write_buffer(&bricks.maxima, 0, bytemuck::cast_slice(&maxima));
+        let finest = volume.level(0);
+        let unused = gpu.scratch("no voxels", 16);
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        let mut record = |pipeline, level, size| {
+            let what = What {
+                slab: Slab {
+                    level,
+                    ..bytemuck::Zeroable::zeroed()
+                },
+                volume: &finest,
+                voxels: &unused,
+                size,
+            };
+            self.record(pipeline, gpu, &mut encoder, bricks, &what);
+        };
+        record(&self.weigh[usize::from(by.weighted)], 0, bricks.count);
+        for (level, size) in (0..).zip(levels(bricks.count).skip(1)) {
+            record(&self.reduce, level, size);
+        }
+        record(&self.classify, 0, bricks.count);
+        gpu.queue.submit([encoder.finish()]);
+        gpu.wait()
+    }
+}
+
+/// What a dispatch works on, beside the bricks.
+struct What<'a> {
+    slab: Slab,
+    volume: &'a wgpu::TextureView,
+    voxels: &'a wgpu::Buffer,
+    size: [u32; 3],
+}
+
+/// What bricks are classified by.
+#[derive(Debug, Clone, Copy)]
+pub struct Classifier<'a> {
+    /// Value to color and extinction.
+    pub transfer: &'a TransferFunction,
+    /// The values that are stored as 0 and 1.
+    pub range: [f64; 2],
+    /// Values are divided by presence when they are sampled.
+    pub weighted: bool,
+    /// What is special.
+    pub limits: Limits,
+}
+
+impl Classifier<'_> {
+    fn info(&self, volume: &Volume, bricks: &Bricks) -> BricksInfo {
+        let [low, high] = self.transfer.range;
+        let scale = if high > low { 1.0 / (high - low) } else { 0.0 };
+        let limits = self.limits;
+        BricksInfo {
+            count: bricks.count,
+            levels: bricks.levels,
+            position_low: (scale * (self.range[0] - low)) as f32,
+            position_scale: (scale * (self.range[1] - self.range[0])) as f32,
+            empty: limits.empty as f32,
+            even: limits.even as f32,
+            thin: limits.thin as f32,
+            averages: volume.levels - 1,
+            reserved0: 0,
+            reserved1: 0,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn range_maxima_are_those_of_every_range() {
+        let transfer = TransferFunction {
+            color: vec![(0.0, [1.0; 3])],
+            opacity: vec![(0.0, 0.3), (0.4, 0.0), (0.7, 0.9), (1.0, 0.1)],
+            range: [0.0, 1.0],
+            reference_length: 1.0,
+        };
+        let entries: Vec<f32> = transfer_table(&transfer).iter().map(|e| e[3]).collect();
+        let maxima = range_maxima(&transfer);
+        let mut random = fastrand::Rng::with_seed(3);
+        let mut unlike_first = 0;
+        for _ in 0..2000 {
+            let first = random.usize(0..entries.len());
+            let last = random.usize(first..entries.len());
+            let level = (last - first + 1).ilog2() as usize;
+            let at = |n: usize| maxima[level * entries.len() + n];
+            let found = at(first).max(at(last + 1 - (1 << level)));
+            let expected = entries[first..=last].iter().copied().fold(0.0, f32::max);
+            assert_eq!(found, expected, "{first} {last}");
+            unlike_first += usize::from(found != entries[first]);
+        }
+        assert!(unlike_first > 500);
+    }
+
+    #[test]
+    fn levels_end_with_the_whole() {
+        let found: Vec<_> = levels([5, 1, 3]).collect();
+        assert_eq!(found, [[5, 1, 3], [3, 1, 2], [2, 1, 1], [1, 1, 1]]);
+        assert_eq!(levels([1; 3]).count(), 1);
+    }
+}
