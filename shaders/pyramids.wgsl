@@ -127,7 +127,7 @@ fn classify(@builtin(global_invocation_id) id: vec3u) {
         let range = position_of(part.high) - position_of(part.low);
         empty = select(empty, level, part.extinction <= bricks.empty);
         even = select(even, level, part.presence == 1.0 && range <= bricks.even);
-        thin = select(thin, level, part.extinction <= bricks.thin);
+        thin = select(thin, level, part.extinction * exp2(f32(min(level, bricks.averages))) <= bricks.thin);
         start += size.x * size.y * size.z;
         at /= 2u;
         size = coarser(size);

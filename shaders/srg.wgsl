@@ -87,14 +87,20 @@ fn march(@builtin(global_invocation_id) id: vec3u) {
             work += 1u;
             n = select(n, stretch.end, stretch.stride == 0.0);
         }
-        while n < stretch.end && is_open(sum) && work < tile.work_limit {
-            let taken = min(stretch.stride, stretch.end - n);
+        // Where all steps are alike, bricks are asked only where a sample shows nothing.
+        let end = select(span.y, stretch.end, LONG_STEPS || stretch.stride == 0.0);
+        while n < end && is_open(sum) && work < tile.work_limit {
+            let taken = min(stretch.stride, end - n);
             let at = base + (n + 0.5 * (taken - 1.0)) * advance;
             let voxel = textureSampleLevel(voxels, linear, at, stretch.level).xy;
+            let before = sum.transmittance;
             sum = add(sum, voxel, taken);
             samples += select(0u, 1u, voxel.y > 0.0);
             work += 1u;
             n += taken;
+            if BY_BRICK && !LONG_STEPS && sum.transmittance == before && n >= stretch.end {
+                break;
+            }
             if ROULETTE > 0.0 && sum.transmittance < ROULETTE {
                 let survives = random(pixel, u32(n)) * ROULETTE < sum.transmittance;
                 sum.transmittance = select(0.0, ROULETTE, survives);

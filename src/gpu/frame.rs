@@ -423,7 +423,7 @@ fn frame_uniform(grid: &GpuGrid, view: &View) -> Frame {
     let f32s = |v: DVec3| v.as_vec3().to_array();
     let linear = view.spaces.grid_from_world.matrix3;
     let eye = view.spaces.grid_from_world.transform_point3(camera.eye) - grid.origin;
-    
+
     let to_camera = view.spaces.world_from_grid.matrix3.transpose();
     Frame {
         eye: f32s(eye),

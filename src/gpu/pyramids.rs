@@ -43,8 +43,8 @@ pub struct PyramidMaker {
 
 /// The pyramid of a volume's bricks.
 pub struct Bricks {
-    count: [u32; 3],
-    levels: u32,
+    /// Number of bricks and of levels; the rest is zero.
+    shape: BricksInfo,
     /// What shaders know of it: a [`BricksInfo`].
     pub info: wgpu::Buffer,
     /// How rays pass each brick.
@@ -61,10 +61,14 @@ impl Bricks {
             true => Self::sizes(size),
             false => [16; 3],
         };
-        Self {
+        let info = BricksInfo {
             count,
             levels: levels(count).count() as u32,
-            info: gpu.uniform("bricks", &<BricksInfo as bytemuck::Zeroable>::zeroed()),
+            ..bytemuck::Zeroable::zeroed()
+        };
+        Self {
+            info: gpu.uniform("bricks", &info),
+            shape: info,
             passes: gpu.scratch("passes", bricks),
             parts: gpu.scratch("parts", parts),
             maxima: gpu.scratch("range maxima", maxima),
@@ -116,7 +120,8 @@ impl PyramidMaker {
     /// When the driver refuses one.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         let entry = |name| Pipeline::variant(gpu, "pyramids", name, &[]);
-        let weigh = |weighted| Pipeline::variant(gpu, "pyramids", "weigh", &[("WEIGHTED", weighted)]);
+        let weigh =
+            |weighted| Pipeline::variant(gpu, "pyramids", "weigh", &[("WEIGHTED", weighted)]);
         Ok(Self {
             average: entry("average")?,
             summarize: entry("summarize")?,
@@ -197,7 +202,7 @@ impl PyramidMaker {
         let finest = volume.level(0);
         let unused = gpu.scratch("no voxels", 16);
         let work = u64::from(BRICK + 2).pow(3);
-        slabs.cover(bricks.count, [u32::MAX, 1], work, &|encoder, slab| {
+        slabs.cover(bricks.shape.count, [u32::MAX, 1], work, &|encoder, slab| {
             let what = What {
                 slab: *slab,
                 volume: &finest,
@@ -246,11 +251,11 @@ impl PyramidMaker {
             };
             self.record(pipeline, gpu, &mut encoder, bricks, &what);
         };
-        record(&self.weigh[usize::from(by.weighted)], 0, bricks.count);
-        for (level, size) in (0..).zip(levels(bricks.count).skip(1)) {
+        record(&self.weigh[usize::from(by.weighted)], 0, bricks.shape.count);
+        for (level, size) in (0..).zip(levels(bricks.shape.count).skip(1)) {
             record(&self.reduce, level, size);
         }
-        record(&self.classify, 0, bricks.count);
+        record(&self.classify, 0, bricks.shape.count);
         gpu.queue.submit([encoder.finish()]);
         gpu.wait()
     }
@@ -283,16 +288,13 @@ impl Classifier<'_> {
         let scale = if high > low { 1.0 / (high - low) } else { 0.0 };
         let limits = self.limits;
         BricksInfo {
-            count: bricks.count,
-            levels: bricks.levels,
             position_low: (scale * (self.range[0] - low)) as f32,
             position_scale: (scale * (self.range[1] - self.range[0])) as f32,
             empty: limits.empty as f32,
             even: limits.even as f32,
             thin: limits.thin as f32,
             averages: volume.levels - 1,
-            reserved0: 0,
-            reserved1: 0,
+            ..bricks.shape
         }
     }
 }

@@ -113,7 +113,10 @@ impl Volume {
         &'a self,
         slab: &Slab,
         buffer: &'a wgpu::Buffer,
-    ) -> (wgpu::TexelCopyTextureInfo<'a>, wgpu::TexelCopyBufferInfo<'a>) {
+    ) -> (
+        wgpu::TexelCopyTextureInfo<'a>,
+        wgpu::TexelCopyBufferInfo<'a>,
+    ) {
         let [x, y, z] = slab.first;
         let texture = wgpu::TexelCopyTextureInfo {
             mip_level: slab.level,
@@ -298,7 +301,10 @@ fn volume_info(
     VolumeInfo {
         box_low: from.as_vec3().to_array(),
         value_low: range[0] as f32,
-        box_extent: (to - from).max(glam::DVec3::splat(1e-6)).as_vec3().to_array(),
+        box_extent: (to - from)
+            .max(glam::DVec3::splat(1e-6))
+            .as_vec3()
+            .to_array(),
         value_scale: layout::per_unit(range),
         size,
         interpolation: layout::interpolation(interpolation),

@@ -9,7 +9,7 @@
 use super::{Preparation, RenderStrategy};
 use crate::gpu::faces::{BoundaryFaces, FaceMode, FaceTarget};
 use crate::gpu::pyramids::{Bricks, Classifier, Limits, PyramidMaker};
-use crate::gpu::resample::{Resampler, Slabs, Volume};
+use crate::gpu::resample::{Resampler, Slabs, VOXEL_BYTES, Volume};
 use crate::gpu::tiles::Pace;
 use crate::gpu::{Gpu, GpuBytes, GpuError, Pipeline, Place, Round, Versions};
 use crate::model::Dims;
@@ -56,29 +56,45 @@ struct Plan {
 impl Plan {
     /// The volume of the wanted factor, or the largest one within a budget.
     fn new(dims: Dims, settings: &SrgSettings, budget: u64, limit: u32) -> Self {
-        let plan = |factor: f64| {
+        let size = |factor: f64| {
             let along = |n: usize| (factor * n as f64).round().clamp(1.0, f64::from(limit)) as u32;
-            let size = [dims.ni, dims.nj, dims.nk].map(along);
-            let coarsest = size.iter().max().map_or(0, |n| n.ilog2());
-            Self {
-                size,
-                levels: 1 + if settings.thin > 0.0 { AVERAGES.min(coarsest) } else { 0 },
-                has_bricks: !limits(settings, 1.0).are_never(),
-            }
+            [dims.ni, dims.nj, dims.nk].map(along)
         };
-        if let Some(factor) = settings.factor {
-            return plan(factor);
-        }
-        let mut factor = (budget as f64 / (4.0 * dims.cells() as f64)).cbrt();
-        // Pyramids come on top; a volume cannot be smaller than a voxel.
-        while plan(factor).bytes() > budget && plan(factor).size != [1; 3] {
+        let mut factor = settings.factor.unwrap_or_else(|| {
+            let voxels = budget as f64 / VOXEL_BYTES as f64;
+            (voxels / dims.cells() as f64).cbrt()
+        });
+        // Room for all pyramids is left, used or not, so that switches do not change the resolution.
+        while settings.factor.is_none()
+            && Self::full(size(factor)).bytes() > budget
+            && size(factor) != [1; 3]
+        {
             factor *= 0.99;
         }
-        plan(factor)
+        let full = Self::full(size(factor));
+        Self {
+            levels: if settings.thin > 0.0 { full.levels } else { 1 },
+            has_bricks: !limits(settings, 1.0).are_never(),
+            ..full
+        }
+    }
+
+    /// With all pyramids.
+    fn full(size: [u32; 3]) -> Self {
+        let coarsest = size.iter().max().map_or(0, |n| n.ilog2());
+        Self {
+            size,
+            levels: 1 + AVERAGES.min(coarsest),
+            has_bricks: true,
+        }
     }
 
     fn bytes(&self) -> u64 {
-        let bricks = if self.has_bricks { Bricks::bytes(self.size) } else { 0 };
+        let bricks = if self.has_bricks {
+            Bricks::bytes(self.size)
+        } else {
+            0
+        };
         Volume::bytes(self.size, self.levels) + bricks
     }
 }
@@ -178,11 +194,11 @@ impl Srg {
         filled.classified = None;
         let (volume, bricks) = (&filled.volume, &filled.bricks);
         let interpolation = what.view.interpolation;
-        let done = self
-            .resampler
-            .fill(&mut slabs, what.grid, volume, filled.range, interpolation)?
-            && self.pyramids.average(&mut slabs, volume, bricks)?
-            && (!plan.has_bricks || self.pyramids.summarize(&mut slabs, volume, bricks)?);
+        let done =
+            self.resampler
+                .fill(&mut slabs, what.grid, volume, filled.range, interpolation)?
+                && self.pyramids.average(&mut slabs, volume, bricks)?
+                && (!plan.has_bricks || self.pyramids.summarize(&mut slabs, volume, bricks)?);
         self.filled = done.then_some(filled);
         Ok(done)
     }
