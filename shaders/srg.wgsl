@@ -80,31 +80,32 @@ fn march(@builtin(global_invocation_id) id: vec3u) {
     let advance = ray.advance / volume.box_extent;
     var samples = 0u;
     var work = 0u;
+    var stretch = Stretch(select(span.y, 0.0, BY_BRICK), 1.0, 0.0);
+    var sees_nothing = true;
     while n < span.y && is_open(sum) && work < tile.work_limit {
-        var stretch = Stretch(span.y, 1.0, 0.0);
-        if BY_BRICK {
-            stretch = stretch_at(base + n * advance, advance, n, span.y);
-            work += 1u;
-            n = select(n, stretch.end, stretch.stride == 0.0);
-        }
+        work += 1u;
         // Where all steps are alike, bricks are asked only where a sample shows nothing.
-        let end = select(span.y, stretch.end, LONG_STEPS || stretch.stride == 0.0);
-        while n < end && is_open(sum) && work < tile.work_limit {
-            let taken = min(stretch.stride, end - n);
-            let at = base + (n + 0.5 * (taken - 1.0)) * advance;
-            let voxel = textureSampleLevel(voxels, linear, at, stretch.level).xy;
-            let before = sum.transmittance;
-            sum = add(sum, voxel, taken);
-            samples += select(0u, 1u, voxel.y > 0.0);
-            work += 1u;
-            n += taken;
-            if BY_BRICK && !LONG_STEPS && sum.transmittance == before && n >= stretch.end {
-                break;
-            }
-            if ROULETTE > 0.0 && sum.transmittance < ROULETTE {
-                let survives = random(pixel, u32(n)) * ROULETTE < sum.transmittance;
-                sum.transmittance = select(0.0, ROULETTE, survives);
-            }
+        if BY_BRICK && n >= stretch.end && (LONG_STEPS || sees_nothing) {
+            stretch = stretch_at(base + n * advance, advance, n, span.y);
+        }
+        if stretch.stride == 0.0 {
+            n = stretch.end;
+            continue;
+        }
+        var taken = stretch.stride;
+        if LONG_STEPS {
+            taken = min(taken, stretch.end - n);
+        }
+        let at = base + (n + 0.5 * (taken - 1.0)) * advance;
+        let voxel = textureSampleLevel(voxels, linear, at, stretch.level).xy;
+        let before = sum.transmittance;
+        sum = add(sum, voxel, taken);
+        sees_nothing = sum.transmittance == before;
+        samples += select(0u, 1u, voxel.y > 0.0);
+        n += taken;
+        if ROULETTE > 0.0 && sum.transmittance < ROULETTE {
+            let survives = random(pixel, u32(n)) * ROULETTE < sum.transmittance;
+            sum.transmittance = select(0.0, ROULETTE, survives);
         }
     }
     if n < span.y && is_open(sum) {

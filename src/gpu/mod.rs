@@ -11,6 +11,7 @@ pub mod probe;
 pub mod pyramids;
 pub mod resample;
 pub mod shader;
+pub mod slabs;
 mod target;
 pub mod tiles;
 

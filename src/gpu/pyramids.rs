@@ -4,7 +4,8 @@ use super::device::{Gpu, GpuError};
 use super::frame::transfer_table;
 use super::layout::{BRICK, BricksInfo, LUT_SIZE, Slab};
 use super::pipeline::Pipeline;
-use super::resample::{Slabs, Volume};
+use super::resample::Volume;
+use super::slabs::Slabs;
 use crate::transfer::TransferFunction;
 
 /// Bytes of a part of the pyramid: range, presence, extinction.
@@ -54,31 +55,36 @@ pub struct Bricks {
 }
 
 impl Bricks {
-    /// A pyramid whose bricks are all plain; without room for any where it `is_used` never.
-    pub fn new(gpu: &Gpu, size: [u32; 3], is_used: bool) -> Self {
-        let count = size.map(|n| n.div_ceil(BRICK));
-        let [parts, bricks, maxima] = match is_used {
-            true => Self::sizes(size),
-            false => [16; 3],
-        };
-        let info = BricksInfo {
+    /// Room for the pyramid of a volume of so many voxels.
+    pub fn new(gpu: &Gpu, size: [u32; 3]) -> Self {
+        Self::with_room(gpu, size, Self::room(size))
+    }
+
+    /// No pyramid: what shaders are bound to where they do not ask for it.
+    pub fn unused(gpu: &Gpu, size: [u32; 3]) -> Self {
+        Self::with_room(gpu, size, [UNUSED_BYTES; 3])
+    }
+
+    fn with_room(gpu: &Gpu, size: [u32; 3], [parts, passes, maxima]: [u64; 3]) -> Self {
+        let count = bricks_of(size);
+        let shape = BricksInfo {
             count,
             levels: levels(count).count() as u32,
             ..bytemuck::Zeroable::zeroed()
         };
         Self {
-            info: gpu.uniform("bricks", &info),
-            shape: info,
-            passes: gpu.scratch("passes", bricks),
+            info: gpu.uniform("bricks", &shape),
+            shape,
             parts: gpu.scratch("parts", parts),
+            passes: gpu.scratch("passes", passes),
             maxima: gpu.scratch("range maxima", maxima),
         }
     }
 
     /// Bytes of the pyramid, of what is kept of each brick, and of the table of maxima.
-    fn sizes(size: [u32; 3]) -> [u64; 3] {
+    fn room(size: [u32; 3]) -> [u64; 3] {
         let number = |count: [u32; 3]| count.map(u64::from).iter().product::<u64>();
-        let count = size.map(|n| n.div_ceil(BRICK));
+        let count = bricks_of(size);
         [
             PART_BYTES * levels(count).map(number).sum::<u64>(),
             4 * number(count),
@@ -86,10 +92,28 @@ impl Bricks {
         ]
     }
 
-    /// Bytes for a volume of so many voxels.
-    pub fn bytes(size: [u32; 3]) -> u64 {
-        Self::sizes(size).iter().sum()
+    /// Bytes that a pyramid of so many voxels takes.
+    pub fn most_bytes(size: [u32; 3]) -> u64 {
+        Self::room(size).iter().sum()
     }
+
+    /// Bytes that it takes.
+    pub fn bytes(&self) -> u64 {
+        let buffers = [&self.parts, &self.passes, &self.maxima];
+        buffers.iter().map(|b| b.size()).sum()
+    }
+
+    /// True where there is a pyramid.
+    pub fn are_used(&self) -> bool {
+        self.maxima.size() > UNUSED_BYTES
+    }
+}
+
+/// Bytes of a buffer that is only there to be bound.
+const UNUSED_BYTES: u64 = 16;
+
+fn bricks_of(size: [u32; 3]) -> [u32; 3] {
+    size.map(|n| n.div_ceil(BRICK))
 }
 
 /// Parts along each axis, level by level, up to the one that is the whole.
@@ -172,7 +196,7 @@ impl PyramidMaker {
         let gpu = slabs.gpu;
         for level in 1..volume.levels {
             let finer = volume.level(level - 1);
-            let done = slabs.make_level(volume, level, &|encoder, slab, voxels| {
+            let done = volume.make_level(slabs, level, &|encoder, slab, voxels| {
                 let what = What {
                     slab: *slab,
                     volume: &finer,
@@ -200,7 +224,7 @@ impl PyramidMaker {
     ) -> Result<bool, GpuError> {
         let gpu = slabs.gpu;
         let finest = volume.level(0);
-        let unused = gpu.scratch("no voxels", 16);
+        let unused = gpu.scratch("no voxels", UNUSED_BYTES);
         let work = u64::from(BRICK + 2).pow(3);
         slabs.cover(bricks.shape.count, [u32::MAX, 1], work, &|encoder, slab| {
             let what = What {
@@ -237,7 +261,7 @@ impl PyramidMaker {
         gpu.queue
             .write_buffer(&bricks.maxima, 0, bytemuck::cast_slice(&maxima));
         let finest = volume.level(0);
-        let unused = gpu.scratch("no voxels", 16);
+        let unused = gpu.scratch("no voxels", UNUSED_BYTES);
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         let mut record = |pipeline, level, size| {
             let what = What {

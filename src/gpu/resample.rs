@@ -4,7 +4,7 @@ use super::device::{Gpu, GpuError};
 use super::grid_upload::GpuGrid;
 use super::layout::{self, RUN, Slab, VolumeInfo};
 use super::pipeline::Pipeline;
-use super::tiles::Pace;
+use super::slabs::Slabs;
 use crate::scene::Interpolation;
 
 /// Two half floats a voxel, which every adapter can interpolate.
@@ -103,6 +103,37 @@ impl Volume {
         Ok(rows.flat_map(|r| &r[..size[0] as usize]).copied().collect())
     }
 
+    /// Makes the voxels of a level by `dispatch`, which writes a slab of them to a buffer; false where it
+    /// was cancelled.
+    ///
+    /// # Errors
+    /// When the device reports an error.
+    pub fn make_level(
+        &self,
+        slabs: &mut Slabs<'_>,
+        level: u32,
+        dispatch: &dyn Fn(&mut wgpu::CommandEncoder, &Slab, &wgpu::Buffer),
+    ) -> Result<bool, GpuError> {
+        let size = level_size(self.size, level);
+        let row = padded_row(size[0]);
+        let row_bytes = slab_bytes(row, 1, RUN);
+        let most_rows = (SLAB_BYTES / row_bytes).clamp(1, u64::from(size[1])) as u32;
+        let voxels = slabs
+            .gpu
+            .scratch("voxels", row_bytes * u64::from(most_rows));
+        slabs.cover(size, [most_rows, RUN], VOXEL_WORK, &|encoder, slab| {
+            let slab = Slab {
+                level,
+                row,
+                ..*slab
+            };
+            let [_, rows, slices] = slab.size;
+            encoder.clear_buffer(&voxels, 0, Some(slab_bytes(row, rows, slices)));
+            dispatch(encoder, &slab, &voxels);
+            self.take(&slab, &voxels, encoder);
+        })
+    }
+
     /// Records the copy of a slab of voxels into its level.
     fn take(&self, slab: &Slab, voxels: &wgpu::Buffer, encoder: &mut wgpu::CommandEncoder) {
         let (texture, buffer) = self.copy_places(slab, voxels);
@@ -154,93 +185,6 @@ fn extent([width, height, depth_or_array_layers]: [u32; 3]) -> wgpu::Extent3d {
     }
 }
 
-/// Makes volumes and pyramids in parts, each short enough for a slow adapter.
-pub struct Slabs<'a> {
-    /// The device.
-    pub gpu: &'a Gpu,
-    /// What the adapter does in the time of a submission.
-    pub pace: &'a mut Pace,
-    /// Told the fraction done; returns false to cancel.
-    pub progress: &'a dyn Fn(f64) -> bool,
-}
-
-impl Slabs<'_> {
-    /// Submits `record` for slabs that cover `size`; false where it was cancelled.
-    ///
-    /// A slab has whole rows, at most `deepest` slices, and at most `most_rows` rows; each element of it
-    /// costs about `work` loop iterations.
-    ///
-    /// # Errors
-    /// When the device reports an error.
-    pub fn cover(
-        &mut self,
-        size: [u32; 3],
-        [most_rows, deepest]: [u32; 2],
-        work: u64,
-        record: &dyn Fn(&mut wgpu::CommandEncoder, &Slab),
-    ) -> Result<bool, GpuError> {
-        for z in (0..size[2]).step_by(deepest as usize) {
-            let depth = deepest.min(size[2] - z);
-            let row_work = work * u64::from(size[0]) * u64::from(depth);
-            let mut y = 0;
-            while y < size[1] {
-                let most = u64::from(most_rows.min(size[1] - y));
-                let rows = self.pace.pieces(row_work).clamp(1, most);
-                let slab = Slab {
-                    first: [0, y, z],
-                    row: padded_row(size[0]),
-                    size: [size[0], rows as u32, depth],
-                    level: 0,
-                };
-                self.submit(&slab, rows * row_work, record)?;
-                y += rows as u32;
-                let slices = f64::from(z) + f64::from(depth) * f64::from(y) / f64::from(size[1]);
-                if !(self.progress)(slices / f64::from(size[2])) {
-                    return Ok(false);
-                }
-            }
-        }
-        Ok(true)
-    }
-
-    fn submit(
-        &mut self,
-        slab: &Slab,
-        work: u64,
-        record: &dyn Fn(&mut wgpu::CommandEncoder, &Slab),
-    ) -> Result<(), GpuError> {
-        let start = std::time::Instant::now();
-        let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
-        record(&mut encoder, slab);
-        self.gpu.queue.submit([encoder.finish()]);
-        self.gpu.wait()?;
-        self.pace.learn(start.elapsed(), work);
-        Ok(())
-    }
-
-    /// Makes the voxels of a level by `dispatch`, which writes a slab of them to a buffer.
-    ///
-    /// # Errors
-    /// When the device reports an error.
-    pub fn make_level(
-        &mut self,
-        volume: &Volume,
-        level: u32,
-        dispatch: &dyn Fn(&mut wgpu::CommandEncoder, &Slab, &wgpu::Buffer),
-    ) -> Result<bool, GpuError> {
-        let size = level_size(volume.size, level);
-        let row = slab_bytes(padded_row(size[0]), 1, RUN);
-        let most_rows = (SLAB_BYTES / row).max(1).min(u64::from(size[1])) as u32;
-        let voxels = self.gpu.scratch("voxels", row * u64::from(most_rows));
-        self.cover(size, [most_rows, RUN], VOXEL_WORK, &|encoder, slab| {
-            let [_, rows, slices] = slab.size;
-            encoder.clear_buffer(&voxels, 0, Some(slab_bytes(slab.row, rows, slices)));
-            dispatch(encoder, slab, &voxels);
-            volume.take(&Slab { level, ..*slab }, &voxels, encoder);
-        })
-    }
-}
-
 /// Fills volumes by point location.
 pub struct Resampler {
     fill: Pipeline,
@@ -277,7 +221,7 @@ impl Resampler {
         gpu.queue
             .write_buffer(&volume.info, 0, bytemuck::bytes_of(&info));
         let grid = grid.bind(gpu);
-        slabs.make_level(volume, 0, &|encoder, slab, voxels| {
+        volume.make_level(slabs, 0, &|encoder, slab, voxels| {
             let slab_info = gpu.uniform("slab", slab);
             let own = [
                 volume.info.as_entire_binding(),

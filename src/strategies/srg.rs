@@ -9,11 +9,12 @@
 use super::{Preparation, RenderStrategy};
 use crate::gpu::faces::{BoundaryFaces, FaceMode, FaceTarget};
 use crate::gpu::pyramids::{Bricks, Classifier, Limits, PyramidMaker};
-use crate::gpu::resample::{Resampler, Slabs, VOXEL_BYTES, Volume};
+use crate::gpu::resample::{Resampler, VOXEL_BYTES, Volume};
+use crate::gpu::slabs::Slabs;
 use crate::gpu::tiles::Pace;
 use crate::gpu::{Gpu, GpuBytes, GpuError, Pipeline, Place, Round, Versions};
 use crate::model::Dims;
-use crate::scene::SrgSettings;
+use crate::scene::{SrgSettings, View};
 use crate::transfer::TransferFunction;
 
 /// Levels of the average pyramid above the volume, at most: the longest step is of 2^3 samples.
@@ -31,13 +32,15 @@ pub struct Srg {
     /// For the first entries and the last exits.
     targets: [Option<FaceTarget>; 2],
     pace: Pace,
+    fills: u64,
     filled: Option<Filled>,
 }
 
-/// The volume with its pyramids, and what it was made from.
+/// The volume with its pyramids, and what they were made from.
 struct Filled {
-    plan: Plan,
+    shape: Shape,
     versions: Versions,
+    /// Values that are stored as 0 and 1.
     range: [f64; 2],
     volume: Volume,
     bricks: Bricks,
@@ -45,57 +48,63 @@ struct Filled {
     classified: Option<(TransferFunction, Limits, bool)>,
 }
 
-/// How large a volume is, and which pyramids it has.
+/// How large a volume is, and how many levels it has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-struct Plan {
+struct Shape {
     size: [u32; 3],
     levels: u32,
-    has_bricks: bool,
 }
 
-impl Plan {
-    /// The volume of the wanted factor, or the largest one within a budget.
+impl Shape {
+    /// The volume of the wanted factor, or the largest one within a budget of bytes; no axis has more
+    /// voxels than `limit`.
     fn new(dims: Dims, settings: &SrgSettings, budget: u64, limit: u32) -> Self {
         let size = |factor: f64| {
             let along = |n: usize| (factor * n as f64).round().clamp(1.0, f64::from(limit)) as u32;
             [dims.ni, dims.nj, dims.nk].map(along)
         };
-        let mut factor = settings.factor.unwrap_or_else(|| {
-            let voxels = budget as f64 / VOXEL_BYTES as f64;
-            (voxels / dims.cells() as f64).cbrt()
-        });
-        // Room for all pyramids is left, used or not, so that switches do not change the resolution.
-        while settings.factor.is_none()
-            && Self::full(size(factor)).bytes() > budget
-            && size(factor) != [1; 3]
-        {
-            factor *= 0.99;
-        }
-        let full = Self::full(size(factor));
-        Self {
-            levels: if settings.thin > 0.0 { full.levels } else { 1 },
-            has_bricks: !limits(settings, 1.0).are_never(),
-            ..full
-        }
-    }
-
-    /// With all pyramids.
-    fn full(size: [u32; 3]) -> Self {
-        let coarsest = size.iter().max().map_or(0, |n| n.ilog2());
+        let size = settings.factor.map_or_else(
+            || {
+                let voxels = budget as f64 / VOXEL_BYTES as f64;
+                let mut factor = (voxels / dims.cells() as f64).cbrt();
+                while most_bytes(size(factor)) > budget && size(factor) != [1; 3] {
+                    factor *= 0.99;
+                }
+                size(factor)
+            },
+            size,
+        );
         Self {
             size,
-            levels: 1 + AVERAGES.min(coarsest),
-            has_bricks: true,
+            levels: if settings.thin > 0.0 {
+                most_levels(size)
+            } else {
+                1
+            },
         }
     }
+}
 
-    fn bytes(&self) -> u64 {
-        let bricks = if self.has_bricks {
-            Bricks::bytes(self.size)
-        } else {
-            0
-        };
-        Volume::bytes(self.size, self.levels) + bricks
+fn most_levels(size: [u32; 3]) -> u32 {
+    let coarsest = size.iter().max().map_or(0, |n| n.ilog2());
+    1 + AVERAGES.min(coarsest)
+}
+
+/// Bytes with all pyramids: room for them is left, used or not, so that switches do not change the
+/// resolution.
+fn most_bytes(size: [u32; 3]) -> u64 {
+    Volume::bytes(size, most_levels(size)) + Bricks::most_bytes(size)
+}
+
+/// The settings, without those that cannot gain: nothing is passed at once where the transfer function
+/// shows every value and next to no cell is hidden. There asking the bricks took a tenth to a quarter of
+/// the time of a frame in software.
+fn useful(view: &View) -> SrgSettings {
+    let is_clear = view.transfer.opacity.iter().any(|point| point.1 == 0.0);
+    let hidden = view.drawn.iter().filter(|drawn| !**drawn).count();
+    SrgSettings {
+        skip_empty: view.srg.skip_empty && (is_clear || 10 * hidden > view.drawn.len()),
+        ..view.srg
     }
 }
 
@@ -166,67 +175,94 @@ impl Srg {
             faces: BoundaryFaces::new(gpu)?,
             targets: [None, None],
             pace: Pace::default(),
+            fills: 0,
             filled: None,
         })
     }
 
-    /// Fills the volume anew; false where it was cancelled.
-    fn fill(&mut self, what: &Preparation<'_>, plan: Plan) -> Result<bool, GpuError> {
-        let mut filled = match self.filled.take() {
-            Some(filled) if filled.plan == plan => filled,
-            _ => Filled {
-                plan,
-                versions: what.grid.versions,
-                range: [0.0; 2],
-                volume: Volume::new(what.gpu, plan.size, plan.levels),
-                bricks: Bricks::new(what.gpu, plan.size, plan.has_bricks),
-                classified: None,
-            },
-        };
-        let mut slabs = Slabs {
-            gpu: what.gpu,
-            pace: &mut self.pace,
-            progress: what.progress,
-        };
+    /// Number of times that the volume was filled.
+    pub fn fills(&self) -> u64 {
+        self.fills
+    }
+
+    /// Fills the volume anew where values, cells or shape have changed; false where it was cancelled.
+    fn fill(&mut self, what: &Preparation<'_>, shape: Shape) -> Result<bool, GpuError> {
+        let filled = self.filled.take().filter(|f| f.shape == shape);
+        let versions = what.grid.versions;
+        if filled.as_ref().is_some_and(|f| f.versions == versions) {
+            self.filled = filled;
+            return Ok(true);
+        }
+        let volume = filled.map_or_else(
+            || Volume::new(what.gpu, shape.size, shape.levels),
+            |f| f.volume,
+        );
         let statistics = what.view.field.statistics();
-        filled.range = statistics.map_or([0.0, 1.0], |s| [s.min, s.max]);
-        filled.versions = what.grid.versions;
-        filled.classified = None;
-        let (volume, bricks) = (&filled.volume, &filled.bricks);
+        let range = statistics.map_or([0.0, 1.0], |s| [s.min, s.max]);
+        let bricks = Bricks::unused(what.gpu, shape.size);
+        let mut slabs = slabs(what, &mut self.pace);
         let interpolation = what.view.interpolation;
-        let done =
-            self.resampler
-                .fill(&mut slabs, what.grid, volume, filled.range, interpolation)?
-                && self.pyramids.average(&mut slabs, volume, bricks)?
-                && (!plan.has_bricks || self.pyramids.summarize(&mut slabs, volume, bricks)?);
-        self.filled = done.then_some(filled);
+        let done = self
+            .resampler
+            .fill(&mut slabs, what.grid, &volume, range, interpolation)?
+            && self.pyramids.average(&mut slabs, &volume, &bricks)?;
+        self.fills += u64::from(done);
+        self.filled = done.then_some(Filled {
+            shape,
+            versions,
+            range,
+            volume,
+            bricks,
+            classified: None,
+        });
         Ok(done)
     }
 
-    /// Classifies the bricks anew where transfer function or settings have changed.
-    fn classify(&mut self, what: &Preparation<'_>) -> Result<(), GpuError> {
+    /// Makes the bricks where they are asked for and not there, and classifies them anew where transfer
+    /// function or settings have changed; false where it was cancelled.
+    fn classify(
+        &mut self,
+        what: &Preparation<'_>,
+        settings: &SrgSettings,
+    ) -> Result<bool, GpuError> {
         let Some(filled) = &mut self.filled else {
-            return Ok(());
+            return Ok(false);
         };
-        let view = what.view;
-        let by = (
-            view.transfer.clone(),
-            limits(&view.srg, view.sampling_step),
-            view.srg.weighted,
-        );
+        let limits = limits(settings, what.view.sampling_step);
+        if !limits.are_never() && !filled.bricks.are_used() {
+            let bricks = Bricks::new(what.gpu, filled.shape.size);
+            let mut slabs = slabs(what, &mut self.pace);
+            if !self
+                .pyramids
+                .summarize(&mut slabs, &filled.volume, &bricks)?
+            {
+                return Ok(false);
+            }
+            filled.bricks = bricks;
+            filled.classified = None;
+        }
+        let by = (what.view.transfer.clone(), limits, settings.weighted);
         if filled.classified.as_ref() != Some(&by) {
             let classifier = Classifier {
                 transfer: &by.0,
                 range: filled.range,
-                weighted: by.2,
-                limits: by.1,
+                limits,
+                weighted: settings.weighted,
             };
             let (volume, bricks) = (&filled.volume, &filled.bricks);
             self.pyramids
                 .classify(what.gpu, volume, bricks, &classifier)?;
             filled.classified = Some(by);
         }
-        Ok(())
+        Ok(true)
+    }
+}
+
+fn slabs<'a>(what: &Preparation<'a>, pace: &'a mut Pace) -> Slabs<'a> {
+    Slabs {
+        gpu: what.gpu,
+        pace,
+        progress: what.progress,
     }
 }
 
@@ -242,7 +278,8 @@ impl RenderStrategy for Srg {
 
     fn prepare(&mut self, what: &Preparation<'_>) -> Result<bool, GpuError> {
         let view = what.view;
-        let variant = Variant::of(&view.srg, view.clip.iter().any(|plane| plane.opaque));
+        let settings = useful(view);
+        let variant = Variant::of(&settings, view.clip.iter().any(|plane| plane.opaque));
         if variant != self.variant {
             self.begin = variant.compile(what.gpu, "begin")?;
             self.march = variant.compile(what.gpu, "march")?;
@@ -250,24 +287,17 @@ impl RenderStrategy for Srg {
         }
         self.faces
             .update(what.gpu, what.model, what.grid, &view.drawn, 0.0)?;
-        let plan = Plan::new(
-            what.model.dims(),
-            &view.srg,
-            view.srg.budget_bytes(what.gpu.is_software()),
-            what.gpu.device.limits().max_texture_dimension_3d,
-        );
-        let is_fresh = |f: &Filled| f.plan == plan && f.versions == what.grid.versions;
-        if !self.filled.as_ref().is_some_and(is_fresh) && !self.fill(what, plan)? {
-            return Ok(false);
-        }
-        self.classify(what)?;
-        Ok(true)
+        let budget = settings.budget_bytes(what.gpu.is_software());
+        let limit = what.gpu.device.limits().max_texture_dimension_3d;
+        let shape = Shape::new(what.model.dims(), &settings, budget, limit);
+        Ok(self.fill(what, shape)? && self.classify(what, &settings)?)
     }
 
     fn bytes(&self) -> GpuBytes {
+        let volume = |f: &Filled| Volume::bytes(f.shape.size, f.shape.levels) + f.bricks.bytes();
         GpuBytes {
             geometry: self.faces.bytes(),
-            resampled: self.filled.as_ref().map_or(0, |f| f.plan.bytes()),
+            resampled: self.filled.as_ref().map_or(0, volume),
             ..GpuBytes::default()
         }
     }
