@@ -13,6 +13,9 @@
 // Values are divided by presence when they are sampled, else absent voxels count as zero.
 override WEIGHTED: bool = true;
 
+// Voxels have two words.
+override WIDE: bool = false;
+
 struct Part {
     // Stored values of its voxels that are present; high < low where there are none.
     low: f32,
@@ -43,7 +46,13 @@ fn average(@builtin(global_invocation_id) id: vec3u) {
     let size = max(textureDimensions(volume) / 2u, vec3u(1u));
     // In the middle between eight voxels the interpolated value is their mean.
     let mean = textureSampleLevel(volume, linear, (vec3f(slab.first + id) + vec3f(0.5)) / vec3f(size), 0.0);
-    voxels[(id.z * slab.size.y + id.y) * slab.row + id.x] = pack2x16float(mean.xy);
+    let at = (id.z * slab.size.y + id.y) * slab.row + id.x;
+    if WIDE {
+        voxels[2u * at] = pack2x16float(mean.xy);
+        voxels[2u * at + 1u] = pack2x16float(mean.zw);
+    } else {
+        voxels[at] = pack2x16float(mean.xy);
+    }
 }
 
 @compute @workgroup_size(8, 8)

@@ -21,7 +21,7 @@ override ROULETTE: f32 = 0.0;
 
 @group(3) @binding(0) var<uniform> volume: VolumeInfo;
 @group(3) @binding(1) var<uniform> bricks: BricksInfo;
-// Value times presence, and presence.
+// Value times presence, presence, and presence of ghosts.
 @group(3) @binding(2) var voxels: texture_3d<f32>;
 @group(3) @binding(3) var linear: sampler;
 @group(3) @binding(4) var<storage, read> passes: array<u32>;
@@ -97,11 +97,11 @@ fn march(@builtin(global_invocation_id) id: vec3u) {
             taken = min(taken, stretch.end - n);
         }
         let at = base + (n + 0.5 * (taken - 1.0)) * advance;
-        let voxel = textureSampleLevel(voxels, linear, at, stretch.level).xy;
+        let voxel = textureSampleLevel(voxels, linear, at, stretch.level).xyz;
         let before = sum.transmittance;
         sum = add(sum, voxel, taken);
         sees_nothing = sum.transmittance == before;
-        samples += select(0u, 1u, voxel.y > 0.0);
+        samples += select(0u, 1u, voxel.y + voxel.z > 0.0);
         n += taken;
         if ROULETTE > 0.0 && sum.transmittance < ROULETTE {
             let survives = random(pixel, u32(n)) * ROULETTE < sum.transmittance;
@@ -122,17 +122,24 @@ fn march(@builtin(global_invocation_id) id: vec3u) {
 }
 
 // Adds a sample that stands for `taken` of them; its opacity is multiplied by presence.
-fn add(a: Accumulated, voxel: vec2f, taken: f32) -> Accumulated {
+fn add(a: Accumulated, voxel: vec3f, taken: f32) -> Accumulated {
     var stored = voxel.x;
     if WEIGHTED {
         stored /= max(voxel.y, 1e-6);
     }
     let entry = transfer_at(bricks.position_low + bricks.position_scale * stored);
-    var passed = 1.0 - voxel.y * (1.0 - exp(-entry.w * frame.step));
+    var color = entry.rgb;
+    var opacity = voxel.y * (1.0 - exp(-entry.w * frame.step));
+    if GHOSTS {
+        let ghost = voxel.z * (1.0 - exp(-frame.ghost.w * frame.step));
+        color = (opacity * color + ghost * frame.ghost.rgb) / max(opacity + ghost, 1e-20);
+        opacity += ghost;
+    }
+    var passed = 1.0 - opacity;
     if LONG_STEPS {
         passed = pow(passed, taken);
     }
-    return Accumulated(a.color + a.transmittance * (1.0 - passed) * entry.rgb, a.transmittance * passed);
+    return Accumulated(a.color + a.transmittance * (1.0 - passed) * color, a.transmittance * passed);
 }
 
 // How a ray goes on from sample n at `at` (0..1 in the box), up to sample `end`.

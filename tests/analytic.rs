@@ -47,8 +47,13 @@ fn picture(renderer: &mut Renderer, case: &Case, view: &View, by: Option<Strateg
     frame.unwrap().image
 }
 
+/// Those that keep to the cells, and the reference: a resampled grid blurs their sides.
 fn all() -> impl Iterator<Item = Option<StrategyKind>> {
-    StrategyKind::ALL.into_iter().map(Some).chain([None])
+    let exact = StrategyKind::ALL.into_iter();
+    exact
+        .filter(|s| *s != StrategyKind::Srg)
+        .map(Some)
+        .chain([None])
 }
 
 /// Convex solids: where `normal . p <= offset` for each pair, in world space.

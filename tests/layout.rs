@@ -165,7 +165,9 @@ fn every_shader_is_valid() {
             .unwrap_or_else(|e| panic!("{name}: {}", e.emit_to_string(&text)));
         wgpu::naga::valid::Validator::new(
             wgpu::naga::valid::ValidationFlags::all(),
-            wgpu::naga::valid::Capabilities::default(),
+            // Packing half floats is WGSL's own; all that adapters must have.
+            wgpu::naga::valid::Capabilities::default()
+                | wgpu::naga::valid::Capabilities::SHADER_FLOAT16_IN_FLOAT32,
         )
         .validate(&module)
         .unwrap_or_else(|e| panic!("{name}: {e:?}"));

@@ -6,17 +6,30 @@ mod common;
 #[path = "../src/cli/process.rs"]
 mod process;
 
-use std::sync::Arc;
+use std::cell::Cell;
 use std::time::Duration;
 
+use common::shape::Shape;
+use glam::DVec3;
+use half::f16;
+use rayon::prelude::*;
 use strataray::case::Case;
-use strataray::gpu::Gpu;
-use strataray::metrics::Comparison;
+use strataray::gpu::resample::{self, Resampler, Volume};
+use strataray::gpu::slabs::Slabs;
+use strataray::gpu::tiles::Pace;
+use strataray::gpu::{Gpu, GpuGrid};
+use strataray::load;
+use strataray::metrics::{Comparison, psnr_8bit};
+use strataray::model::{CellField, Grid, VertexField};
 use strataray::picture::{Image, Rgb8};
+use strataray::reference::{self, Locator};
 use strataray::renderer::{Frame, Renderer};
-use strataray::scene::{self, CameraSpec, FramingCamera, Interpolation, Scene, SrgSettings, View};
-use strataray::strategies::StrategyKind;
-use strataray::{load, reference};
+use strataray::scene::{
+    self, CameraSpec, ClipSpec, CutFace, FramingCamera, Inactive, Interpolation, Scene,
+    SrgSettings, View,
+};
+use strataray::strategies::srg::Srg;
+use strataray::strategies::{Preparation, RenderStrategy, StrategyKind};
 
 /// No switch is on.
 const PLAIN: SrgSettings = SrgSettings {
@@ -29,12 +42,18 @@ const PLAIN: SrgSettings = SrgSettings {
     roulette: 0.0,
 };
 
-fn scene(size: [u32; 2], azimuth: f64, elevation: f64, srg: SrgSettings) -> Scene {
+/// An opacity curve under which the lower half of the values is invisible.
+const UPPER_HALF: [[f64; 2]; 3] = [[0.0, 0.0], [0.5, 0.0], [1.0, 0.7]];
+
+/// Turns a switch on.
+type Change = fn(&mut SrgSettings);
+
+fn scene(size: [u32; 2], srg: SrgSettings) -> Scene {
     Scene {
         size,
         camera: CameraSpec::Framing(FramingCamera {
-            azimuth_degrees: azimuth,
-            elevation_degrees: elevation,
+            azimuth_degrees: 205.0,
+            elevation_degrees: 35.0,
             zoom: 1.2,
         }),
         strategy: StrategyKind::Srg.name().into(),
@@ -43,20 +62,622 @@ fn scene(size: [u32; 2], azimuth: f64, elevation: f64, srg: SrgSettings) -> Scen
     }
 }
 
-fn render(renderer: &mut Renderer, case: &Case, view: &View) -> Frame {
-    let frame = renderer.render(&case.grid, view, &|_| true).unwrap();
-    frame.unwrap()
-}
-
-fn rgb(image: &Image, view: &View) -> Rgb8 {
-    Rgb8 {
-        size: image.size,
-        pixels: image.over_background_8bit(view.background),
+fn with(view: &View, srg: SrgSettings) -> View {
+    View {
+        srg,
+        ..view.clone()
     }
 }
 
+fn render(renderer: &mut Renderer, case: &Case, view: &View) -> Frame {
+    let frame = renderer.render(&case.grid, view, &|_| true).unwrap();
+    let frame = frame.unwrap();
+    assert!(frame.image.pixels.iter().flatten().all(|v| v.is_finite()));
+    frame
+}
+
 fn compare(a: &Image, b: &Image, view: &View) -> Comparison {
-    Comparison::of(&rgb(a, view), &rgb(b, view)).unwrap()
+    let [a, b] = [a, b].map(|image| Rgb8 {
+        size: image.size,
+        pixels: image.over_background_8bit(view.background),
+    });
+    Comparison::of(&a, &b).unwrap()
+}
+
+fn psnr(a: &Image, b: &Image, view: &View) -> f64 {
+    let [a, b] = [a, b].map(|i| i.over_background_8bit(view.background));
+    psnr_8bit(a.as_flattened(), b.as_flattened())
+}
+
+/// Value times presence, and presence, of each voxel.
+fn volume_of(
+    gpu: &Gpu,
+    grid: &Grid,
+    field: &CellField,
+    interpolation: Interpolation,
+    factor: f64,
+) -> ([u32; 3], Vec<[f64; 2]>) {
+    let mut on_device = GpuGrid::new(gpu, grid).unwrap();
+    let drawn: Vec<bool> = field.values().iter().map(|v| !v.is_nan()).collect();
+    on_device
+        .show(gpu, grid, field, &drawn, interpolation)
+        .unwrap();
+    let volume = Volume::new(gpu, resample::Shape::of(grid.dims(), factor, false));
+    let mut slabs = Slabs {
+        gpu,
+        pace: &mut Pace::default(),
+        progress: &|_| true,
+    };
+    let range = range_of(field);
+    let mut resampler = Resampler::new(gpu).unwrap();
+    let done = resampler.fill(&mut slabs, &on_device, &volume, range, interpolation);
+    assert!(done.unwrap());
+    let halves =
+        |word: &u32| [*word as u16, (*word >> 16) as u16].map(|h| f16::from_bits(h).into());
+    let words = volume.read(gpu, 0).unwrap();
+    (volume.shape.size, words.iter().map(halves).collect())
+}
+
+fn range_of(field: &CellField) -> [f64; 2] {
+    let statistics = field.statistics().unwrap();
+    [statistics.min, statistics.max]
+}
+
+/// Point of grid space at a part (0..1) of the box of the active cells.
+fn in_box(grid: &Grid, part: DVec3) -> DVec3 {
+    let [low, high] = grid.bounds().unwrap();
+    low + part * (high - low)
+}
+
+/// Place of a voxel in the box; `shift` is added to the middle, in voxels.
+fn place([nx, ny, nz]: [u32; 3], n: usize, shift: f64) -> DVec3 {
+    let n = n as u32;
+    let voxel = glam::UVec3::new(n % nx, n / nx % ny, n / nx / ny).as_dvec3();
+    (voxel + 0.5 + shift) / glam::UVec3::new(nx, ny, nz).as_dvec3()
+}
+
+#[test]
+fn the_volume_holds_value_and_presence_as_the_reference_finds_them() {
+    let Some(gpu) = common::gpu() else { return };
+    for model in common::models() {
+        let case = load::open(&model).unwrap();
+        let grid = &case.grid;
+        let field = case.field("PORO", 0).unwrap();
+        let [low, high] = range_of(&field);
+        let locator = Locator::new(grid);
+        let vertices = VertexField::new(grid, &field);
+        for interpolation in [Interpolation::Cell, Interpolation::Vertex] {
+            let (size, voxels) = volume_of(&gpu, grid, &field, interpolation, 1.3);
+            let vertices = (interpolation == Interpolation::Vertex).then_some(&vertices);
+            let every = voxels.len().div_ceil(8000);
+            let expected = |part| {
+                let located = locator.locate(in_box(grid, part));
+                let value = located.and_then(|l| reference::value_at(grid, &l, &field, vertices));
+                value.map_or([0.0; 2], |v| [(v - low) / (high - low), 1.0])
+            };
+            let wrong = |shift| {
+                let wrong = |n: &usize| {
+                    let expected = expected(place(size, *n, shift));
+                    // Half floats have eleven bits.
+                    let [value, presence] = voxels[*n];
+                    presence != expected[1] || (value - expected[0]).abs() > 6e-4
+                };
+                let tested = (0..voxels.len()).into_par_iter().step_by(every);
+                tested.filter(wrong).count()
+            };
+            let present = voxels.iter().filter(|v| v[1] == 1.0).count();
+            let [at_middle, beside] = [wrong(0.0), wrong(0.25)];
+            println!(
+                "{} {interpolation:?}: of {} voxels {present} are present, {at_middle} differ, {beside} beside the middles",
+                case.about.name,
+                voxels.len()
+            );
+            // A middle on a face may fall to either side.
+            assert!(at_middle * every * 1000 <= present, "{at_middle}");
+            assert!(beside * every * 10 > present && present > 1000, "{beside}");
+        }
+    }
+}
+
+#[test]
+fn a_linear_field_is_linear_in_the_volume() {
+    let Some(gpu) = common::gpu() else { return };
+    // Equal parallelepipeds: then the mean of the cells around an inner vertex is the field there.
+    let corner = |i: usize, j: usize, k: usize| {
+        let [i, j, k] = [i as f64, j as f64, k as f64];
+        let depth = 2000.0 + 12.0 * i - 7.0 * j + 15.0 * k;
+        let lean = DVec3::new(0.3, -0.2, 0.0) * (depth - 2000.0);
+        DVec3::new(110.0 * i + 8.0 * j, 90.0 * j - 5.0 * i, depth) + lean
+    };
+    let center = |[i, j, k]: [usize; 3]| 0.5 * (corner(i, j, k) + corner(i + 1, j + 1, k + 1));
+    let linear = |p: DVec3| 3.0 + p.dot(DVec3::new(2e-3, -3e-3, 4e-3));
+    let errors = |square: f64| {
+        let case = Shape {
+            dims: [6, 5, 4],
+            pillar: &|i, j| [corner(i, j, 0), corner(i, j, 4)].map(|p| p.to_array()),
+            depth: &|[i, j, k], [di, dj, dk]| corner(i + di, j + dj, k + dk).z,
+            value: &|ijk| linear(center(ijk)) + square * center(ijk).x.powi(2),
+        }
+        .case();
+        let field = case.field("VALUE", 0).unwrap();
+        let [low, high] = range_of(&field);
+        let (size, voxels) = volume_of(&gpu, &case.grid, &field, Interpolation::Vertex, 5.0);
+        let locator = Locator::new(&case.grid);
+        let (mut worst, mut inside) = (0.0f64, 0);
+        for (n, voxel) in voxels.iter().enumerate() {
+            let point = in_box(&case.grid, place(size, n, 0.0));
+            let Some(located) = locator.locate(point) else {
+                continue;
+            };
+            let ijk = [located.ijk.i, located.ijk.j, located.ijk.k];
+            if (0..3).all(|a| (1..[6, 5, 4][a] - 1).contains(&ijk[a])) {
+                let expected = linear(point) + square * point.x.powi(2);
+                worst = worst.max((voxel[0] - (expected - low) / (high - low)).abs());
+                inside += 1;
+            }
+        }
+        assert!(inside > 500, "{inside}");
+        worst
+    };
+    let [exact, square] = [errors(0.0), errors(1e-5)];
+    println!(
+        "worst error of a stored value: {exact:.1e}, {square:.1e} where the field is not linear"
+    );
+    assert!(exact < 3e-4 && square > 1e-3);
+}
+
+/// The strategy by itself, with what it is prepared from.
+struct Bench<'a> {
+    gpu: &'a Gpu,
+    case: &'a Case,
+    grid: GpuGrid,
+    srg: Srg,
+}
+
+impl<'a> Bench<'a> {
+    fn new(gpu: &'a Gpu, case: &'a Case) -> Self {
+        Self {
+            gpu,
+            case,
+            grid: GpuGrid::new(gpu, &case.grid).unwrap(),
+            srg: Srg::new(gpu).unwrap(),
+        }
+    }
+
+    fn show(&mut self, view: &View) {
+        let (gpu, model) = (self.gpu, &self.case.grid);
+        self.grid
+            .show(gpu, model, &view.field, &view.drawn, view.interpolation)
+            .unwrap();
+    }
+
+    /// Whether it was not cancelled, how often the volume was filled, and how often progress was told.
+    fn prepare(&mut self, view: &View, go_on: bool) -> (bool, u64, u32) {
+        let (fills, calls) = (self.srg.fills(), Cell::new(0));
+        let progress = |_| {
+            calls.set(calls.get() + 1);
+            go_on
+        };
+        let what = Preparation {
+            gpu: self.gpu,
+            model: &self.case.grid,
+            grid: &self.grid,
+            view,
+            progress: &progress,
+        };
+        let done = self.srg.prepare(&what).unwrap();
+        (done, self.srg.fills() - fills, calls.get())
+    }
+}
+
+#[test]
+fn the_volume_is_filled_anew_when_it_must_and_only_then() {
+    let Some(gpu) = common::gpu() else { return };
+    let case = load::open(&common::sample()).unwrap();
+    let settings = SrgSettings {
+        factor: Some(2.0),
+        ..SrgSettings::default()
+    };
+    let base = scene([40, 30], settings);
+    let view = |change: &dyn Fn(&mut Scene)| {
+        let mut scene = base.clone();
+        change(&mut scene);
+        scene::resolve(&scene, &case).unwrap()
+    };
+    let first = view(&|_| ());
+    let mut bench = Bench::new(&gpu, &case);
+    bench.show(&first);
+    // Cancelled, filled, kept.
+    assert_eq!(bench.prepare(&first, false), (false, 0, 1));
+    let (done, fills, calls) = bench.prepare(&first, true);
+    assert!(done && fills == 1 && calls > 0, "{fills} {calls}");
+    assert_eq!(bench.prepare(&first, true), (true, 0, 0));
+    // Nothing of this is in the volume. The first curve that hides values asks for the bricks.
+    let hides = |scene: &mut Scene| scene.transfer.opacity = Some(UPPER_HALF.to_vec());
+    let (done, fills, calls) = bench.prepare(&view(&hides), true);
+    assert!(done && fills == 0 && calls > 0);
+    let turned = |scene: &mut Scene| {
+        scene.camera = CameraSpec::Framing(FramingCamera {
+            azimuth_degrees: 20.0,
+            elevation_degrees: 60.0,
+            zoom: 2.0,
+        });
+    };
+    let kept: [&dyn Fn(&mut Scene); 7] = [
+        &hides,
+        &turned,
+        &|scene| scene.range = Some([0.2, 0.3]),
+        &|scene| scene.transfer.opacity = Some(vec![[0.0, 0.5], [0.4, 0.0]]),
+        &|scene| scene.sampling_step = Some(20.0),
+        &|scene| scene.srg.weighted = false,
+        &|scene| scene.srg.even = 0.1,
+    ];
+    for change in kept {
+        assert_eq!(bench.prepare(&view(change), true), (true, 0, 0));
+    }
+    // All of this is.
+    let another: [&dyn Fn(&mut Scene); 6] = [
+        &|scene| scene.step = scene::StepSpec::Index(3),
+        &|scene| scene.property = Some("PORO".into()),
+        &|scene| scene.interpolation = Interpolation::Cell,
+        &|scene| scene.filter.k = Some([2, 5]),
+        &|scene| scene.srg.factor = Some(1.5),
+        &|scene| scene.srg.thin = 0.01,
+    ];
+    for change in another {
+        let view = view(change);
+        bench.show(&view);
+        let (done, fills, calls) = bench.prepare(&view, true);
+        assert!(done && fills == 1 && calls > 0);
+        assert_eq!(bench.prepare(&view, true).1, 0);
+        bench.show(&first);
+        assert_eq!(bench.prepare(&first, true).1, 1);
+    }
+    // What is left of a fill that was cancelled is not used.
+    bench.show(&first);
+    assert_eq!(bench.prepare(&first, false), (false, 0, 1));
+    assert_eq!(bench.prepare(&first, true).1, 1);
+}
+
+#[test]
+fn a_fill_is_split_into_short_submissions() {
+    let Some(gpu) = common::gpu() else { return };
+    let case = load::open(&common::sample()).unwrap();
+    let view = scene::resolve(&scene([40, 30], SrgSettings::default()), &case).unwrap();
+    let mut renderer = Renderer::new(gpu, &case.grid).unwrap();
+    let (last, longest, calls) = (
+        Cell::new(std::time::Instant::now()),
+        Cell::new(Duration::ZERO),
+        Cell::new(0),
+    );
+    let parts = Cell::new([0.0f64; 2]);
+    let frame = renderer.render(&case.grid, &view, &|part| {
+        let now = std::time::Instant::now();
+        if calls.get() > 3 {
+            longest.set(longest.get().max(now - last.get()));
+        }
+        last.set(now);
+        calls.set(calls.get() + 1);
+        let [least, most] = parts.get();
+        parts.set([least.min(part), most.max(part)]);
+        true
+    });
+    let bytes = frame.unwrap().unwrap().bytes.resampled;
+    println!(
+        "{bytes} bytes filled and one small frame made in {} parts, the longest of {:?}",
+        calls.get(),
+        longest.get()
+    );
+    assert!(calls.get() > 10 && parts.get()[1] <= 1.0);
+    // Stated: about 100 ms. Machines that run tests may be ten times as busy.
+    assert!(
+        longest.get() < Duration::from_secs(1),
+        "{:?}",
+        longest.get()
+    );
+}
+
+#[test]
+fn the_volume_fits_its_budget_or_has_its_factor() {
+    let Some(gpu) = common::gpu() else { return };
+    for model in common::models() {
+        let case = load::open(&model).unwrap();
+        let mut renderer = Renderer::new(gpu.clone(), &case.grid).unwrap();
+        let mut bytes = |settings| {
+            let view = scene::resolve(&scene([20, 15], settings), &case).unwrap();
+            render(&mut renderer, &case, &view).bytes.resampled
+        };
+        for megabytes in [1, 3, 10] {
+            let budget = u64::from(megabytes) << 20;
+            let all = SrgSettings {
+                budget_mb: Some(megabytes),
+                even: 0.01,
+                thin: 0.01,
+                ..SrgSettings::default()
+            };
+            let with_pyramids = bytes(all);
+            let alone = bytes(SrgSettings {
+                budget_mb: Some(megabytes),
+                ..PLAIN
+            });
+            println!(
+                "{} {megabytes} MB: {alone} bytes, {with_pyramids} with all pyramids",
+                case.about.name
+            );
+            assert!(alone < with_pyramids && with_pyramids <= budget);
+            assert!(with_pyramids * 10 > budget * 7, "most of it is used");
+        }
+        let cells = case.grid.dims().cells() as u64;
+        let twice = bytes(SrgSettings {
+            factor: Some(2.0),
+            ..PLAIN
+        });
+        // Beside the voxels there are the buffers that are only bound.
+        assert_eq!(twice, 4 * 8 * cells + 48);
+    }
+}
+
+/// PSNR in dB to the plain march, and steps as a part of its steps.
+fn against_plain(
+    renderer: &mut Renderer,
+    case: &Case,
+    view: &View,
+    settings: SrgSettings,
+) -> [f64; 2] {
+    let plain = render(renderer, case, &with(view, PLAIN));
+    let frame = render(renderer, case, &with(view, settings));
+    let steps = frame.stats.work as f64 / plain.stats.work as f64;
+    [psnr(&frame.image, &plain.image, view), steps]
+}
+
+#[test]
+fn each_switch_stays_within_its_error_of_the_plain_march() {
+    let Some(gpu) = common::gpu() else { return };
+    for model in common::models() {
+        let case = load::open(&model).unwrap();
+        let mut renderer = Renderer::new(gpu.clone(), &case.grid).unwrap();
+        let mut scene = scene([200, 150], PLAIN);
+        scene.transfer.opacity = Some(UPPER_HALF.to_vec());
+        let view = scene::resolve(&scene, &case).unwrap();
+        // A switch, the least PSNR in dB and the most steps that it may take, and its twin that is too
+        // coarse to stay within either error.
+        let rows: [(&str, Change, [f64; 2], Change); 4] = [
+            // The twin passes what is seen.
+            (
+                "skip_empty",
+                |s| s.skip_empty = true,
+                [80.0, 0.95],
+                |s| s.thin = 0.9,
+            ),
+            ("even", |s| s.even = 0.01, [60.0, 1.01], |s| s.even = 0.9),
+            ("thin", |s| s.thin = 0.02, [40.0, 0.95], |s| s.thin = 0.9),
+            (
+                "roulette",
+                |s| s.roulette = 0.02,
+                [40.0, 1.01],
+                |s| s.roulette = 0.9,
+            ),
+        ];
+        for (name, change, [least, most], twin) in rows {
+            let [[db, steps], [twin_db, twin_steps]] = [change, twin].map(|change| {
+                let mut settings = PLAIN;
+                change(&mut settings);
+                against_plain(&mut renderer, &case, &view, settings)
+            });
+            println!(
+                "{} {name}: {db:.1} dB with {steps:.2} of the steps; its twin {twin_db:.1} dB with {twin_steps:.2}",
+                case.about.name
+            );
+            assert!(db >= least && steps <= most, "{name}");
+            // Layers so thin that no brick lies inside the model have no even ones.
+            let has_none = name == "even" && twin_steps > 0.999 && model != common::sample();
+            assert!(twin_db < least || has_none, "{name}: the twin");
+        }
+    }
+}
+
+#[test]
+fn dividing_by_presence_comes_nearer_to_the_reference() {
+    let Some(gpu) = common::gpu() else { return };
+    for model in common::models() {
+        let case = load::open(&model).unwrap();
+        let mut renderer = Renderer::new(gpu.clone(), &case.grid).unwrap();
+        let view = scene::resolve(&scene([120, 90], PLAIN), &case).unwrap();
+        let truth = reference::render(&case.grid, &view, &|_| true).unwrap();
+        let weighted = SrgSettings {
+            weighted: true,
+            ..PLAIN
+        };
+        let [without, with] = [PLAIN, weighted].map(|settings| {
+            let view = with(&view, settings);
+            psnr(&render(&mut renderer, &case, &view).image, &truth, &view)
+        });
+        println!(
+            "{}: {without:.1} dB, {with:.1} dB divided by presence",
+            case.about.name
+        );
+        assert!(with > without + 1.0);
+    }
+}
+
+#[test]
+fn roulette_is_unbiased() {
+    let Some(gpu) = common::gpu() else { return };
+    let case = load::open(&common::sample()).unwrap();
+    let mut renderer = Renderer::new(gpu, &case.grid).unwrap();
+    let mut scene = scene([160, 120], PLAIN);
+    scene.early_termination = 0.0;
+    scene.transfer.opacity = Some(vec![[0.0, 0.3], [1.0, 0.9]]);
+    let view = scene::resolve(&scene, &case).unwrap();
+    let plain = render(&mut renderer, &case, &view).image;
+    // Mean difference of all channels of the pixels that differ, in standard errors.
+    let mut bias = |view: &View| {
+        let found = render(&mut renderer, &case, view).image;
+        let sums = |image: &Image| -> Vec<f64> {
+            let sum = |p: &[f32; 4]| p.iter().map(|v| f64::from(*v)).sum();
+            image.pixels.iter().map(sum).collect()
+        };
+        let pairs = sums(&found).into_iter().zip(sums(&plain));
+        let differences: Vec<f64> = pairs.map(|(a, b)| a - b).filter(|d| *d != 0.0).collect();
+        let n = differences.len() as f64;
+        let mean = differences.iter().sum::<f64>() / n;
+        let variance = differences.iter().map(|d| (d - mean).powi(2)).sum::<f64>() / n;
+        (n, mean / (variance / n).sqrt())
+    };
+    let by_chance = with(
+        &view,
+        SrgSettings {
+            roulette: 0.3,
+            ..PLAIN
+        },
+    );
+    let (pixels, errors) = bias(&by_chance);
+    // The twin ends all those rays.
+    let always = View {
+        early_termination: 0.3,
+        ..view.clone()
+    };
+    let (_, twin) = bias(&always);
+    println!(
+        "{pixels} pixels differ; bias {errors:.2} standard errors, {twin:.0} where every ray ends"
+    );
+    assert!(pixels > 2000.0 && errors.abs() < 4.0 && twin.abs() > 20.0);
+    // The same pixel, the same chance.
+    let [a, b] = [0, 1].map(|_| render(&mut renderer, &case, &by_chance).image);
+    assert!(psnr(&a, &b, &view) > 60.0);
+}
+
+#[test]
+fn quality_grows_with_the_factor() {
+    let Some(gpu) = common::gpu() else { return };
+    let case = load::open(&common::sample()).unwrap();
+    let mut renderer = Renderer::new(gpu, &case.grid).unwrap();
+    let view = scene::resolve(&scene([120, 90], SrgSettings::default()), &case).unwrap();
+    let truth = reference::render(&case.grid, &view, &|_| true).unwrap();
+    let mut before = 0.0;
+    for factor in [1.0, 2.0, 3.0, 4.0, 6.0, 8.0] {
+        let settings = SrgSettings {
+            factor: Some(factor),
+            ..SrgSettings::default()
+        };
+        let image = render(&mut renderer, &case, &with(&view, settings)).image;
+        let found = compare(&image, &truth, &view);
+        println!("factor {factor}: {found:?}");
+        assert!(found.psnr_db > before + 1.0, "{factor}");
+        before = found.psnr_db;
+    }
+    assert!(before > 45.0);
+}
+
+#[test]
+fn clip_planes_cut_and_show_exact_sections() {
+    let Some(gpu) = common::gpu() else { return };
+    let case = load::open(&common::sample()).unwrap();
+    let mut renderer = Renderer::new(gpu, &case.grid).unwrap();
+    let mut scene = scene([120, 90], SrgSettings::default());
+    scene.vertical_exaggeration = Some(8.0);
+    let whole = scene::resolve(&scene, &case).unwrap();
+    let middle = 0.5 * (whole.world_bounds[0] + whole.world_bounds[1]);
+    let uncut = render(&mut renderer, &case, &whole).image;
+    for face in [CutFace::Open, CutFace::Opaque] {
+        scene.clip = vec![ClipSpec {
+            point: middle.to_array(),
+            normal: [0.1, 1.0, 0.0],
+            face,
+        }];
+        let view = scene::resolve(&scene, &case).unwrap();
+        let truth = reference::render(&case.grid, &view, &|_| true).unwrap();
+        let image = render(&mut renderer, &case, &view).image;
+        let [cut, twin] = [&image, &uncut].map(|i| psnr(i, &truth, &view));
+        println!("{face:?}: {cut:.1} dB, {twin:.1} dB uncut");
+        assert!(cut > 40.0 && twin < 30.0);
+        // Where the section is opaque the volume plays no part.
+        let pairs = image.pixels.iter().zip(&truth.pixels);
+        let sections = pairs.filter(|(_, t)| t[3] == 1.0);
+        let (close, far): (Vec<_>, Vec<_>) =
+            sections.partition(|(a, t)| (0..4).all(|c| (a[c] - t[c]).abs() < 2e-3));
+        assert_eq!(
+            close.len() > 300,
+            face == CutFace::Opaque,
+            "{}",
+            close.len()
+        );
+        assert!(far.len() * 100 <= close.len(), "{}", far.len());
+    }
+}
+
+#[test]
+fn ghosts_are_resampled_beside_the_field() {
+    let Some(gpu) = common::gpu() else { return };
+    let case = load::open(&common::sample()).unwrap();
+    let mut renderer = Renderer::new(gpu, &case.grid).unwrap();
+    // Only ghosts are seen, and they are seen well.
+    let mut scene = scene([120, 90], SrgSettings::default());
+    scene.transfer.opacity = Some(vec![[0.0, 0.0], [1.0, 0.0]]);
+    scene.transfer.reference_length = Some(2.0);
+    let hidden = scene::resolve(&scene, &case).unwrap();
+    scene.show.inactive = Inactive::Ghost;
+    let view = scene::resolve(&scene, &case).unwrap();
+    let truth = reference::render(&case.grid, &view, &|_| true).unwrap();
+    let [found, twin] = [&view, &hidden].map(|v| {
+        let image = render(&mut renderer, &case, v).image;
+        psnr(&image, &truth, &view)
+    });
+    println!("{found:.1} dB, {twin:.1} dB without ghosts");
+    assert!(found > 40.0 && twin < 20.0);
+}
+
+#[test]
+fn undefined_values_and_hidden_cells_leave_holes() {
+    let Some(gpu) = common::gpu() else { return };
+    let case = Shape {
+        dims: [4, 4, 4],
+        value: &|[i, j, _]| if (i, j) == (1, 2) { 1e20 } else { 0.5 },
+        ..Shape::default()
+    }
+    .case();
+    let mut scene = scene([60, 45], SrgSettings::default());
+    scene.property = Some("VALUE".into());
+    scene.transfer.opacity = Some(vec![[0.0, 0.9], [1.0, 0.9]]);
+    let mut renderer = Renderer::new(gpu, &case.grid).unwrap();
+    let view = scene::resolve(&scene, &case).unwrap();
+    let truth = reference::render(&case.grid, &view, &|_| true).unwrap();
+    let db = psnr(&render(&mut renderer, &case, &view).image, &truth, &view);
+    scene.filter.i = Some([1, 2]);
+    let half = scene::resolve(&scene, &case).unwrap();
+    let twin = psnr(&render(&mut renderer, &case, &half).image, &truth, &view);
+    println!("{db:.1} dB, {twin:.1} dB where half of the cells are hidden");
+    assert!(db > 35.0 && twin < 25.0);
+}
+
+#[test]
+fn err_settings_out_of_range_are_named() {
+    let case = load::open(&common::sample()).unwrap();
+    let with = |text: &str| {
+        let settings = serde_json::from_str(text).map_err(|e| e.to_string())?;
+        let scene = Scene {
+            srg: settings,
+            ..Scene::default()
+        };
+        scene::resolve(&scene, &case).map_err(|e| e.to_string())
+    };
+    for (text, word) in [
+        (r#"{"budget_mb": 0}"#, "srg.budget_mb"),
+        (r#"{"factor": 0}"#, "srg.factor"),
+        (r#"{"factor": -1}"#, "srg.factor"),
+        (r#"{"factor": 1e300}"#, "srg.factor"),
+        (r#"{"factor": 30}"#, "budget_mb"),
+        (r#"{"factor": 5, "budget_mb": 1}"#, "budget_mb"),
+        (r#"{"even": 1}"#, "srg.even"),
+        (r#"{"thin": -0.1}"#, "srg.thin"),
+        (r#"{"roulette": 2}"#, "srg.roulette"),
+        (r#"{"budget": 5}"#, "budget"),
+    ] {
+        let error = with(text).err().unwrap_or_default();
+        assert!(error.contains(word), "{text}: {error}");
+    }
+    let fine = with(r#"{"budget_mb": 512, "factor": 2.5, "even": 0.02}"#).unwrap();
+    assert_eq!((fine.srg.factor, fine.srg.even), (Some(2.5), 0.02));
 }
 
 fn ms(d: Duration) -> f64 {
@@ -91,9 +712,7 @@ fn table_of_factors() {
             budget_mb: Some(2048),
             ..SrgSettings::default()
         };
-        let view = |factor| {
-            scene::resolve(&scene([240, 180], 205.0, 35.0, settings(factor)), &case).unwrap()
-        };
+        let view = |factor| scene::resolve(&scene([240, 180], settings(factor)), &case).unwrap();
         let truth = reference::render(&case.grid, &view(None), &|_| true).unwrap();
         for factor in [1.0, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0] {
             let view = view(Some(factor));
@@ -120,8 +739,6 @@ fn table_of_factors() {
         }
     }
 }
-
-type Change = fn(&mut SrgSettings);
 
 #[test]
 #[ignore = "prints the table of docs/performance.md"]
@@ -154,7 +771,7 @@ fn table_of_switches() {
             let view = |change: Change| {
                 let mut settings = PLAIN;
                 change(&mut settings);
-                let mut scene = scene([400, 300], 205.0, 35.0, settings);
+                let mut scene = scene([400, 300], settings);
                 scene.transfer.opacity = curve.clone();
                 scene::resolve(&scene, &case).unwrap()
             };

@@ -84,7 +84,7 @@ struct VolumeInfo {
 // The part of a volume or pyramid that one dispatch makes.
 struct Slab {
     first: vec3u,
-    // Words from one row of voxels to the next.
+    // Voxels from one row to the next.
     row: u32,
     size: vec3u,
     // Level of the pyramid.

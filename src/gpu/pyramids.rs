@@ -33,7 +33,8 @@ impl Limits {
 
 /// Shaders that make the pyramids.
 pub struct PyramidMaker {
-    average: Pipeline,
+    /// For voxels of one word and of two.
+    average: [Pipeline; 2],
     summarize: Pipeline,
     /// Where absent voxels count as zero, and where values are divided by presence.
     weigh: [Pipeline; 2],
@@ -144,12 +145,14 @@ impl PyramidMaker {
     /// When the driver refuses one.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         let entry = |name| Pipeline::variant(gpu, "pyramids", name, &[]);
-        let weigh =
-            |weighted| Pipeline::variant(gpu, "pyramids", "weigh", &[("WEIGHTED", weighted)]);
+        let both = |entry, constant| -> Result<_, GpuError> {
+            let variant = |value| Pipeline::variant(gpu, "pyramids", entry, &[(constant, value)]);
+            Ok([variant(0.0)?, variant(1.0)?])
+        };
         Ok(Self {
-            average: entry("average")?,
+            average: both("average", "WIDE")?,
             summarize: entry("summarize")?,
-            weigh: [weigh(0.0)?, weigh(1.0)?],
+            weigh: both("weigh", "WEIGHTED")?,
             reduce: entry("reduce")?,
             classify: entry("classify")?,
             sampler: gpu.device.create_sampler(&wgpu::SamplerDescriptor {
@@ -194,7 +197,8 @@ impl PyramidMaker {
         bricks: &Bricks,
     ) -> Result<bool, GpuError> {
         let gpu = slabs.gpu;
-        for level in 1..volume.levels {
+        let average = &self.average[usize::from(volume.shape.ghosts)];
+        for level in 1..volume.shape.levels {
             let finer = volume.level(level - 1);
             let done = volume.make_level(slabs, level, &|encoder, slab, voxels| {
                 let what = What {
@@ -203,7 +207,7 @@ impl PyramidMaker {
                     voxels,
                     size: slab.size,
                 };
-                self.record(&self.average, gpu, encoder, bricks, &what);
+                self.record(average, gpu, encoder, bricks, &what);
             })?;
             if !done {
                 return Ok(false);
@@ -317,7 +321,7 @@ impl Classifier<'_> {
             empty: limits.empty as f32,
             even: limits.even as f32,
             thin: limits.thin as f32,
-            averages: volume.levels - 1,
+            averages: volume.shape.levels - 1,
             ..bricks.shape
         }
     }

@@ -1,33 +1,95 @@
 //! A field resampled on the device: a volume of value and presence over the box of the active cells.
 
 use super::device::{Gpu, GpuError};
-use super::grid_upload::GpuGrid;
+use super::grid_upload::{Constants, GpuGrid};
 use super::layout::{self, RUN, Slab, VolumeInfo};
 use super::pipeline::Pipeline;
 use super::slabs::Slabs;
+use crate::model::Dims;
 use crate::scene::Interpolation;
 
-/// Two half floats a voxel, which every adapter can interpolate.
-const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg16Float;
-/// Bytes of a voxel.
-pub const VOXEL_BYTES: u64 = 4;
 /// Bytes of the buffer through which voxels come into the texture: no adapter needs to write it from a
 /// shader.
 const SLAB_BYTES: u64 = 16 << 20;
 /// Loop iterations that a voxel costs, about: bins, column, Newton's method.
 const VOXEL_WORK: u64 = 8;
 
+/// How large a volume is, and what it can hold.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Shape {
+    /// Voxels along x, y and depth.
+    pub size: [u32; 3],
+    /// Levels of the texture: the volume, and those of its average pyramid.
+    pub levels: u32,
+    /// Inactive cells are shown.
+    pub ghosts: bool,
+}
+
+/// Levels of the average pyramid above the volume, at most: the longest step is of 2^3 samples.
+const AVERAGES: u32 = 3;
+/// Voxels along an axis, at most; no adapter has more.
+const MOST_ALONG: f64 = 16384.0;
+
+impl Shape {
+    /// `factor` voxels for each cell of the grid along i, j and k, with all levels.
+    pub fn of(dims: Dims, factor: f64, ghosts: bool) -> Self {
+        let along = |n: usize| (factor * n as f64).round().clamp(1.0, MOST_ALONG) as u32;
+        let size = [dims.ni, dims.nj, dims.nk].map(along);
+        let coarsest = size.iter().max().map_or(0, |n| n.ilog2());
+        Self {
+            size,
+            levels: 1 + AVERAGES.min(coarsest),
+            ghosts,
+        }
+    }
+
+    /// Half floats, which every adapter can interpolate.
+    fn format(&self) -> wgpu::TextureFormat {
+        match self.ghosts {
+            true => wgpu::TextureFormat::Rgba16Float,
+            false => wgpu::TextureFormat::Rg16Float,
+        }
+    }
+
+    /// Bytes of a voxel.
+    fn voxel_bytes(&self) -> u32 {
+        if self.ghosts { 8 } else { 4 }
+    }
+
+    /// Bytes of all levels.
+    pub fn bytes(&self) -> u64 {
+        let voxels = |level| -> u64 { self.at(level).map(u64::from).iter().product() };
+        u64::from(self.voxel_bytes()) * (0..self.levels).map(voxels).sum::<u64>()
+    }
+
+    /// Voxels of a level along each axis.
+    fn at(&self, level: u32) -> [u32; 3] {
+        self.size.map(|n| (n >> level).max(1))
+    }
+
+    /// Voxels from one row to the next in a buffer: copies want whole multiples of 256 bytes.
+    fn row(&self, level: u32) -> u32 {
+        let step = wgpu::COPY_BYTES_PER_ROW_ALIGNMENT / self.voxel_bytes();
+        self.at(level)[0].next_multiple_of(step)
+    }
+
+    /// Bytes of a slab in a buffer.
+    fn slab_bytes(&self, slab: &Slab) -> u64 {
+        let voxels = [slab.row, slab.size[1], slab.size[2]].map(u64::from);
+        u64::from(self.voxel_bytes()) * voxels.iter().product::<u64>()
+    }
+}
+
 /// A volume over the box of the active cells.
 ///
 /// **Shape**: x fastest, then y, then depth; voxel n of N along an axis has its middle at (n + 1/2) / N of
 /// the box.
 pub struct Volume {
-    /// Voxels along x, y and depth.
-    pub size: [u32; 3],
-    /// Levels of the texture: the volume, and those of its average pyramid.
-    pub levels: u32,
-    /// Two half floats a voxel: the value, as a part of the range that it was filled with, times
-    /// presence; and presence, 1 in a drawn cell and 0 elsewhere.
+    /// Its size.
+    pub shape: Shape,
+    /// Half floats: the value, as a part of the range that it was filled with, times presence; presence,
+    /// 1 in a drawn cell and 0 elsewhere; and where inactive cells are shown, presence of such a cell,
+    /// and 0.
     pub texture: wgpu::Texture,
     /// What shaders know of it: a [`VolumeInfo`].
     pub info: wgpu::Buffer,
@@ -35,40 +97,24 @@ pub struct Volume {
 
 impl Volume {
     /// An empty volume.
-    pub fn new(gpu: &Gpu, size: [u32; 3], levels: u32) -> Self {
-        let [width, height, depth_or_array_layers] = size;
+    pub fn new(gpu: &Gpu, shape: Shape) -> Self {
         let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
             label: Some("resampled grid"),
-            size: wgpu::Extent3d {
-                width,
-                height,
-                depth_or_array_layers,
-            },
-            mip_level_count: levels,
+            size: extent(shape.size),
+            mip_level_count: shape.levels,
             sample_count: 1,
             dimension: wgpu::TextureDimension::D3,
-            format: FORMAT,
+            format: shape.format(),
             usage: wgpu::TextureUsages::TEXTURE_BINDING
                 | wgpu::TextureUsages::COPY_SRC
                 | wgpu::TextureUsages::COPY_DST,
             view_formats: &[],
         });
         Self {
-            size,
-            levels,
+            shape,
             texture,
             info: gpu.uniform("volume", &<VolumeInfo as bytemuck::Zeroable>::zeroed()),
         }
-    }
-
-    /// Bytes of a volume with so many levels.
-    pub fn bytes(size: [u32; 3], levels: u32) -> u64 {
-        (0..levels)
-            .map(|level| {
-                let voxels = level_size(size, level).map(u64::from);
-                VOXEL_BYTES * voxels.iter().product::<u64>()
-            })
-            .sum()
     }
 
     /// A view of one level.
@@ -80,27 +126,26 @@ impl Volume {
         })
     }
 
-    /// Copies a level back: a word a voxel, value times presence in its low half.
+    /// Copies a level back: a word a voxel, value times presence in its low half, or two with ghosts.
     ///
     /// # Errors
     /// When the device reports an error.
     pub fn read(&self, gpu: &Gpu, level: u32) -> Result<Vec<u32>, GpuError> {
-        let size = level_size(self.size, level);
-        let row = padded_row(size[0]);
         let slab = Slab {
             first: [0; 3],
-            row,
-            size,
+            row: self.shape.row(level),
+            size: self.shape.at(level),
             level,
         };
-        let staging = gpu.staging(slab_bytes(row, size[1], size[2]));
+        let staging = gpu.staging(self.shape.slab_bytes(&slab));
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         let (texture, buffer) = self.copy_places(&slab, &staging);
-        encoder.copy_texture_to_buffer(texture, buffer, extent(size));
+        encoder.copy_texture_to_buffer(texture, buffer, extent(slab.size));
         gpu.queue.submit([encoder.finish()]);
         let words: Vec<u32> = bytemuck::pod_collect_to_vec(&gpu.map(&staging)?);
-        let rows = words.chunks_exact(row as usize);
-        Ok(rows.flat_map(|r| &r[..size[0] as usize]).copied().collect())
+        let of = |voxels: u32| (voxels * self.shape.voxel_bytes() / 4) as usize;
+        let rows = words.chunks_exact(of(slab.row));
+        Ok(rows.flat_map(|r| &r[..of(slab.size[0])]).copied().collect())
     }
 
     /// Makes the voxels of a level by `dispatch`, which writes a slab of them to a buffer; false where it
@@ -114,21 +159,26 @@ impl Volume {
         level: u32,
         dispatch: &dyn Fn(&mut wgpu::CommandEncoder, &Slab, &wgpu::Buffer),
     ) -> Result<bool, GpuError> {
-        let size = level_size(self.size, level);
-        let row = padded_row(size[0]);
-        let row_bytes = slab_bytes(row, 1, RUN);
-        let most_rows = (SLAB_BYTES / row_bytes).clamp(1, u64::from(size[1])) as u32;
-        let voxels = slabs
-            .gpu
-            .scratch("voxels", row_bytes * u64::from(most_rows));
+        let size = self.shape.at(level);
+        let row = self.shape.row(level);
+        let bytes = |rows| {
+            let slab = Slab {
+                first: [0; 3],
+                row,
+                size: [size[0], rows, RUN],
+                level,
+            };
+            self.shape.slab_bytes(&slab)
+        };
+        let most_rows = (SLAB_BYTES / bytes(1)).clamp(1, u64::from(size[1])) as u32;
+        let voxels = slabs.gpu.scratch("voxels", bytes(most_rows));
         slabs.cover(size, [most_rows, RUN], VOXEL_WORK, &|encoder, slab| {
             let slab = Slab {
                 level,
                 row,
                 ..*slab
             };
-            let [_, rows, slices] = slab.size;
-            encoder.clear_buffer(&voxels, 0, Some(slab_bytes(row, rows, slices)));
+            encoder.clear_buffer(&voxels, 0, Some(self.shape.slab_bytes(&slab)));
             dispatch(encoder, &slab, &voxels);
             self.take(&slab, &voxels, encoder);
         })
@@ -156,25 +206,11 @@ impl Volume {
         };
         let layout = wgpu::TexelCopyBufferLayout {
             offset: 0,
-            bytes_per_row: Some(VOXEL_BYTES as u32 * slab.row),
+            bytes_per_row: Some(self.shape.voxel_bytes() * slab.row),
             rows_per_image: Some(slab.size[1]),
         };
         (texture, wgpu::TexelCopyBufferInfo { buffer, layout })
     }
-}
-
-/// Voxels of a level along each axis.
-pub fn level_size(size: [u32; 3], level: u32) -> [u32; 3] {
-    size.map(|n| (n >> level).max(1))
-}
-
-/// Words of a row in a slab: copies want whole multiples of 256 bytes.
-fn padded_row(voxels: u32) -> u32 {
-    voxels.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT / VOXEL_BYTES as u32)
-}
-
-fn slab_bytes(row: u32, rows: u32, slices: u32) -> u64 {
-    VOXEL_BYTES * u64::from(row) * u64::from(rows) * u64::from(slices)
 }
 
 fn extent([width, height, depth_or_array_layers]: [u32; 3]) -> wgpu::Extent3d {
@@ -188,6 +224,8 @@ fn extent([width, height, depth_or_array_layers]: [u32; 3]) -> wgpu::Extent3d {
 /// Fills volumes by point location.
 pub struct Resampler {
     fill: Pipeline,
+    /// Constants that it was compiled with.
+    constants: Constants,
 }
 
 impl Resampler {
@@ -196,8 +234,10 @@ impl Resampler {
     /// # Errors
     /// When the driver refuses it.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+        let constants = Constants::default();
         Ok(Self {
-            fill: Pipeline::variant(gpu, "resample", "fill", &[])?,
+            fill: Pipeline::variant(gpu, "resample", "fill", &constants.pairs())?,
+            constants,
         })
     }
 
@@ -209,7 +249,7 @@ impl Resampler {
     /// # Errors
     /// When the device reports an error.
     pub fn fill(
-        &self,
+        &mut self,
         slabs: &mut Slabs<'_>,
         grid: &GpuGrid,
         volume: &Volume,
@@ -217,7 +257,12 @@ impl Resampler {
         interpolation: Interpolation,
     ) -> Result<bool, GpuError> {
         let gpu = slabs.gpu;
-        let info = volume_info(grid, volume.size, range, interpolation);
+        let constants = grid.constants();
+        if constants != self.constants {
+            self.fill = Pipeline::variant(gpu, "resample", "fill", &constants.pairs())?;
+            self.constants = constants;
+        }
+        let info = volume_info(grid, volume.shape.size, range, interpolation);
         gpu.queue
             .write_buffer(&volume.info, 0, bytemuck::bytes_of(&info));
         let grid = grid.bind(gpu);

@@ -11,7 +11,8 @@ use super::{
     LibcSettings, Scene, SrgSettings, StepSpec,
 };
 use crate::case::{Case, CaseError};
-use crate::model::{CellField, Ijk, Spaces};
+use crate::gpu::resample::Shape;
+use crate::model::{CellField, Dims, Ijk, Spaces};
 use crate::strategies::StrategyKind;
 use crate::transfer::{TransferFunction, presets};
 
@@ -169,7 +170,7 @@ pub fn resolve(scene: &Scene, case: &Case) -> Result<View, SceneError> {
         ghosts,
         clip: clip(&scene.clip)?,
         libc: scene.libc,
-        srg: srg(&scene.srg, case.grid.dims().cells())?,
+        srg: srg(scene, case.grid.dims())?,
         show_box: scene.show.r#box,
         show_legend: scene.show.legend,
     })
@@ -218,7 +219,8 @@ fn refuse_later_work(scene: &Scene) -> Result<(), SceneError> {
     }
 }
 
-fn srg(settings: &SrgSettings, cells: usize) -> Result<SrgSettings, SceneError> {
+fn srg(scene: &Scene, dims: Dims) -> Result<SrgSettings, SceneError> {
+    let settings = scene.srg;
     let parts = [
         ("srg.even", settings.even),
         ("srg.thin", settings.thin),
@@ -232,18 +234,19 @@ fn srg(settings: &SrgSettings, cells: usize) -> Result<SrgSettings, SceneError> 
         return Err(wrong("srg.budget_mb", "must be at least 1"));
     }
     if let Some(factor) = settings.factor {
-        let bytes = 4.0 * positive("srg.factor", factor)?.powi(3) * cells as f64;
+        let ghosts = scene.show.inactive == Inactive::Ghost;
+        let shape = Shape::of(dims, positive("srg.factor", factor)?, ghosts);
         let budget = settings.budget_bytes(false);
-        if bytes > budget as f64 {
+        if shape.bytes() > budget {
             let problem = format!(
-                "{factor} needs {:.0} MB of the {} in srg.budget_mb; change one of them",
-                (bytes / f64::from(1 << 20)).ceil(),
+                "{factor} needs {} MB of the {} in srg.budget_mb; change one of them",
+                shape.bytes().div_ceil(1 << 20),
                 budget >> 20
             );
             return Err(wrong("srg.factor", problem));
         }
     }
-    Ok(*settings)
+    Ok(settings)
 }
 
 fn clip(planes: &[ClipSpec]) -> Result<Vec<ClipPlane>, SceneError> {

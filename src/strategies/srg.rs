@@ -8,17 +8,15 @@
 
 use super::{Preparation, RenderStrategy};
 use crate::gpu::faces::{BoundaryFaces, FaceMode, FaceTarget};
+use crate::gpu::grid_upload::Constants;
 use crate::gpu::pyramids::{Bricks, Classifier, Limits, PyramidMaker};
-use crate::gpu::resample::{Resampler, VOXEL_BYTES, Volume};
+use crate::gpu::resample::{Resampler, Shape, Volume};
 use crate::gpu::slabs::Slabs;
 use crate::gpu::tiles::Pace;
 use crate::gpu::{Gpu, GpuBytes, GpuError, Pipeline, Place, Round, Versions};
 use crate::model::Dims;
 use crate::scene::{SrgSettings, View};
 use crate::transfer::TransferFunction;
-
-/// Levels of the average pyramid above the volume, at most: the longest step is of 2^3 samples.
-const AVERAGES: u32 = 3;
 
 /// The strategy with its compiled shaders, the volume, and the list of faces.
 pub struct Srg {
@@ -38,7 +36,6 @@ pub struct Srg {
 
 /// The volume with its pyramids, and what they were made from.
 struct Filled {
-    shape: Shape,
     versions: Versions,
     /// Values that are stored as 0 and 1.
     range: [f64; 2],
@@ -48,62 +45,42 @@ struct Filled {
     classified: Option<(TransferFunction, Limits, bool)>,
 }
 
-/// How large a volume is, and how many levels it has.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-struct Shape {
-    size: [u32; 3],
-    levels: u32,
-}
-
-impl Shape {
-    /// The volume of the wanted factor, or the largest one within a budget of bytes; no axis has more
-    /// voxels than `limit`.
-    fn new(dims: Dims, settings: &SrgSettings, budget: u64, limit: u32) -> Self {
-        let size = |factor: f64| {
-            let along = |n: usize| (factor * n as f64).round().clamp(1.0, f64::from(limit)) as u32;
-            [dims.ni, dims.nj, dims.nk].map(along)
-        };
-        let size = settings.factor.map_or_else(
-            || {
-                let voxels = budget as f64 / VOXEL_BYTES as f64;
-                let mut factor = (voxels / dims.cells() as f64).cbrt();
-                while most_bytes(size(factor)) > budget && size(factor) != [1; 3] {
-                    factor *= 0.99;
-                }
-                size(factor)
-            },
-            size,
-        );
-        Self {
-            size,
-            levels: if settings.thin > 0.0 {
-                most_levels(size)
-            } else {
-                1
-            },
+/// The volume of the wanted factor, or the largest one within a budget of bytes; no axis has more voxels
+/// than `limit`.
+fn shape(dims: Dims, settings: &SrgSettings, ghosts: bool, budget: u64, limit: u32) -> Shape {
+    let most = |factor| {
+        let shape = Shape::of(dims, factor, ghosts);
+        Shape {
+            size: shape.size.map(|n| n.min(limit)),
+            ..shape
         }
+    };
+    let factor = settings.factor.unwrap_or_else(|| {
+        let mut factor = (budget as f64 / dims.cells() as f64).cbrt();
+        // Room for all pyramids is left, used or not, so that switches do not change the resolution.
+        let bytes = |most: Shape| most.bytes() + Bricks::most_bytes(most.size);
+        while bytes(most(factor)) > budget && most(factor).size != [1; 3] {
+            factor *= 0.99;
+        }
+        factor
+    });
+    let most = most(factor);
+    Shape {
+        levels: if settings.thin > 0.0 { most.levels } else { 1 },
+        ..most
     }
 }
 
-fn most_levels(size: [u32; 3]) -> u32 {
-    let coarsest = size.iter().max().map_or(0, |n| n.ilog2());
-    1 + AVERAGES.min(coarsest)
-}
-
-/// Bytes with all pyramids: room for them is left, used or not, so that switches do not change the
-/// resolution.
-fn most_bytes(size: [u32; 3]) -> u64 {
-    Volume::bytes(size, most_levels(size)) + Bricks::most_bytes(size)
-}
-
 /// The settings, without those that cannot gain: nothing is passed at once where the transfer function
-/// shows every value and next to no cell is hidden. There asking the bricks took a tenth to a quarter of
-/// the time of a frame in software.
+/// shows every value and next to no cell is hidden, or ghosts fill the gaps. There asking the bricks took
+/// a tenth to a quarter of the time of a frame in software.
 fn useful(view: &View) -> SrgSettings {
     let is_clear = view.transfer.opacity.iter().any(|point| point.1 == 0.0);
     let hidden = view.drawn.iter().filter(|drawn| !**drawn).count();
     SrgSettings {
-        skip_empty: view.srg.skip_empty && (is_clear || 10 * hidden > view.drawn.len()),
+        skip_empty: view.srg.skip_empty
+            && view.ghosts.is_none()
+            && (is_clear || 10 * hidden > view.drawn.len()),
         ..view.srg
     }
 }
@@ -127,28 +104,31 @@ struct Variant {
     by_brick: bool,
     long_steps: bool,
     roulette: f64,
+    grid: Constants,
 }
 
 impl Variant {
     fn compile(self, gpu: &Gpu, entry: &str) -> Result<Pipeline, GpuError> {
         let flag = |value| f64::from(u8::from(value));
-        let constants = [
+        let own = [
             ("SECTIONS", flag(self.sections)),
             ("WEIGHTED", flag(self.weighted)),
             ("BY_BRICK", flag(self.by_brick)),
             ("LONG_STEPS", flag(self.long_steps)),
             ("ROULETTE", self.roulette),
         ];
+        let constants: Vec<_> = own.into_iter().chain(self.grid.pairs()).collect();
         Pipeline::variant(gpu, "srg", entry, &constants)
     }
 
-    fn of(settings: &SrgSettings, sections: bool) -> Self {
+    fn of(settings: &SrgSettings, sections: bool, grid: Constants) -> Self {
         Self {
             sections,
             weighted: settings.weighted,
             by_brick: !limits(settings, 1.0).are_never(),
             long_steps: settings.even > 0.0 || settings.thin > 0.0,
             roulette: settings.roulette,
+            grid,
         }
     }
 }
@@ -159,7 +139,7 @@ impl Srg {
     /// # Errors
     /// When the driver refuses one.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        let variant = Variant::of(&SrgSettings::default(), false);
+        let variant = Variant::of(&SrgSettings::default(), false, Constants::default());
         Ok(Self {
             begin: variant.compile(gpu, "begin")?,
             march: variant.compile(gpu, "march")?,
@@ -187,16 +167,13 @@ impl Srg {
 
     /// Fills the volume anew where values, cells or shape have changed; false where it was cancelled.
     fn fill(&mut self, what: &Preparation<'_>, shape: Shape) -> Result<bool, GpuError> {
-        let filled = self.filled.take().filter(|f| f.shape == shape);
+        let filled = self.filled.take().filter(|f| f.volume.shape == shape);
         let versions = what.grid.versions;
         if filled.as_ref().is_some_and(|f| f.versions == versions) {
             self.filled = filled;
             return Ok(true);
         }
-        let volume = filled.map_or_else(
-            || Volume::new(what.gpu, shape.size, shape.levels),
-            |f| f.volume,
-        );
+        let volume = filled.map_or_else(|| Volume::new(what.gpu, shape), |f| f.volume);
         let statistics = what.view.field.statistics();
         let range = statistics.map_or([0.0, 1.0], |s| [s.min, s.max]);
         let bricks = Bricks::unused(what.gpu, shape.size);
@@ -208,7 +185,6 @@ impl Srg {
             && self.pyramids.average(&mut slabs, &volume, &bricks)?;
         self.fills += u64::from(done);
         self.filled = done.then_some(Filled {
-            shape,
             versions,
             range,
             volume,
@@ -230,7 +206,7 @@ impl Srg {
         };
         let limits = limits(settings, what.view.sampling_step);
         if !limits.are_never() && !filled.bricks.are_used() {
-            let bricks = Bricks::new(what.gpu, filled.shape.size);
+            let bricks = Bricks::new(what.gpu, filled.volume.shape.size);
             let mut slabs = slabs(what, &mut self.pace);
             if !self
                 .pyramids
@@ -279,7 +255,8 @@ impl RenderStrategy for Srg {
     fn prepare(&mut self, what: &Preparation<'_>) -> Result<bool, GpuError> {
         let view = what.view;
         let settings = useful(view);
-        let variant = Variant::of(&settings, view.clip.iter().any(|plane| plane.opaque));
+        let sections = view.clip.iter().any(|plane| plane.opaque);
+        let variant = Variant::of(&settings, sections, what.grid.constants());
         if variant != self.variant {
             self.begin = variant.compile(what.gpu, "begin")?;
             self.march = variant.compile(what.gpu, "march")?;
@@ -289,12 +266,13 @@ impl RenderStrategy for Srg {
             .update(what.gpu, what.model, what.grid, &view.drawn, 0.0)?;
         let budget = settings.budget_bytes(what.gpu.is_software());
         let limit = what.gpu.device.limits().max_texture_dimension_3d;
-        let shape = Shape::new(what.model.dims(), &settings, budget, limit);
+        let ghosts = view.ghosts.is_some();
+        let shape = shape(what.model.dims(), &settings, ghosts, budget, limit);
         Ok(self.fill(what, shape)? && self.classify(what, &settings)?)
     }
 
     fn bytes(&self) -> GpuBytes {
-        let volume = |f: &Filled| Volume::bytes(f.shape.size, f.shape.levels) + f.bricks.bytes();
+        let volume = |f: &Filled| f.volume.shape.bytes() + f.bricks.bytes();
         GpuBytes {
             geometry: self.faces.bytes(),
             resampled: self.filled.as_ref().map_or(0, volume),
