@@ -624,7 +624,7 @@ fn ghosts_are_resampled_beside_the_field() {
         psnr(&image, &truth, &view)
     });
     println!("{found:.1} dB, {twin:.1} dB without ghosts");
-    assert!(found > 40.0 && twin < 20.0);
+    assert!(found > 40.0 && twin < 25.0);
 }
 
 #[test]
@@ -680,57 +680,47 @@ fn err_settings_out_of_range_are_named() {
     assert_eq!((fine.srg.factor, fine.srg.even), (Some(2.5), 0.02));
 }
 
-fn ms(d: Duration) -> f64 {
-    1e3 * d.as_secs_f64()
-}
-
-/// Median wall time and mean CPU time of frames, after one to warm up.
-fn times(renderer: &mut Renderer, case: &Case, view: &View, frames: u32) -> [f64; 2] {
-    render(renderer, case, view);
-    let cpu = process::cpu_time();
-    let mut walls: Vec<f64> = (0..frames)
-        .map(|_| ms(render(renderer, case, view).stats.frame))
-        .collect();
-    let cpu = process::cpu_time().saturating_sub(cpu);
-    walls.sort_by(f64::total_cmp);
-    [walls[walls.len() / 2], ms(cpu) / f64::from(frames)]
+/// CPU time of a frame in milliseconds, the mean of several.
+fn cpu_time(renderer: &mut Renderer, case: &Case, view: &View) -> f64 {
+    const FRAMES: u32 = 9;
+    let start = process::cpu_time();
+    for _ in 0..FRAMES {
+        render(renderer, case, view);
+    }
+    1e3 * (process::cpu_time() - start).as_secs_f64() / f64::from(FRAMES)
 }
 
 #[test]
-#[ignore = "prints the table of docs/performance.md"]
+#[ignore = "prints a table of docs/performance.md"]
 fn table_of_factors() {
     let Some(gpu) = common::gpu() else { return };
     println!(
-        "| model | factor | voxels | MB | fill ms | frame ms | PSNR dB | SSIM | CIEDE2000 mean | 99 % |"
+        "| model | factor | MB | fill CPU ms | frame CPU ms | PSNR dB | SSIM | CIEDE2000 mean, 99 % |"
     );
-    println!("| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |");
+    println!("| --- | --- | --- | --- | --- | --- | --- | --- |");
     for model in common::models() {
         let case = load::open(&model).unwrap();
         let mut renderer = Renderer::new(gpu.clone(), &case.grid).unwrap();
-        let settings = |factor| SrgSettings {
-            factor,
-            budget_mb: Some(2048),
-            ..SrgSettings::default()
-        };
-        let view = |factor| scene::resolve(&scene([240, 180], settings(factor)), &case).unwrap();
-        let truth = reference::render(&case.grid, &view(None), &|_| true).unwrap();
-        for factor in [1.0, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0] {
-            let view = view(Some(factor));
-            if (factor * factor * factor) * case.grid.dims().cells() as f64 > 40e6 {
-                continue;
-            }
-            let cpu = process::cpu_time();
-            let first = render(&mut renderer, &case, &view);
-            let cpu = process::cpu_time().saturating_sub(cpu);
-            let [wall, each] = times(&mut renderer, &case, &view, 5);
-            let c = compare(&first.image, &truth, &view);
+        let view = scene::resolve(&scene([240, 180], SrgSettings::default()), &case).unwrap();
+        let truth = reference::render(&case.grid, &view, &|_| true).unwrap();
+        // The first fill compiles shaders.
+        render(&mut renderer, &case, &view);
+        for factor in [1.0, 2.0, 3.0, 4.0, 6.0, 8.0] {
+            let settings = SrgSettings {
+                factor: Some(factor),
+                ..SrgSettings::default()
+            };
+            let view = with(&view, settings);
+            let start = process::cpu_time();
+            let frame = render(&mut renderer, &case, &view);
+            let both = 1e3 * (process::cpu_time() - start).as_secs_f64();
+            let each = cpu_time(&mut renderer, &case, &view);
+            let c = compare(&frame.image, &truth, &view);
             println!(
-                "| {} | {factor} | {:.1} | {:.1} | {:.0} ({:.0}) | {wall:.0} ({each:.0}) | {:.1} | {:.4} | {:.2} | {:.2} |",
+                "| {} | {factor} | {:.1} | {:.0} | {each:.0} | {:.1} | {:.4} | {:.2}, {:.2} |",
                 case.about.name,
-                first.bytes.resampled as f64 / 4e6,
-                first.bytes.resampled as f64 / f64::from(1 << 20),
-                ms(first.prepare),
-                ms(cpu),
+                frame.bytes.resampled as f64 / f64::from(1 << 20),
+                both - each,
                 c.psnr_db,
                 c.ssim,
                 c.ciede2000_mean,
@@ -741,61 +731,54 @@ fn table_of_factors() {
 }
 
 #[test]
-#[ignore = "prints the table of docs/performance.md"]
+#[ignore = "prints a table of docs/performance.md"]
 fn table_of_switches() {
     let Some(gpu) = common::gpu() else { return };
-    let switches: [(&str, Change); 11] = [
-        ("none", |_| ()),
+    let switches: [(&str, Change); 9] = [
         ("weighted", |s| s.weighted = true),
         ("skip_empty", |s| s.skip_empty = true),
         ("even 0.01", |s| s.even = 0.01),
-        ("even 0.03", |s| s.even = 0.03),
         ("even 0.1", |s| s.even = 0.1),
         ("thin 0.005", |s| s.thin = 0.005),
         ("thin 0.02", |s| s.thin = 0.02),
         ("roulette 0.05", |s| s.roulette = 0.05),
         ("roulette 0.2", |s| s.roulette = 0.2),
-        ("defaults", |s| *s = SrgSettings::default()),
+        ("the defaults", |s| *s = SrgSettings::default()),
     ];
-    println!(
-        "| model | opacity | switch | frame ms | CPU ms | million steps | PSNR dB | SSIM | CIEDE2000 mean | 99 % | to the reference |"
-    );
-    println!("| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |");
+    let mut rows = vec![String::new(); 2 * switches.len()];
+    let mut header = String::from("| switch | opacity |");
     for model in common::models() {
         let case = load::open(&model).unwrap();
         let mut renderer = Renderer::new(gpu.clone(), &case.grid).unwrap();
-        for (opacity, curve) in [
-            ("default", None),
-            ("upper half", Some(vec![[0.0, 0.0], [0.5, 0.0], [1.0, 0.7]])),
-        ] {
-            let view = |change: Change| {
+        header += &format!(" {} |", case.about.name);
+        for (upper, curve) in [None, Some(UPPER_HALF.to_vec())].into_iter().enumerate() {
+            let mut scene = scene([400, 300], PLAIN);
+            scene.transfer.opacity = curve;
+            let view = scene::resolve(&scene, &case).unwrap();
+            let plain = render(&mut renderer, &case, &view);
+            let time = cpu_time(&mut renderer, &case, &view);
+            for (at, (name, change)) in switches.iter().enumerate() {
                 let mut settings = PLAIN;
                 change(&mut settings);
-                let mut scene = scene([400, 300], settings);
-                scene.transfer.opacity = curve.clone();
-                scene::resolve(&scene, &case).unwrap()
-            };
-            let truth = reference::render(&case.grid, &view(|_| ()), &|_| true).unwrap();
-            let plain = render(&mut renderer, &case, &view(|_| ())).image;
-            for (name, change) in switches {
-                let view = view(change);
+                let view = with(&view, settings);
                 let frame = render(&mut renderer, &case, &view);
-                let [wall, cpu] = times(&mut renderer, &case, &view, 7);
-                let c = compare(&frame.image, &plain, &view);
-                let t = compare(&frame.image, &truth, &view);
-                println!(
-                    "| {} | {opacity} | {name} | {wall:.0} | {cpu:.0} | {:.2} | {:.1} | {:.4} | {:.2} | {:.2} | {:.1} {:.4} {:.2} |",
-                    case.about.name,
-                    frame.stats.work as f64 / 1e6,
-                    c.psnr_db,
-                    c.ssim,
-                    c.ciede2000_mean,
-                    c.ciede2000_p99,
-                    t.psnr_db,
-                    t.ssim,
-                    t.ciede2000_mean
+                let gain = time / cpu_time(&mut renderer, &case, &view);
+                let steps = frame.stats.work as f64 / plain.stats.work as f64;
+                let c = compare(&frame.image, &plain.image, &view);
+                let row = &mut rows[2 * at + upper];
+                if row.is_empty() {
+                    *row = format!("| {name} | {} |", ["all", "upper half"][upper]);
+                }
+                *row += &format!(
+                    " {gain:.2} / {steps:.2}; {:.0} dB, {:.4}, {:.2} |",
+                    c.psnr_db, c.ssim, c.ciede2000_mean
                 );
             }
         }
     }
+    println!(
+        "{header}\n| --- | --- |{}",
+        " --- |".repeat(common::models().len())
+    );
+    println!("{}", rows.join("\n"));
 }
