@@ -116,6 +116,7 @@ mod tests {
             clip: Vec::new(),
             ghosts: None,
             libc: crate::scene::LibcSettings::default(),
+            srg: crate::scene::SrgSettings::default(),
             show_box: true,
             show_legend: true,
         }
