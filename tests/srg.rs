@@ -25,8 +25,8 @@ use strataray::picture::{Image, Rgb8};
 use strataray::reference::{self, Locator};
 use strataray::renderer::{Frame, Renderer};
 use strataray::scene::{
-    self, CameraSpec, ClipSpec, CutFace, FramingCamera, Inactive, Interpolation, Scene,
-    SrgSettings, View,
+    self, CameraSpec, ClipSpec, CutFace, ExplicitCamera, FramingCamera, Inactive, Interpolation,
+    Scene, SrgSettings, View,
 };
 use strataray::strategies::srg::Srg;
 use strataray::strategies::{Preparation, RenderStrategy, StrategyKind};
@@ -604,6 +604,35 @@ fn clip_planes_cut_and_show_exact_sections() {
         );
         assert!(far.len() * 100 <= close.len(), "{}", far.len());
     }
+}
+
+#[test]
+fn an_eye_inside_the_model_sees_what_is_ahead() {
+    let Some(gpu) = common::gpu() else { return };
+    let case = load::open(&common::sample()).unwrap();
+    let mut renderer = Renderer::new(gpu, &case.grid).unwrap();
+    let mut scene = scene([120, 90], SrgSettings::default());
+    let outside = scene::resolve(&scene, &case).unwrap();
+    let [low, high] = outside.world_bounds;
+    let middle = 0.5 * (low + high);
+    let mut look_at = |target: DVec3| {
+        scene.camera = CameraSpec::Explicit(ExplicitCamera {
+            eye: middle.to_array(),
+            target: target.to_array(),
+            up: [0.0, 0.0, 1.0],
+            fovy_degrees: 60.0,
+        });
+        scene::resolve(&scene, &case).unwrap()
+    };
+    let view = look_at(DVec3::new(high.x, high.y, middle.z));
+    let truth = reference::render(&case.grid, &view, &|_| true).unwrap();
+    let back = look_at(DVec3::new(low.x, low.y, middle.z));
+    let [ahead, twin] = [&view, &back].map(|v| {
+        let image = render(&mut renderer, &case, v).image;
+        psnr(&image, &truth, &view)
+    });
+    println!("{ahead:.1} dB, {twin:.1} dB looking back");
+    assert!(ahead > 38.0 && twin < 30.0);
 }
 
 #[test]

@@ -71,8 +71,9 @@ impl Pace {
     /// Learns from a submission: what it took and the loop iterations that it made.
     pub fn learn(&mut self, took: Duration, work: u64) {
         let change = BUDGET.as_secs_f64() / took.as_secs_f64().max(1e-6);
-        // A submission with little to do says nothing of a full one, unless it was slow.
-        if change < 1.0 || work as f64 > self.units / 3.0 {
+        // A submission with little to do says nothing of a full one, unless it was slow; one with nothing
+        // to do for the rays says nothing at all.
+        if work > 0 && (change < 1.0 || work as f64 > self.units / 3.0) {
             self.units = (self.units * change.clamp(CHANGE[0], CHANGE[1])).clamp(1e4, 1e12);
         }
     }

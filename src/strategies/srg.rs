@@ -300,7 +300,7 @@ impl RenderStrategy for Srg {
             ];
             round.gpu.bind(&pipeline.own, &resources)
         };
-        let mut place = Place::Only;
+        // Faces are drawn in a round of their own: how long that takes says nothing of the rays' pace.
         if round.starts {
             for (target, mode, place) in [
                 (&first, FaceMode::First, Place::First),
@@ -309,11 +309,11 @@ impl RenderStrategy for Srg {
                 self.faces.draw(round, encoder, target, mode, place);
             }
             let own = own(&self.begin);
-            round.compute(encoder, &self.begin, Some(&own), round.size, Place::Between);
-            place = Place::Last;
+            round.compute(encoder, &self.begin, Some(&own), round.size, Place::Last);
+        } else {
+            let own = own(&self.march);
+            round.compute(encoder, &self.march, Some(&own), round.size, Place::Only);
         }
-        let own = own(&self.march);
-        round.compute(encoder, &self.march, Some(&own), round.size, place);
         self.targets = [Some(first), Some(last)];
     }
 }
