@@ -1,6 +1,6 @@
 //! A perspective camera in world space.
 
-use glam::{DVec2, DVec3};
+use glam::{DQuat, DVec2, DVec3};
 
 /// A pinhole camera with an orthonormal frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -66,6 +66,22 @@ impl Camera {
             .fold(0.0, f64::max);
         camera.eye = center + towards_eye * (distance.max(1e-9) / zoom);
         Some(camera)
+    }
+
+    /// This camera carried around the vertical line through `middle`, as azimuths count: from north
+    /// to east.
+    #[must_use]
+    pub fn turned(self, middle: DVec3, radians: f64) -> Self {
+        let turn = DQuat::from_rotation_z(-radians);
+        let arm = self.eye - middle;
+        Self {
+            // Written such that no turn is exactly no change.
+            eye: self.eye + (turn * arm - arm),
+            forward: turn * self.forward,
+            right: turn * self.right,
+            up: turn * self.up,
+            ..self
+        }
     }
 
     /// Picture position (x right, y down, 0..1) of a world point in front of the camera.

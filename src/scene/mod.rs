@@ -1,12 +1,14 @@
 //! The scene file: what to look at and how, as JSON. Every field has a default.
 
 pub mod camera;
+pub mod film;
 pub mod resolve;
 mod settings;
 
 use serde::{Deserialize, Serialize};
 
 pub use camera::Camera;
+pub use film::{Sequence, Turn};
 pub use resolve::{ClipPlane, SceneError, View, resolve};
 pub use settings::{ClipSpec, CutFace, Integration, LibcSettings};
 
