@@ -5,7 +5,8 @@
 //! of synthetic ones), a [`scene`] says what to look at and is resolved against the case, [`transfer`]
 //! maps values to color and extinction, [`gpu`] holds the compact grid on the device, [`strategies`]
 //! cast the rays, a [`renderer`] remakes only what a view changes, [`mod@reference`] does the same on
-//! the CPU in plain f64, [`metrics`] compare the two, and [`picture`] turns the result into a file.
+//! the CPU in plain f64, [`metrics`] compare the two, and [`picture`] turns the result into a file or
+//! a film.
 
 pub mod case;
 pub mod gpu;

@@ -1,6 +1,8 @@
 //! The command line: one file per command.
 
+mod animate;
 mod bench;
+mod cancel;
 mod info;
 mod probe;
 mod process;
@@ -17,6 +19,7 @@ use clap::{Parser, Subcommand};
 const EXAMPLES: &str = "Examples:
   strataray info samples/scissor/SCISSOR.EGRID
   strataray render samples/scissor/SCISSOR.EGRID --property SWAT --step last -o swat.png
+  strataray animate samples/scissor/SCISSOR.EGRID --property SWAT --over steps -o flood.png
   strataray sample faulted -o models
   strataray bench R1 samples/scissor/SCISSOR.EGRID
   strataray probe samples/scissor/SCISSOR.EGRID --property PORO --points points.csv";
@@ -37,10 +40,10 @@ enum Command {
     Info(info::Arguments),
     /// One picture, no window needed.
     Render(render::Arguments),
+    /// A film over time steps or around the model, or its numbered pictures.
+    Animate(animate::Arguments),
     /// Finds the cell, its parameters and the value at given points.
     Probe(probe::Arguments),
-    /// Films over time steps or a camera turn (not in this version).
-    Animate(Later),
     /// Strategies side by side (not in this version).
     Compare(Later),
     /// Times loading and rendering on this machine.
@@ -73,8 +76,8 @@ pub fn run() -> ExitCode {
     let result = match arguments.command {
         Some(Command::Info(a)) => info::run(&a),
         Some(Command::Render(a)) => render::run(&a),
+        Some(Command::Animate(a)) => animate::run(&a),
         Some(Command::Probe(a)) => probe::run(&a),
-        Some(Command::Animate(a)) => later("animate", &a),
         Some(Command::Compare(a)) => later("compare", &a),
         Some(Command::Bench(a)) => bench::run(&a),
         Some(Command::Sample(a)) => sample::run(&a),
