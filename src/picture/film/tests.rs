@@ -123,6 +123,21 @@ fn ok_gif_of_many_colors_stays_near_and_what_stands_still_does_not_flicker() {
 }
 
 #[test]
+fn ok_gif_keeps_the_color_of_few_pixels_among_many_others() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.gif");
+    // 390 reds and one pixel of ink.
+    let mut picture: Vec<[u8; 3]> = (0..391u32)
+        .map(|n| [255 - (n / 40) as u8, (n % 40) as u8, 0])
+        .collect();
+    picture[200] = [28; 3];
+    write(&path, std::slice::from_ref(&picture));
+    let read = &read_gif(&path)[0].0;
+    assert_eq!(read[200], [28; 3]);
+    assert!(read != &picture, "255 colors were enough");
+}
+
+#[test]
 fn ok_folder_of_pictures_replaces_an_older_film_but_no_longer_one() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("film");
