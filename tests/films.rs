@@ -11,6 +11,7 @@ use std::sync::{Arc, Mutex};
 use glam::DVec3;
 use strataray::case::{Case, CaseError, Source};
 use strataray::load;
+use strataray::metrics::psnr_8bit;
 use strataray::picture::{Annotations, finished};
 use strataray::renderer::Renderer;
 use strataray::scene::film::steps;
@@ -47,6 +48,11 @@ fn refusal(arguments: &[&str]) -> String {
     String::from_utf8(output.stderr).unwrap()
 }
 
+/// Two renderings of the same; where a ray pauses may change a last digit.
+fn same(a: &[u8], b: &[u8]) -> bool {
+    psnr_8bit(a, b) > 60.0
+}
+
 #[test]
 fn all_steps_have_one_range_and_a_given_one_wins() {
     let case = load::open(&common::sample()).unwrap();
@@ -78,22 +84,23 @@ fn pictures_are_those_of_render_with_the_range_of_all_steps() {
     let mut renderer = Renderer::new(gpu, &case.grid).unwrap();
     let mut picture = |view: &View| {
         let frame = renderer.render(&case.grid, view, &|_| true).unwrap();
-        finished(&frame.unwrap().image, &case, view, false)
+        let picture = finished(&frame.unwrap().image, &case, view, false);
+        picture.into_flattened()
     };
     let scene = scene("PRESSURE");
     let sequence = over_steps(&scene, &case, &[5, 20]);
     let film: Vec<_> = (0..2)
         .map(|n| picture(&sequence.view(n, &case).unwrap()))
         .collect();
-    assert!(film[0] != film[1]);
+    assert!(!same(&film[0], &film[1]));
     for (n, step) in [(0, 5), (1, 20)] {
         let mut still = scene.clone();
         still.step = StepSpec::Index(step);
         let own_range = picture(&resolve(&still, &case).unwrap());
         still.range = Some(sequence.range());
         let same_range = picture(&resolve(&still, &case).unwrap());
-        assert!(same_range == film[n], "step {step}");
-        assert!(own_range != film[n], "step {step}");
+        assert!(same(&same_range, &film[n]), "step {step}");
+        assert!(!same(&own_range, &film[n]), "step {step}");
     }
 }
 
@@ -274,12 +281,12 @@ fn the_command_writes_films_and_folders_of_the_same_pictures() {
     }
     let done = strataray(&["render", "--scene", &scene, "--step", "10", "-o", &still]);
     assert!(done.status.success(), "{done:?}");
-    let pixels = |path: &str| image::open(path).unwrap().into_rgb8();
+    let pixels = |path: &str| image::open(path).unwrap().into_rgb8().into_raw();
     let number = |n: u32| pixels(&format!("{frames}frame_000{n}.png"));
     // The first picture of an animated PNG is what other programs show of it.
-    assert!(pixels(&film) == pixels(&still));
-    assert!(number(0) == pixels(&still));
-    assert!(number(1) != number(0) && number(2) != number(1));
+    assert!(same(&pixels(&film), &pixels(&still)));
+    assert!(same(&number(0), &pixels(&still)));
+    assert!(!same(&number(1), &number(0)) && !same(&number(2), &number(1)));
     assert_eq!(std::fs::read_dir(&frames).unwrap().count(), 3);
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 4);
 }
