@@ -6,7 +6,7 @@
 //! maps values to color and extinction, [`gpu`] holds the compact grid on the device, [`strategies`]
 //! cast the rays, a [`renderer`] remakes only what a view changes, [`mod@reference`] does the same on
 //! the CPU in plain f64, [`metrics`] and [`mod@compare`] say how far pictures are apart, and
-//! [`picture`] turns the result into a file.
+//! [`picture`] turns the result into a file or a film.
 
 pub mod case;
 pub mod compare;

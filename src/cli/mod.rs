@@ -1,6 +1,8 @@
 //! The command line: one file per command.
 
+mod animate;
 mod bench;
+mod cancel;
 mod compare;
 mod info;
 mod probe;
@@ -18,6 +20,7 @@ use clap::{Parser, Subcommand};
 const EXAMPLES: &str = "Examples:
   strataray info samples/scissor/SCISSOR.EGRID
   strataray render samples/scissor/SCISSOR.EGRID --property SWAT --step last -o swat.png
+  strataray animate samples/scissor/SCISSOR.EGRID --property SWAT --over steps -o flood.png
   strataray compare samples/scissor/SCISSOR.EGRID --views 6 -o compared
   strataray sample faulted -o models
   strataray bench R1 samples/scissor/SCISSOR.EGRID
@@ -39,23 +42,16 @@ enum Command {
     Info(info::Arguments),
     /// One picture, no window needed.
     Render(render::Arguments),
+    /// A film over time steps or around the model, or its numbered pictures.
+    Animate(animate::Arguments),
     /// Finds the cell, its parameters and the value at given points.
     Probe(probe::Arguments),
-    /// Films over time steps or a camera turn (not in this version).
-    Animate(Later),
     /// Strategies side by side: pictures, difference maps, figures.
     Compare(compare::Arguments),
     /// Times loading and rendering on this machine.
     Bench(bench::Arguments),
     /// Writes a synthetic faulted model with time steps.
     Sample(sample::Arguments),
-}
-
-/// Arguments of a command that a later version brings.
-#[derive(clap::Args)]
-struct Later {
-    #[arg(trailing_var_arg = true, allow_hyphen_values = true, hide = true)]
-    ignored: Vec<String>,
 }
 
 /// How much to say on standard error.
@@ -75,8 +71,8 @@ pub fn run() -> ExitCode {
     let result = match arguments.command {
         Some(Command::Info(a)) => info::run(&a),
         Some(Command::Render(a)) => render::run(&a),
+        Some(Command::Animate(a)) => animate::run(&a),
         Some(Command::Probe(a)) => probe::run(&a),
-        Some(Command::Animate(a)) => later("animate", &a),
         Some(Command::Compare(a)) => compare::run(&a),
         Some(Command::Bench(a)) => bench::run(&a),
         Some(Command::Sample(a)) => sample::run(&a),
@@ -95,9 +91,4 @@ pub fn run() -> ExitCode {
             ExitCode::FAILURE
         }
     }
-}
-
-fn later(command: &str, arguments: &Later) -> anyhow::Result<()> {
-    let _ = &arguments.ignored;
-    anyhow::bail!("`{command}` is not part of this version")
 }

@@ -1,8 +1,9 @@
-//! A progress bar on a terminal for what takes over a second.
+//! A progress bar on a terminal for what takes over a second, and Ctrl-C to cancel it.
 
+use std::borrow::Cow;
 use std::time::{Duration, Instant};
 
-use super::Verbosity;
+use super::{Verbosity, cancel};
 
 /// Says what is going on, on standard error.
 pub struct Reporter {
@@ -29,14 +30,15 @@ impl Reporter {
         }
     }
 
-    /// Runs `work` with a callback that draws a bar once a second has passed.
+    /// Runs `work` with a callback that is told the fraction done, draws a bar once a second has
+    /// passed, and returns false when Ctrl-C was pressed: `work` should end early then.
     pub fn bar<T>(
         &self,
-        what: &'static str,
+        what: impl Into<Cow<'static, str>>,
         work: impl FnOnce(&(dyn Fn(f64) -> bool + Sync)) -> T,
     ) -> T {
-        if self.verbosity.quiet {
-            return work(&|_| true);
+        if let Err(error) = cancel::listen() {
+            self.note(&format!("Ctrl-C leaves unfinished files behind: {error}"));
         }
         let bar = indicatif::ProgressBar::hidden();
         bar.set_length(1000);
@@ -46,13 +48,15 @@ impl Reporter {
         }
         bar.set_message(what);
         let start = Instant::now();
-        let result = work(&|fraction| {
-            if bar.is_hidden() && start.elapsed() > Duration::from_secs(1) {
+        let progress = |fraction: f64| {
+            let late = start.elapsed() > Duration::from_secs(1);
+            if late && bar.is_hidden() && !self.verbosity.quiet {
                 bar.set_draw_target(indicatif::ProgressDrawTarget::stderr());
             }
             bar.set_position((1000.0 * fraction) as u64);
-            true
-        });
+            !cancel::asked()
+        };
+        let result = cancel::cancellable(|| work(&progress));
         bar.finish_and_clear();
         result
     }

@@ -96,6 +96,11 @@ impl SceneOptions {
         Ok(scene)
     }
 
+    /// True where an option picks one time step.
+    pub fn picks_step(&self) -> bool {
+        self.step.is_some()
+    }
+
     /// Limits the threads of the CPU work where asked to.
     pub fn set_threads(&self) -> anyhow::Result<()> {
         if let Some(threads) = self.threads {

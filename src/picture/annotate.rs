@@ -9,8 +9,10 @@ use crate::scene::View;
 /// What to write and draw.
 #[derive(Debug, Clone, Default)]
 pub struct Annotations {
-    /// Line at the top.
+    /// Line at the top; its end is left out where there is no room.
     pub title: String,
+    /// Step and date behind the title, which are never left out; may be empty.
+    pub when: String,
     /// Name over the legend.
     pub property: String,
     /// Unit behind the name; may be empty.
@@ -24,14 +26,13 @@ pub struct Annotations {
 impl Annotations {
     /// What belongs to a view of a case: its name, the property and, where that changes, the step.
     pub fn of(case: &Case, view: &View) -> Self {
-        let mut title = format!("{}   {}", case.about.name, view.property);
-        if case.is_dynamic(&view.property)
-            && let Some(step) = case.steps.get(view.step)
-        {
-            title += &format!("   step {}   {}", view.step, step.date);
-        }
+        let step = case.steps.get(view.step);
+        let shown = step.filter(|_| case.is_dynamic(&view.property));
         Self {
-            title,
+            title: format!("{}   {}", case.about.name, view.property),
+            when: shown.map_or_else(String::new, |step| {
+                format!("   step {}   {}", view.step, step.date)
+            }),
             property: view.property.clone(),
             unit: case.unit(&view.property).to_owned(),
             show_legend: view.show_legend,
@@ -66,7 +67,7 @@ pub fn annotate(rgb: &mut [[u8; 3]], image: &Image, view: &View, annotations: &A
         axes::draw_axes(&mut pen, view);
     }
     if annotations.show_legend {
-        pen.title(&annotations.title);
+        pen.title_until(&annotations.title, &annotations.when);
         let heading = [&annotations.property, &annotations.unit];
         legend::draw(&mut pen, &view.transfer, heading.map(String::as_str));
     }
@@ -125,6 +126,7 @@ mod tests {
     fn notes(title: &str, show_legend: bool, show_box: bool) -> Annotations {
         Annotations {
             title: title.into(),
+            when: String::new(),
             property: "SWAT".into(),
             unit: "m3".into(),
             show_legend,
@@ -210,6 +212,23 @@ mod tests {
         assert_ne!(picture(1.0, "REEK"), picture(1.0, "NORNE"));
         assert!(picture(1.0, "REEK").iter().any(|p| p[0] < 80));
         assert!(picture(0.1, "REEK").iter().any(|p| p[0] > 190));
+    }
+
+    #[test]
+    fn step_and_date_stay_behind_a_long_title() {
+        let picture = |title: &str, when: &str| {
+            let notes = Annotations {
+                when: when.into(),
+                ..notes(title, true, false)
+            };
+            let [_, after] = drawn(&view([200, 150], 1.0), &notes, 0.0);
+            after[..200 * 25].to_vec()
+        };
+        for title in ["REEK", &"REEK ".repeat(100)] {
+            let first = picture(title, "   step 1   2001-01-01");
+            assert_eq!(first, picture(title, "   step 1   2001-01-01"));
+            assert_ne!(first, picture(title, "   step 1   2001-01-02"));
+        }
     }
 
     #[test]

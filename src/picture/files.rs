@@ -1,27 +1,55 @@
 //! PNG and EXR files, written whole or not at all.
 
-use std::io;
 use std::path::{Path, PathBuf};
 
 use image::error::{ParameterError, ParameterErrorKind};
 
 use super::Image;
+use super::draft::Draft;
 
-/// Why a picture could not be written.
+/// Why a picture or film could not be written.
 #[derive(Debug, thiserror::Error)]
 pub enum PictureError {
     /// The extension is neither .png nor .exr.
     #[error("{0}: pictures are written as .png or .exr")]
     Format(PathBuf),
+    /// The extension is none of a film.
+    #[error(
+        "{0}: films are written as .png (animated), .gif or .mp4, or as numbered pictures into a folder (DIR/)"
+    )]
+    FilmFormat(PathBuf),
+    /// This build writes no MP4.
+    #[error(
+        "{0}: this build writes no MP4; build it with `cargo build --release --features mp4` (needs a C++ compiler; H.264 is covered by patents), or name a .png"
+    )]
+    NoMp4(PathBuf),
+    /// A folder holds more pictures than the film will have.
+    #[error(
+        "{0} is left from a longer film; remove it and those behind it, or name another folder"
+    )]
+    Longer(PathBuf),
     /// The file could not be written.
     #[error("cannot write {path}: {cause}")]
     Write {
         /// The file.
         path: PathBuf,
         /// Why; part of the sentence, so no source that would be shown a second time.
-        cause: image::ImageError,
+        cause: Cause,
     },
 }
+
+impl PictureError {
+    /// For a file and what went wrong with it.
+    pub(super) fn write(path: &Path, cause: Cause) -> Self {
+        Self::Write {
+            path: path.to_owned(),
+            cause,
+        }
+    }
+}
+
+/// What an encoder or the system said.
+pub(super) type Cause = Box<dyn std::error::Error + Send + Sync>;
 
 /// Kinds of picture files.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -55,17 +83,20 @@ impl Format {
 /// # Errors
 /// When the file cannot be written.
 pub fn write_png(path: &Path, size: [u32; 2], rgb: &[[u8; 3]]) -> Result<(), PictureError> {
-    whole(path, |temporary| {
-        matching(size, rgb.len())?;
-        image::save_buffer_with_format(
-            temporary,
-            rgb.as_flattened(),
-            size[0],
-            size[1],
-            image::ColorType::Rgb8,
-            image::ImageFormat::Png,
-        )
-    })
+    whole(path, |temporary| save_png(temporary, size, rgb))
+}
+
+/// Writes 8-bit sRGB pixels right where they belong.
+pub(super) fn save_png(path: &Path, size: [u32; 2], rgb: &[[u8; 3]]) -> image::ImageResult<()> {
+    matching(size, rgb.len())?;
+    image::save_buffer_with_format(
+        path,
+        rgb.as_flattened(),
+        size[0],
+        size[1],
+        image::ColorType::Rgb8,
+        image::ImageFormat::Png,
+    )
 }
 
 /// Writes linear, premultiplied RGBA.
@@ -88,7 +119,7 @@ pub fn write_exr(path: &Path, image: &Image) -> Result<(), PictureError> {
 }
 
 /// The encoders panic over a wrong number of pixels.
-fn matching([width, height]: [u32; 2], pixels: usize) -> image::ImageResult<()> {
+pub(super) fn matching([width, height]: [u32; 2], pixels: usize) -> image::ImageResult<()> {
     if u64::from(width) * u64::from(height) == pixels as u64 {
         return Ok(());
     }
@@ -103,19 +134,11 @@ fn whole(
     path: &Path,
     write: impl FnOnce(&Path) -> image::ImageResult<()>,
 ) -> Result<(), PictureError> {
-    let mut name = path.file_name().unwrap_or_default().to_owned();
-    name.push(format!(".{}.part", std::process::id()));
-    let temporary = path.with_file_name(name);
-    let done =
-        write(&temporary).and_then(|()| std::fs::rename(&temporary, path).map_err(Into::into));
-    done.map_err(|cause| {
-        // The error that matters is the first; a leftover is only untidy.
-        drop::<io::Result<()>>(std::fs::remove_file(&temporary));
-        PictureError::Write {
-            path: path.to_owned(),
-            cause,
-        }
-    })
+    let draft = Draft::of(path);
+    let written = write(draft.path()).map_err(Cause::from);
+    written
+        .and_then(|()| Ok(draft.keep()?))
+        .map_err(|cause| PictureError::write(path, cause))
 }
 
 #[cfg(test)]

@@ -1,11 +1,13 @@
-//! From linear, premultiplied pixels to files with legend, title and axes; difference maps, plots and
-//! contact sheets.
+//! From linear, premultiplied pixels to files and films with legend, title and axes; difference maps,
+//! plots and contact sheets.
 
 mod annotate;
 mod axes;
 mod canvas;
 mod difference;
+mod draft;
 mod files;
+pub mod film;
 mod legend;
 mod pen;
 mod plot;

@@ -71,13 +71,20 @@ impl<'a> Pen<'a> {
 
     /// The line at the top of a picture, above 2.2 units.
     pub fn title(&mut self, title: &str) {
+        self.title_until(title, "");
+    }
+
+    /// The same, of two parts: only the first one becomes shorter where there is no room.
+    pub fn title_until(&mut self, title: &str, end: &str) {
         let margin = self.unit;
         let room = f64::from(self.canvas.size[0]) - 2.0 * margin;
         let wanted = 1.25 * self.unit;
-        let fit = room / self.canvas.text_width(title, wanted).max(1.0);
+        let width = |text: &str, height: f64| self.canvas.text_width(text, height);
+        let fit = room / (width(title, wanted) + width(end, wanted)).max(1.0);
         // Long titles become smaller first, then shorter.
         let height = wanted * fit.clamp(0.7, 1.0);
-        let title = self.canvas.cut(title, height, room);
+        let left = room - width(end, height);
+        let title = self.canvas.cut(title, height, left) + end;
         let end = margin + self.canvas.text_width(&title, height);
         let top = 0.7 * margin;
         self.plate(

@@ -1,6 +1,7 @@
 //! The scene file: what to look at and how, as JSON. Every field has a default.
 
 pub mod camera;
+pub mod film;
 pub mod ghosts;
 mod half_turns;
 pub mod resolve;
@@ -9,6 +10,7 @@ mod settings;
 use serde::{Deserialize, Serialize};
 
 pub use camera::Camera;
+pub use film::{Sequence, Turn};
 pub use half_turns::{NamedView, TurnAxis, half_turns};
 pub use resolve::{ClipPlane, SceneError, View, resolve};
 pub use settings::{ClipSpec, CutFace, Integration, LibcSettings, SrgSettings};

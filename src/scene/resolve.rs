@@ -33,6 +33,17 @@ pub enum SceneError {
     /// No active cell has a thickness.
     #[error("the case has no active cell to show")]
     Empty,
+    /// The property is the same at all steps.
+    #[error(
+        "{0} is static, so there is no film over its steps; name a property that changes with time, or turn the camera"
+    )]
+    Static(String),
+    /// The steps of a film are not what they should be.
+    #[error("steps: {0}")]
+    Steps(String),
+    /// A turn of the camera is not what it should be.
+    #[error("a turn needs at least one view and a finite number of degrees")]
+    Turn,
 }
 
 fn wrong(field: &'static str, problem: impl Into<String>) -> SceneError {
@@ -153,7 +164,7 @@ pub fn resolve(scene: &Scene, case: &Case) -> Result<View, SceneError> {
         size,
         background: presets::parse_color(&scene.background)
             .ok_or_else(|| wrong("background", "must be a color like #ffffff"))?,
-        camera: camera(scene, &box_corners)?,
+        camera: camera(&scene.camera, size, &box_corners)?,
         spaces,
         vertical_exaggeration: exaggeration,
         world_bounds,
@@ -327,7 +338,8 @@ fn mean_world_edges(case: &Case, exaggeration: f64) -> DVec3 {
     (sum.truncate() / sum.w.max(1.0)).max(DVec3::splat(1e-6))
 }
 
-fn default_property(case: &Case) -> String {
+/// The property shown where a scene names none.
+pub(super) fn default_property(case: &Case) -> String {
     let has = |name: &&str| case.properties.iter().any(|p| p.name == **name);
     ["SOIL", "SWAT", "PRESSURE", "PORO"]
         .iter()
@@ -397,9 +409,14 @@ fn drawn(
     Ok(drawn)
 }
 
-fn camera(scene: &Scene, corners: &[DVec3; 8]) -> Result<Camera, SceneError> {
-    let aspect = f64::from(scene.size[0]) / f64::from(scene.size[1]);
-    let camera = match &scene.camera {
+/// The camera that a scene asks for, given the corners of the model's box.
+pub(super) fn camera(
+    spec: &CameraSpec,
+    size: [u32; 2],
+    corners: &[DVec3; 8],
+) -> Result<Camera, SceneError> {
+    let aspect = f64::from(size[0]) / f64::from(size[1]);
+    let camera = match spec {
         CameraSpec::Explicit(c) => {
             if !(c.fovy_degrees > 0.0 && c.fovy_degrees < 180.0) {
                 return Err(wrong("camera.fovy_degrees", "must be between 0 and 180"));

@@ -1,0 +1,235 @@
+//! The views that make a film: over time steps, or once around the model.
+
+use glam::{DQuat, DVec3};
+
+use super::resolve::{camera, default_property};
+use super::{Camera, CameraSpec, FramingCamera, Scene, SceneError, StepSpec, View, resolve};
+use crate::case::{Case, CaseError};
+
+/// A way around the model.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Turn {
+    /// How far the camera's azimuth changes; below 0 the other way around.
+    pub degrees: f64,
+    /// Number of views.
+    pub views: usize,
+}
+
+impl Turn {
+    /// Angles from the first view on. A full turn does not show that one a second time; a part of a
+    /// turn ends at its last angle.
+    fn radians(self) -> impl Iterator<Item = f64> {
+        let full = self.degrees % 360.0 == 0.0;
+        let gaps = if full { self.views } else { self.views - 1 };
+        let each = self.degrees.to_radians() / gaps.max(1) as f64;
+        (0..self.views).map(move |n| n as f64 * each)
+    }
+}
+
+/// A row of views, each made when it is asked for.
+///
+/// **Invariants**: at least one view; all have the same range of values, hence the same colors and
+/// opacities for the same values.
+#[derive(Debug, Clone)]
+pub struct Sequence {
+    views: Views,
+    left_out: Vec<String>,
+}
+
+#[derive(Debug, Clone)]
+enum Views {
+    Steps {
+        scene: Box<Scene>,
+        steps: Vec<usize>,
+        range: [f64; 2],
+    },
+    Turn {
+        view: Box<View>,
+        cameras: Vec<Camera>,
+    },
+}
+
+impl Sequence {
+    /// The scene at each of `steps`, over one range of values: the scene's, or that of all steps,
+    /// which are looked at one after another. Steps without the scene's values are left out.
+    ///
+    /// `progress` is told the fraction done and returns false to cancel; the result is `None` then.
+    ///
+    /// # Errors
+    /// When the property does not change with time, or the scene cannot be shown at one of the steps.
+    pub fn over_steps(
+        scene: &Scene,
+        case: &Case,
+        steps: &[usize],
+        progress: &dyn Fn(f64) -> bool,
+    ) -> Result<Option<Self>, SceneError> {
+        let name = scene.property.clone();
+        let property = name.unwrap_or_else(|| default_property(case));
+        if !case.is_dynamic(&property) {
+            // That there is no such property would be the more telling error.
+            resolve(scene, case)?;
+            return Err(SceneError::Static(property));
+        }
+        let (mut range, mut used, mut left_out) = (None, Vec::new(), Vec::new());
+        let mut missing = None;
+        for (n, &step) in steps.iter().enumerate() {
+            match resolve(&at_step(scene, step), case) {
+                Ok(view) => {
+                    used.push(step);
+                    range = union(range, defined_range(scene, &view));
+                }
+                Err(SceneError::Case(error @ CaseError::NotAtStep { .. })) => {
+                    left_out.push(format!("step {step} is left out: {error}"));
+                    missing = Some(error);
+                }
+                Err(error) => return Err(error),
+            }
+            if !progress((n + 1) as f64 / steps.len() as f64) {
+                return Ok(None);
+            }
+        }
+        if used.is_empty() {
+            return Err(missing.map_or_else(
+                || SceneError::Steps("none is chosen".into()),
+                SceneError::Case,
+            ));
+        }
+        Ok(Some(Self {
+            views: Views::Steps {
+                scene: Box::new(scene.clone()),
+                steps: used,
+                range: range.unwrap_or([0.0, 1.0]),
+            },
+            left_out,
+        }))
+    }
+
+    /// The scene from all around the vertical line through the model's middle, beginning where its
+    /// camera is. A camera that frames the model stands back as far as the whole turn needs.
+    ///
+    /// # Errors
+    /// When the scene cannot be shown, or the turn has no views or no finite angle.
+    pub fn around(scene: &Scene, case: &Case, turn: Turn) -> Result<Self, SceneError> {
+        if turn.views < 1 || !turn.degrees.is_finite() {
+            return Err(SceneError::Turn);
+        }
+        let view = resolve(scene, case)?;
+        let middle = view.box_corners.iter().sum::<DVec3>() / 8.0;
+        let mut start = view.camera;
+        start.eye -= start.forward * standing_back(scene, &view, turn, middle)?;
+        let cameras = turn
+            .radians()
+            .map(|a| start.turned(middle, DQuat::from_rotation_z(-a)))
+            .collect();
+        Ok(Self {
+            views: Views::Turn {
+                view: Box::new(view),
+                cameras,
+            },
+            left_out: Vec::new(),
+        })
+    }
+
+    /// Number of views.
+    pub fn count(&self) -> usize {
+        match &self.views {
+            Views::Steps { steps, .. } => steps.len(),
+            Views::Turn { cameras, .. } => cameras.len(),
+        }
+    }
+
+    /// Sentences about steps that are not shown.
+    pub fn left_out(&self) -> &[String] {
+        &self.left_out
+    }
+
+    /// Values at both ends of the color map in every view.
+    pub fn range(&self) -> [f64; 2] {
+        match &self.views {
+            Views::Steps { range, .. } => *range,
+            Views::Turn { view, .. } => view.transfer.range,
+        }
+    }
+
+    /// The view number `n` (the last one for any beyond it) of the case that the sequence was made of.
+    ///
+    /// # Errors
+    /// When the values cannot be read any more.
+    pub fn view(&self, n: usize, case: &Case) -> Result<View, SceneError> {
+        let n = n.min(self.count() - 1);
+        Ok(match &self.views {
+            Views::Steps {
+                scene,
+                steps,
+                range,
+            } => {
+                let mut view = resolve(&at_step(scene, steps[n]), case)?;
+                view.transfer.range = *range;
+                view
+            }
+            Views::Turn { view, cameras } => View {
+                camera: cameras[n],
+                ..View::clone(view)
+            },
+        })
+    }
+}
+
+/// The steps that `chosen` names: `A..B` with both ends, each a number, a date, `first` or `last`;
+/// all where absent. Of these the first and each `every`th after it.
+///
+/// # Errors
+/// When the text does not have this form or names a step that the case does not have.
+pub fn steps(case: &Case, chosen: Option<&str>, every: usize) -> Result<Vec<usize>, SceneError> {
+    let (from, to) = match chosen {
+        None => ("first", "last"),
+        Some(text) => text.split_once("..").ok_or_else(|| {
+            SceneError::Steps(format!("{text}: give the first and the last like 0..10"))
+        })?,
+    };
+    let [first, last] = [case.step(from)?, case.step(to)?];
+    if first > last {
+        let problem = format!("{from}..{to}: the first must not come after the last");
+        return Err(SceneError::Steps(problem));
+    }
+    Ok((first..=last).step_by(every.max(1)).collect())
+}
+
+fn at_step(scene: &Scene, step: usize) -> Scene {
+    Scene {
+        step: StepSpec::Index(step),
+        ..scene.clone()
+    }
+}
+
+/// The scene's range, or that of the values of one step; `None` where none is defined.
+fn defined_range(scene: &Scene, view: &View) -> Option<[f64; 2]> {
+    let defined = scene.range.is_some() || view.field.statistics().is_some();
+    defined.then_some(view.transfer.range)
+}
+
+fn union(a: Option<[f64; 2]>, b: Option<[f64; 2]>) -> Option<[f64; 2]> {
+    match (a, b) {
+        (Some(a), Some(b)) => Some([a[0].min(b[0]), a[1].max(b[1])]),
+        _ => a.or(b),
+    }
+}
+
+/// How much further from the middle a camera that frames the model has to stand for the whole turn
+/// than for its first view: with one distance, the model does not shrink and grow as it turns.
+fn standing_back(scene: &Scene, view: &View, turn: Turn, middle: DVec3) -> Result<f64, SceneError> {
+    let CameraSpec::Framing(framing) = &scene.camera else {
+        return Ok(0.0);
+    };
+    let first = view.camera.eye.distance(middle);
+    let mut farthest = first;
+    for angle in turn.radians() {
+        let turned = CameraSpec::Framing(FramingCamera {
+            azimuth_degrees: framing.azimuth_degrees + angle.to_degrees(),
+            ..framing.clone()
+        });
+        let turned = camera(&turned, scene.size, &view.box_corners)?;
+        farthest = farthest.max(turned.eye.distance(middle));
+    }
+    Ok(farthest - first)
+}
