@@ -427,18 +427,6 @@ fn step_through(walk: ptr<function, Walk>) {
     }
 }
 
-// The column across a lateral face, or NOT_FOUND outside the grid.
-fn column_behind(column: u32, face: u32) -> u32 {
-    let at = select(column / grid.ni, column % grid.ni, face < 2u);
-    let size = select(grid.nj, grid.ni, face < 2u);
-    let stride = select(grid.ni, 1u, face < 2u);
-    let plus = (face & 1u) == 1u;
-    if (plus && at + 1u >= size) || (!plus && at == 0u) {
-        return NOT_FOUND;
-    }
-    return select(column - stride, column + stride, plus);
-}
-
 // The drawn layer below or above that the ray comes into, or NOT_FOUND.
 fn next_layer(column: u32, layer: u32, plus: bool) -> u32 {
     let lists = column_lists[column];

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use crate::gpu::{FrameRenderer, FrameStats, Gpu, GpuBytes, GpuError, GpuGrid};
 use crate::model::{CellField, Grid};
 use crate::picture::Image;
-use crate::scene::ghosts::shown_grid;
+use crate::scene::ghosts::{Ghosts, shown_grid};
 use crate::scene::{Interpolation, View};
 use crate::strategies::{Preparation, RenderStrategy, StrategyKind};
 
@@ -25,8 +25,7 @@ struct Shown {
     field: Arc<CellField>,
     drawn: Arc<Vec<bool>>,
     interpolation: Interpolation,
-    /// Which cells are ghosts, where there are any.
-    is_ghost: Option<Vec<bool>>,
+    ghosts: Option<Arc<Ghosts>>,
 }
 
 /// A picture and what it cost.
@@ -132,13 +131,12 @@ impl Renderer {
             field: view.field.clone(),
             drawn: view.drawn.clone(),
             interpolation: view.interpolation,
-            is_ghost: view.ghosts.as_ref().map(|g| g.is_ghost.clone()),
+            ghosts: view.ghosts.clone(),
         };
-        let ghosts_now = self.shown.as_ref().and_then(|s| s.is_ghost.as_ref());
-        if ghosts_now != wanted.is_ghost.as_ref() {
-            self.grid = self
-                .grid
-                .remade(&self.gpu, grid, wanted.is_ghost.as_deref())?;
+        let ghosts_now = self.shown.as_ref().and_then(|s| s.ghosts.as_ref());
+        if ghosts_now != wanted.ghosts.as_ref() {
+            let is_ghost = wanted.ghosts.as_ref().map(|g| g.is_ghost.as_slice());
+            self.grid = self.grid.remade(&self.gpu, grid, is_ghost)?;
         }
         if self.shown.as_ref() != Some(&wanted) {
             let Shown {

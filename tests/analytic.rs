@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::shape::Shape;
+use common::shape::{Shape, parallelepipeds};
 use glam::DVec3;
 use strataray::case::Case;
 use strataray::gpu::{GpuGrid, probe};
@@ -214,34 +214,16 @@ fn nothing_bleeds_across_a_fault() {
 #[test]
 fn a_linear_field_is_reproduced_inside_on_both() {
     let Some(gpu) = common::gpu() else { return };
-    // Equal parallelepipeds: leaning pillars, dipping layers. Then the mean of the cells around an
-    // inner vertex is the field there.
-    let corner = |i: usize, j: usize, k: usize| {
-        let [i, j, k] = [i as f64, j as f64, k as f64];
-        let depth = 2000.0 + 12.0 * i - 7.0 * j + 15.0 * k;
-        let lean = DVec3::new(0.3, -0.2, 0.0) * (depth - 2000.0);
-        DVec3::new(110.0 * i + 8.0 * j, 90.0 * j - 5.0 * i, depth) + lean
-    };
-    let linear = |p: DVec3| 3.0 + p.dot(DVec3::new(2e-3, -3e-3, 4e-3));
-    let center = |[i, j, k]: [usize; 3]| 0.5 * (corner(i, j, k) + corner(i + 1, j + 1, k + 1));
-    let case = |square: f64| {
-        Shape {
-            dims: [6, 5, 4],
-            pillar: &|i, j| [corner(i, j, 0), corner(i, j, 4)].map(|p| p.to_array()),
-            depth: &|[i, j, k], [di, dj, dk]| corner(i + di, j + dj, k + dk).z,
-            value: &|ijk| linear(center(ijk)) + square * center(ijk).x.powi(2),
-        }
-        .case()
-    };
     let errors = |square: f64| {
-        let case = case(square);
+        let case = parallelepipeds::case(square);
         let field = case.field("VALUE", 0).unwrap();
         let mut random = fastrand::Rng::with_seed(12);
         let points: Vec<DVec3> = (0..2000)
             .map(|_| {
                 // Within the cells that touch inner vertices only.
                 let mut at = |n: usize| 1.01 + random.f64() * (n as f64 - 2.02);
-                let [u, v, w] = [at(6), at(5), at(4)];
+                let [u, v, w] = parallelepipeds::DIMS.map(&mut at);
+                let corner = parallelepipeds::corner;
                 let axis = |a: DVec3| a - corner(0, 0, 0);
                 corner(0, 0, 0)
                     + u * axis(corner(1, 0, 0))
@@ -264,7 +246,7 @@ fn a_linear_field_is_reproduced_inside_on_both() {
                 .iter_mut()
                 .zip([found.unwrap().value, on_cpu.unwrap()])
             {
-                *w = w.max((value - linear(*point) - square * point.x.powi(2)).abs());
+                *w = w.max((value - parallelepipeds::value(*point, square)).abs());
             }
         }
         worst

@@ -9,7 +9,7 @@ mod process;
 use std::cell::Cell;
 use std::time::Duration;
 
-use common::shape::Shape;
+use common::shape::{Shape, parallelepipeds};
 use glam::DVec3;
 use half::f16;
 use rayon::prelude::*;
@@ -182,23 +182,8 @@ fn the_volume_holds_value_and_presence_as_the_reference_finds_them() {
 #[test]
 fn a_linear_field_is_linear_in_the_volume() {
     let Some(gpu) = common::gpu() else { return };
-    // Equal parallelepipeds: then the mean of the cells around an inner vertex is the field there.
-    let corner = |i: usize, j: usize, k: usize| {
-        let [i, j, k] = [i as f64, j as f64, k as f64];
-        let depth = 2000.0 + 12.0 * i - 7.0 * j + 15.0 * k;
-        let lean = DVec3::new(0.3, -0.2, 0.0) * (depth - 2000.0);
-        DVec3::new(110.0 * i + 8.0 * j, 90.0 * j - 5.0 * i, depth) + lean
-    };
-    let center = |[i, j, k]: [usize; 3]| 0.5 * (corner(i, j, k) + corner(i + 1, j + 1, k + 1));
-    let linear = |p: DVec3| 3.0 + p.dot(DVec3::new(2e-3, -3e-3, 4e-3));
     let errors = |square: f64| {
-        let case = Shape {
-            dims: [6, 5, 4],
-            pillar: &|i, j| [corner(i, j, 0), corner(i, j, 4)].map(|p| p.to_array()),
-            depth: &|[i, j, k], [di, dj, dk]| corner(i + di, j + dj, k + dk).z,
-            value: &|ijk| linear(center(ijk)) + square * center(ijk).x.powi(2),
-        }
-        .case();
+        let case = parallelepipeds::case(square);
         let field = case.field("VALUE", 0).unwrap();
         let [low, high] = range_of(&field);
         let (size, voxels) = volume_of(&gpu, &case.grid, &field, Interpolation::Vertex, 5.0);
@@ -210,8 +195,8 @@ fn a_linear_field_is_linear_in_the_volume() {
                 continue;
             };
             let ijk = [located.ijk.i, located.ijk.j, located.ijk.k];
-            if (0..3).all(|a| (1..[6, 5, 4][a] - 1).contains(&ijk[a])) {
-                let expected = linear(point) + square * point.x.powi(2);
+            if (0..3).all(|a| (1..parallelepipeds::DIMS[a] - 1).contains(&ijk[a])) {
+                let expected = parallelepipeds::value(point, square);
                 worst = worst.max((voxel[0] - (expected - low) / (high - low)).abs());
                 inside += 1;
             }

@@ -319,6 +319,19 @@ fn ok_deck_reads_back_equal() {
     assert_ne!(deck.properties[0].values, whole);
 }
 
+/// A grid's text with no more than it must have.
+fn bare<'a>(dims: [usize; 3], coord: &'a [f32], zcorn: &'a [f32]) -> GridText<'a, f32> {
+    GridText {
+        dims,
+        coord,
+        zcorn,
+        actnum: None,
+        map_axes: None,
+        map_units: None,
+        grid_unit: None,
+    }
+}
+
 #[test]
 fn ok_deck_is_the_same_with_any_number_of_threads() {
     // Several pieces, with runs of equal values across their ends.
@@ -327,15 +340,7 @@ fn ok_deck_is_the_same_with_any_number_of_threads() {
         .map(|n| (n / 3 % 70_000) as f32 / 7.0)
         .collect();
     let coord = vec![1.5; 6 * 101 * 101];
-    let text = GridText {
-        dims,
-        coord: &coord,
-        zcorn: &zcorn,
-        actnum: None,
-        map_axes: None,
-        map_units: None,
-        grid_unit: None,
-    };
+    let text = bare(dims, &coord, &zcorn);
     let with = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
         pool.build().unwrap().install(|| {
@@ -395,15 +400,7 @@ fn speed_of_writing_a_large_deck() {
         .map(|n| depth(n) + random.f32())
         .collect();
     let coord = vec![1.0; 6 * 161 * 161];
-    let text = GridText {
-        dims,
-        coord: &coord,
-        zcorn: &zcorn,
-        actnum: None,
-        map_axes: None,
-        map_units: None,
-        grid_unit: None,
-    };
+    let text = bare(dims, &coord, &zcorn);
     for _ in 0..5 {
         let bytes = std::cell::Cell::new(0);
         let start = std::time::Instant::now();

@@ -27,6 +27,18 @@ fn face_orientation(face: u32) -> f32 {
     return select(plus, -plus, (face >> 1u) == 1u);
 }
 
+// The column across a lateral face, or NOT_FOUND outside the grid.
+fn column_behind(column: u32, face: u32) -> u32 {
+    let at = select(column / grid.ni, column % grid.ni, face < 2u);
+    let size = select(grid.nj, grid.ni, face < 2u);
+    let stride = select(grid.ni, 1u, face < 2u);
+    let plus = (face & 1u) == 1u;
+    if (plus && at + 1u >= size) || (!plus && at == 0u) {
+        return NOT_FOUND;
+    }
+    return select(column - stride, column + stride, plus);
+}
+
 // The column's two depth lists on a lateral face.
 fn side_lists(lists: vec4u, face: u32) -> vec2u {
     if face >> 1u == 0u {

@@ -73,28 +73,22 @@ fn step_to_neighbor(track: ptr<function, Track>, uvw: ptr<function, vec3f>, inte
     let excess = max(-q, q - vec3f(1.0));
     let axis = select(select(2u, 1u, excess.y >= excess.z), 0u, excess.x >= max(excess.y, excess.z));
     let plus = q[axis] > 0.5;
-    let i = here % grid.ni;
-    let j = here / grid.ni;
+    let face = 2u * axis + select(0u, 1u, plus);
     let layer = (*track).cell.layer;
     var column = here;
     var next_layer = layer;
-    if axis == 0u {
-        if (plus && i + 1u >= grid.ni) || (!plus && i == 0u) {
+    if axis < 2u {
+        column = column_behind(here, face);
+        if column == NOT_FOUND {
             return false;
         }
-        column = select(column - 1u, column + 1u, plus);
-    } else if axis == 1u {
-        if (plus && j + 1u >= grid.nj) || (!plus && j == 0u) {
-            return false;
-        }
-        column = select(column - grid.ni, column + grid.ni, plus);
     } else {
         if (plus && layer + 1u >= grid.nk) || (!plus && layer == 0u) {
             return false;
         }
         next_layer = select(layer - 1u, layer + 1u, plus);
     }
-    if !is_drawn(column, next_layer) || !faces_join(here, layer, column, next_layer, axis, plus) {
+    if !is_drawn(column, next_layer) || !faces_join(here, layer, column, next_layer, face) {
         return false;
     }
     (*track).cell = load_cell(column, next_layer, interpolation);
@@ -104,12 +98,11 @@ fn step_to_neighbor(track: ptr<function, Track>, uvw: ptr<function, vec3f>, inte
     return true;
 }
 
-fn faces_join(a: u32, a_layer: u32, b: u32, b_layer: u32, axis: u32, plus: bool) -> bool {
+fn faces_join(a: u32, a_layer: u32, b: u32, b_layer: u32, face: u32) -> bool {
     let a_lists = column_lists[a];
-    if axis == 2u {
-        let mine = depths_at(layer_entries(a_lists, a_layer, select(0u, 1u, plus)));
-        return all_coincide(mine, depths_at(layer_entries(a_lists, b_layer, select(1u, 0u, plus))));
+    if face >= 4u {
+        let mine = depths_at(layer_entries(a_lists, a_layer, face & 1u));
+        return all_coincide(mine, depths_at(layer_entries(a_lists, b_layer, 1u - (face & 1u))));
     }
-    let face = 2u * axis + select(0u, 1u, plus);
     return sides_join(side_lists(a_lists, face), side_lists(column_lists[b], face ^ 1u), a_layer);
 }

@@ -60,7 +60,7 @@ impl BoundaryFaces {
         })
     }
 
-    /// Lists the faces anew where the drawn cells have changed; true where it did.
+    /// Lists the faces anew where the drawn cells have changed.
     ///
     /// `margin` is how far, in world space, the next entry of a peel may lie before the end of the
     /// last one.
@@ -74,26 +74,33 @@ impl BoundaryFaces {
         grid: &GpuGrid,
         drawn: &[bool],
         margin: f32,
-    ) -> Result<bool, GpuError> {
-        let known = |l: &Listed| l.drawn == grid.versions.drawn && l.margin == margin;
-        if self.listed.as_ref().is_some_and(known) {
-            return Ok(false);
+    ) -> Result<(), GpuError> {
+        let version = grid.versions.drawn;
+        let known = self.listed.take().filter(|l| l.drawn == version);
+        if known.as_ref().is_some_and(|l| l.margin == margin) {
+            self.listed = known;
+            return Ok(());
         }
-        let faces = numbers(model, drawn)?;
-        let list = gpu.storage("boundary faces", &faces)?;
+        let (list, count) = match known {
+            Some(known) => (known.list, known.count),
+            None => {
+                let faces = numbers(model, drawn)?;
+                (gpu.storage("boundary faces", &faces)?, faces.len() as u32)
+            }
+        };
         let group = |mode: u32| {
             let info = gpu.uniform("faces info", &[mode, margin.to_bits()]);
             let resources = [info.as_entire_binding(), list.as_entire_binding()];
             gpu.bind(&self.pipeline.own, &resources)
         };
         self.listed = Some(Listed {
-            drawn: grid.versions.drawn,
+            drawn: version,
             margin,
             groups: (0..MODES).map(group).collect(),
-            count: faces.len() as u32,
+            count,
             list,
         });
-        Ok(true)
+        Ok(())
     }
 
     /// Bytes of the list.
@@ -136,21 +143,9 @@ impl FaceTarget {
     }
 }
 
-fn texture(gpu: &Gpu, [width, height]: [u32; 2], format: wgpu::TextureFormat) -> wgpu::TextureView {
-    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
-        label: Some("faces"),
-        size: wgpu::Extent3d {
-            width,
-            height,
-            depth_or_array_layers: 1,
-        },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format,
-        usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
-        view_formats: &[],
-    });
+fn texture(gpu: &Gpu, size: [u32; 2], format: wgpu::TextureFormat) -> wgpu::TextureView {
+    let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING;
+    let texture = gpu.flat_texture("faces", size, format, usage);
     texture.create_view(&wgpu::TextureViewDescriptor::default())
 }
 

@@ -220,8 +220,9 @@ impl FrameRenderer {
         let pixels = u64::from(view.size[0]) * u64::from(view.size[1]);
         let state_bytes = strategy.ray_state_bytes() * pixels.min(tiles::MAX_AREA);
         let states = gpu.scratch("ray states", state_bytes);
-        let table = gpu.storage("transfer table", &transfer_table(&view.transfer))?;
-        let integrals = gpu.storage("transfer integrals", &transfer_integrals(&view.transfer))?;
+        let table = transfer_table(&view.transfer);
+        let integrals = gpu.storage("transfer integrals", &transfer_integrals(&table))?;
+        let table = gpu.storage("transfer table", &table)?;
         let frame = gpu.uniform("frame", &frame_uniform(grid, view));
         let tile = gpu.uniform("tile", &Tile::zeroed());
         let texture = target.create_view(&wgpu::TextureViewDescriptor::default());
@@ -395,11 +396,11 @@ pub(super) fn transfer_table(transfer: &TransferFunction) -> Vec<[f32; 4]> {
 
 /// Integrals over the position, from 0 to each entry of the table, of extinction times color and of
 /// extinction: between two positions the mean of both is a difference away.
-fn transfer_integrals(transfer: &TransferFunction) -> Vec<[f32; 4]> {
+fn transfer_integrals(table: &[[f32; 4]]) -> Vec<[f32; 4]> {
     let width = 1.0 / f64::from(LUT_SIZE - 1);
     let mut sum = [0.0f64; 4];
     let mut before = [0.0f64; 4];
-    transfer_table(transfer)
+    table
         .iter()
         .enumerate()
         .map(|(n, entry)| {
@@ -419,7 +420,7 @@ fn transfer_integrals(transfer: &TransferFunction) -> Vec<[f32; 4]> {
 
 fn frame_uniform(grid: &GpuGrid, view: &View) -> Frame {
     let camera = &view.camera;
-    let aspect = f64::from(view.size[0]) / f64::from(view.size[1]);
+    let aspect = view.aspect();
     let f32s = |v: DVec3| v.as_vec3().to_array();
     let linear = view.spaces.grid_from_world.matrix3;
     let eye = view.spaces.grid_from_world.transform_point3(camera.eye) - grid.origin;

@@ -6,6 +6,7 @@ use rayon::prelude::*;
 use super::accel::AccelGrid;
 use super::device::{Gpu, GpuError};
 use super::layout::{COLUMN_FLAG, GridInfo, LIST_GAPPED, LIST_OFFSET};
+use super::pipeline::flag;
 use crate::model::{CellField, Grid, Ijk, VertexField};
 use crate::scene::Interpolation;
 
@@ -68,10 +69,9 @@ pub struct Constants {
 impl Constants {
     /// Names and values of the shaders' `override` constants.
     pub fn pairs(self) -> [(&'static str, f64); 2] {
-        let value = |is_set| f64::from(u8::from(is_set));
         [
-            ("VERTICAL", value(self.vertical)),
-            ("GHOSTS", value(self.ghosts)),
+            ("VERTICAL", flag(self.vertical)),
+            ("GHOSTS", flag(self.ghosts)),
         ]
     }
 }

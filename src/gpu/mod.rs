@@ -18,4 +18,4 @@ pub mod tiles;
 pub use device::{Gpu, GpuError};
 pub use frame::{FrameRenderer, FrameStats, Place, Round};
 pub use grid_upload::{GpuBytes, GpuGrid, Versions};
-pub use pipeline::{Pipeline, RasterPipeline};
+pub use pipeline::{Pipeline, RasterPipeline, flag};

@@ -205,6 +205,11 @@ fn checked<T>(
     }
 }
 
+/// The value of an `override` constant that is true or false.
+pub fn flag(is_set: bool) -> f64 {
+    f64::from(u8::from(is_set))
+}
+
 /// A compute pipeline from an entry of a shader, with its workgroup size as the shader states it.
 pub struct Pipeline {
     /// The pipeline.

@@ -3,21 +3,9 @@
 use super::device::{Gpu, GpuError};
 
 /// A texture of linear, premultiplied RGBA that shaders write.
-pub fn create(gpu: &Gpu, [width, height]: [u32; 2]) -> wgpu::Texture {
-    gpu.device.create_texture(&wgpu::TextureDescriptor {
-        label: Some("target"),
-        size: wgpu::Extent3d {
-            width,
-            height,
-            depth_or_array_layers: 1,
-        },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: wgpu::TextureFormat::Rgba32Float,
-        usage: wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::COPY_SRC,
-        view_formats: &[],
-    })
+pub fn create(gpu: &Gpu, size: [u32; 2]) -> wgpu::Texture {
+    let usage = wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::COPY_SRC;
+    gpu.flat_texture("target", size, wgpu::TextureFormat::Rgba32Float, usage)
 }
 
 /// Copies the picture back in bands, so that the staging buffer stays small.

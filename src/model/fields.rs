@@ -15,6 +15,8 @@ const UNDEFINED: f32 = 1e19;
 #[derive(Debug, Clone)]
 pub struct CellField(Vec<f32>);
 
+impl Eq for CellField {}
+
 impl PartialEq for CellField {
     /// Undefined values are equal to each other.
     fn eq(&self, other: &Self) -> bool {

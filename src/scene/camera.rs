@@ -71,6 +71,21 @@ impl Camera {
         distances.fold(1e-9, f64::max)
     }
 
+    /// Takes cameras that look at the middle of a box, each from as far as the first one, as far away as
+    /// the one that needs the most: with one distance the box does not shrink and grow between them. How
+    /// close the first one is (its zoom) counts for all.
+    pub fn stand_back(cameras: &mut [Self], corners: &[DVec3; 8], aspect: f64) {
+        let needs = |camera: &Self| camera.framing_distance(corners, aspect);
+        let Some(first) = cameras.first().map(needs) else {
+            return;
+        };
+        let most = cameras.iter().map(needs).fold(0.0, f64::max);
+        let middle = corners.iter().sum::<DVec3>() / 8.0;
+        for camera in cameras {
+            camera.eye += (most / first - 1.0) * (camera.eye - middle);
+        }
+    }
+
     /// This camera carried around a point.
     #[must_use]
     pub fn turned(self, middle: DVec3, turn: DQuat) -> Self {

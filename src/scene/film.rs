@@ -2,8 +2,8 @@
 
 use glam::{DQuat, DVec3};
 
-use super::resolve::{camera, default_property};
-use super::{Camera, CameraSpec, FramingCamera, Scene, SceneError, StepSpec, View, resolve};
+use super::resolve::default_property;
+use super::{Camera, CameraSpec, Scene, SceneError, StepSpec, View, resolve};
 use crate::case::{Case, CaseError};
 
 /// A way around the model.
@@ -115,12 +115,11 @@ impl Sequence {
         }
         let view = resolve(scene, case)?;
         let middle = view.box_corners.iter().sum::<DVec3>() / 8.0;
-        let mut start = view.camera;
-        start.eye -= start.forward * standing_back(scene, &view, turn, middle)?;
-        let cameras = turn
-            .radians()
-            .map(|a| start.turned(middle, DQuat::from_rotation_z(-a)))
-            .collect();
+        let turned = |a: f64| view.camera.turned(middle, DQuat::from_rotation_z(-a));
+        let mut cameras: Vec<Camera> = turn.radians().map(turned).collect();
+        if matches!(scene.camera, CameraSpec::Framing(_)) {
+            Camera::stand_back(&mut cameras, &view.box_corners, view.aspect());
+        }
         Ok(Self {
             views: Views::Turn {
                 view: Box::new(view),
@@ -213,23 +212,4 @@ fn union(a: Option<[f64; 2]>, b: Option<[f64; 2]>) -> Option<[f64; 2]> {
         (Some(a), Some(b)) => Some([a[0].min(b[0]), a[1].max(b[1])]),
         _ => a.or(b),
     }
-}
-
-/// How much further from the middle a camera that frames the model has to stand for the whole turn
-/// than for its first view: with one distance, the model does not shrink and grow as it turns.
-fn standing_back(scene: &Scene, view: &View, turn: Turn, middle: DVec3) -> Result<f64, SceneError> {
-    let CameraSpec::Framing(framing) = &scene.camera else {
-        return Ok(0.0);
-    };
-    let first = view.camera.eye.distance(middle);
-    let mut farthest = first;
-    for angle in turn.radians() {
-        let turned = CameraSpec::Framing(FramingCamera {
-            azimuth_degrees: framing.azimuth_degrees + angle.to_degrees(),
-            ..framing.clone()
-        });
-        let turned = camera(&turned, scene.size, &view.box_corners)?;
-        farthest = farthest.max(turned.eye.distance(middle));
-    }
-    Ok(farthest - first)
 }

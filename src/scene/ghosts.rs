@@ -21,6 +21,15 @@ pub struct Ghosts {
     pub is_ghost: Vec<bool>,
 }
 
+impl Eq for Ghosts {}
+
+impl PartialEq for Ghosts {
+    /// Of one case's grid: which of its cells are ghosts says all.
+    fn eq(&self, other: &Self) -> bool {
+        self.is_ghost == other.is_ghost
+    }
+}
+
 impl Ghosts {
     /// Makes ghosts of the inactive cells of `grid`, with field and selection extended to them.
     pub fn new(grid: &Grid, field: &CellField, drawn: &[bool]) -> (Self, CellField, Vec<bool>) {

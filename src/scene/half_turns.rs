@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use glam::{DQuat, DVec3};
 
-use super::{CameraSpec, Scene, View};
+use super::{Camera, CameraSpec, Scene, View};
 
 /// A view of a row of them.
 #[derive(Debug, Clone)]
@@ -87,32 +87,23 @@ impl TurnAxis {
 /// stands as far away as the view that needs the most.
 pub fn half_turns(scene: &Scene, view: &View, about: TurnAxis, count: usize) -> Vec<NamedView> {
     let middle = view.box_corners.iter().sum::<DVec3>() / 8.0;
-    let turned = |n| {
-        let (at, angle) = about.place(n, count);
+    let placed: Vec<_> = (0..count).map(|n| about.place(n, count)).collect();
+    let camera = |&(at, angle): &(usize, f64)| {
         let done = about.axes()[..at].iter().map(|axis| axis.turn(PI));
         let done = done.fold(DQuat::IDENTITY, |before, turn| turn * before);
-        let axis = &about.axes()[at];
-        let mut turned = view.clone();
-        turned.camera = view.camera.turned(middle, axis.turn(angle) * done);
-        NamedView {
-            name: format!("{} {:.0}°", axis.name, angle.to_degrees()),
-            view: turned,
-        }
+        view.camera
+            .turned(middle, about.axes()[at].turn(angle) * done)
     };
-    let mut views: Vec<NamedView> = (0..count).map(turned).collect();
+    let mut cameras: Vec<Camera> = placed.iter().map(camera).collect();
     if matches!(scene.camera, CameraSpec::Framing(_)) {
-        stand_back(&mut views, view, middle);
+        Camera::stand_back(&mut cameras, &view.box_corners, view.aspect());
     }
-    views
-}
-
-/// Takes all cameras as far from the middle as the one that needs the most to frame the model.
-fn stand_back(views: &mut [NamedView], start: &View, middle: DVec3) {
-    let aspect = f64::from(start.size[0]) / f64::from(start.size[1]);
-    let needs = |view: &View| view.camera.framing_distance(&view.box_corners, aspect);
-    let most = views.iter().map(|v| needs(&v.view)).fold(0.0, f64::max);
-    let farther = most / needs(start) - 1.0;
-    for NamedView { view, .. } in views {
-        view.camera.eye += farther * (view.camera.eye - middle);
-    }
+    let named = |((at, angle), camera): ((usize, f64), Camera)| NamedView {
+        name: format!("{} {:.0}°", about.axes()[at].name, angle.to_degrees()),
+        view: View {
+            camera,
+            ..view.clone()
+        },
+    };
+    placed.into_iter().zip(cameras).map(named).collect()
 }

@@ -104,6 +104,13 @@ pub struct View {
     pub show_legend: bool,
 }
 
+impl View {
+    /// Width over height.
+    pub fn aspect(&self) -> f64 {
+        f64::from(self.size[0]) / f64::from(self.size[1])
+    }
+}
+
 /// A plane in world space.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ClipPlane {
@@ -410,11 +417,7 @@ fn drawn(
 }
 
 /// The camera that a scene asks for, given the corners of the model's box.
-pub(super) fn camera(
-    spec: &CameraSpec,
-    size: [u32; 2],
-    corners: &[DVec3; 8],
-) -> Result<Camera, SceneError> {
+fn camera(spec: &CameraSpec, size: [u32; 2], corners: &[DVec3; 8]) -> Result<Camera, SceneError> {
     let aspect = f64::from(size[0]) / f64::from(size[1]);
     let camera = match spec {
         CameraSpec::Explicit(c) => {

@@ -8,7 +8,7 @@
 use super::{Preparation, RenderStrategy};
 use crate::gpu::faces::{BoundaryFaces, FaceMode, FaceTarget};
 use crate::gpu::grid_upload::Constants;
-use crate::gpu::{Gpu, GpuBytes, GpuError, Pipeline, Place, Round, tiles};
+use crate::gpu::{Gpu, GpuBytes, GpuError, Pipeline, Place, Round, flag, tiles};
 use crate::scene::{Integration, Interpolation, LibcSettings};
 
 /// The strategy with its compiled shaders and the list of faces.
@@ -35,12 +35,14 @@ struct Variant {
 impl Variant {
     fn compile(self, gpu: &Gpu) -> Result<Pipeline, GpuError> {
         let by_segment = self.settings.integration == Integration::Segments;
-        let constants = [
-            ("CROSSES", self.settings.cross_faults),
-            ("BY_SEGMENT", by_segment),
-            ("BY_VERTEX", self.interpolation == Interpolation::Vertex),
+        let own = [
+            ("CROSSES", flag(self.settings.cross_faults)),
+            ("BY_SEGMENT", flag(by_segment)),
+            (
+                "BY_VERTEX",
+                flag(self.interpolation == Interpolation::Vertex),
+            ),
         ];
-        let own = constants.map(|(name, value)| (name, f64::from(u8::from(value))));
         let constants: Vec<_> = own.into_iter().chain(self.grid.pairs()).collect();
         Pipeline::variant(gpu, "libc", "walk", &constants)
     }
@@ -96,9 +98,11 @@ impl RenderStrategy for Libc {
             grid: what.grid.constants(),
         };
         if variant != self.variant {
-            let located = variant.grid.pairs();
-            self.begin = Pipeline::variant(what.gpu, "libc", "begin", &located)?;
-            self.set_right = Pipeline::variant(what.gpu, "libc", "set_right", &located)?;
+            if variant.grid != self.variant.grid {
+                let located = variant.grid.pairs();
+                self.begin = Pipeline::variant(what.gpu, "libc", "begin", &located)?;
+                self.set_right = Pipeline::variant(what.gpu, "libc", "set_right", &located)?;
+            }
             self.walk = variant.compile(what.gpu)?;
             self.variant = variant;
         }

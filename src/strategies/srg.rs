@@ -13,7 +13,7 @@ use crate::gpu::pyramids::{Bricks, Classifier, Limits, PyramidMaker};
 use crate::gpu::resample::{Resampler, Shape, Volume};
 use crate::gpu::slabs::Slabs;
 use crate::gpu::tiles::Pace;
-use crate::gpu::{Gpu, GpuBytes, GpuError, Pipeline, Place, Round, Versions};
+use crate::gpu::{Gpu, GpuBytes, GpuError, Pipeline, Place, Round, Versions, flag};
 use crate::model::Dims;
 use crate::scene::{SrgSettings, View};
 use crate::transfer::TransferFunction;
@@ -109,7 +109,6 @@ struct Variant {
 
 impl Variant {
     fn compile(self, gpu: &Gpu, entry: &str) -> Result<Pipeline, GpuError> {
-        let flag = |value| f64::from(u8::from(value));
         let own = [
             ("SECTIONS", flag(self.sections)),
             ("WEIGHTED", flag(self.weighted)),

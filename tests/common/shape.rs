@@ -62,3 +62,39 @@ impl Shape<'_> {
         load::open(&path).unwrap()
     }
 }
+
+/// Equal parallelepipeds, 6 x 5 x 4: leaning pillars, dipping layers. There the mean of the cells around
+/// an inner vertex is a linear field's value.
+pub mod parallelepipeds {
+    use glam::DVec3;
+
+    use super::Shape;
+    use strataray::case::Case;
+
+    pub const DIMS: [usize; 3] = [6, 5, 4];
+
+    /// A vertex in grid space.
+    pub fn corner(i: usize, j: usize, k: usize) -> DVec3 {
+        let [i, j, k] = [i as f64, j as f64, k as f64];
+        let depth = 2000.0 + 12.0 * i - 7.0 * j + 15.0 * k;
+        let lean = DVec3::new(0.3, -0.2, 0.0) * (depth - 2000.0);
+        DVec3::new(110.0 * i + 8.0 * j, 90.0 * j - 5.0 * i, depth) + lean
+    }
+
+    /// The grid with a linear field, to which a quadratic one may be added, as cells have it.
+    pub fn case(square: f64) -> Case {
+        let center = |[i, j, k]: [usize; 3]| 0.5 * (corner(i, j, k) + corner(i + 1, j + 1, k + 1));
+        Shape {
+            dims: DIMS,
+            pillar: &|i, j| [corner(i, j, 0), corner(i, j, 4)].map(|p| p.to_array()),
+            depth: &|[i, j, k], [di, dj, dk]| corner(i + di, j + dj, k + dk).z,
+            value: &|ijk| value(center(ijk), square),
+        }
+        .case()
+    }
+
+    /// The field at a point of grid space.
+    pub fn value(p: DVec3, square: f64) -> f64 {
+        3.0 + p.dot(DVec3::new(2e-3, -3e-3, 4e-3)) + square * p.x.powi(2)
+    }
+}
