@@ -4,6 +4,7 @@ pub mod camera;
 pub mod film;
 pub mod ghosts;
 mod half_turns;
+pub mod lighting;
 pub mod resolve;
 mod settings;
 
@@ -12,6 +13,7 @@ use serde::{Deserialize, Serialize};
 pub use camera::Camera;
 pub use film::{Sequence, Turn};
 pub use half_turns::{NamedView, TurnAxis, half_turns};
+pub use lighting::{LightMode, Lighting, LightingSpec};
 pub use resolve::{ClipPlane, SceneError, View, resolve};
 pub use settings::{ClipSpec, CutFace, Integration, LibcSettings, SrgSettings};
 
@@ -50,7 +52,7 @@ pub struct Scene {
     /// Settings of the cell-to-cell strategy.
     pub libc: LibcSettings,
     /// Occlusion and lights.
-    pub lighting: Option<serde_json::Value>,
+    pub lighting: LightingSpec,
     /// Which cells are drawn.
     pub filter: Filter,
     /// Clip planes; kept is what all of them keep.
@@ -77,7 +79,7 @@ impl Default for Scene {
             early_termination: 0.01,
             srg: SrgSettings::default(),
             libc: LibcSettings::default(),
-            lighting: None,
+            lighting: LightingSpec::default(),
             filter: Filter::default(),
             clip: Vec::new(),
             show: Show::default(),

@@ -6,6 +6,7 @@ use glam::{DVec3, DVec4};
 use rayon::prelude::*;
 
 use super::ghosts::{Ghosts, shown_grid};
+use super::lighting::{self, Lighting};
 use super::{
     Camera, CameraSpec, ClipSpec, ColorSpec, CutFace, Filter, Inactive, Interpolation,
     LibcSettings, Scene, SrgSettings, StepSpec,
@@ -46,7 +47,7 @@ pub enum SceneError {
     Turn,
 }
 
-fn wrong(field: &'static str, problem: impl Into<String>) -> SceneError {
+pub(super) fn wrong(field: &'static str, problem: impl Into<String>) -> SceneError {
     SceneError::Field {
         field,
         problem: problem.into(),
@@ -94,6 +95,8 @@ pub struct View {
     pub ghosts: Option<Arc<Ghosts>>,
     /// Planes that cut parts away.
     pub clip: Vec<ClipPlane>,
+    /// Occlusion and lights.
+    pub lighting: Lighting,
     /// Settings of the cell-to-cell strategy.
     pub libc: LibcSettings,
     /// Settings of the resampled-grid strategy.
@@ -187,6 +190,11 @@ pub fn resolve(scene: &Scene, case: &Case) -> Result<View, SceneError> {
         drawn: Arc::new(drawn),
         ghosts,
         clip: clip(&scene.clip)?,
+        lighting: lighting::resolve(
+            &scene.lighting,
+            box_edges(&box_corners),
+            case.grid.dims().cells(),
+        )?,
         libc: scene.libc,
         srg: srg(scene, case.grid.dims())?,
         show_box: scene.show.r#box,
@@ -215,11 +223,6 @@ fn refuse_later_work(scene: &Scene) -> Result<(), SceneError> {
         ));
     }
     let later = [
-        (
-            "lighting",
-            scene.lighting.is_some(),
-            "lighting is not supported yet; leave it out",
-        ),
         (
             "show.faults",
             scene.show.faults,
@@ -326,6 +329,11 @@ fn box_corners(spaces: &Spaces, [low, high]: [DVec3; 2]) -> [DVec3; 8] {
         let corner = DVec3::new(pick(0), pick(1), pick(2));
         spaces.world_from_grid.transform_point3(corner)
     })
+}
+
+/// Edges of the model's box along the grid's axes, in world space.
+fn box_edges(corners: &[DVec3; 8]) -> DVec3 {
+    DVec3::from_array([1, 2, 4].map(|c| corners[c].distance(corners[0])))
 }
 
 /// Mean edge lengths of the drawn cells along s, t and r, in world space.

@@ -1,0 +1,603 @@
+//! Occlusion, lights and shadows: as users write them, and checked against a model.
+//!
+//! Both effects look along a cone: occlusion toward the viewer, shadows toward a light
+//! (campagnolo-2021, chapter 3 and 4.2). Defaults and ranges are the paper's.
+
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+
+use super::resolve::{SceneError, wrong};
+use crate::transfer::function::linear_from_srgb;
+use crate::transfer::presets::parse_color;
+
+/// Occlusion and lights as a scene has them; nothing is shaded by default.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct LightingSpec {
+    /// Shading by what stands between a sample and the viewer; absent for none.
+    pub occlusion: Option<OcclusionSpec>,
+    /// Lights.
+    pub lights: Vec<LightSpec>,
+    /// How the lights' shadows are found.
+    pub shadows: ShadowSpec,
+    /// Part of the light that comes from everywhere and that occlusion shades; 1 without lights and 0.4
+    /// with them where absent.
+    pub ambient: Option<f64>,
+    /// Lights make highlights and shade by the field's gradient.
+    pub blinn_phong: bool,
+    /// Only what carries no number is shaded: inactive cells. Colors of values stay exact.
+    pub exact_colors: bool,
+    /// Volumes that extinction and light are sampled into.
+    pub volume: VolumeSpec,
+    /// Rays over a cone in the mode `monte_carlo`.
+    pub rays: u32,
+    /// Picks the random numbers of the mode `monte_carlo`.
+    pub seed: u32,
+}
+
+impl Default for LightingSpec {
+    fn default() -> Self {
+        Self {
+            occlusion: None,
+            lights: Vec::new(),
+            shadows: ShadowSpec::default(),
+            ambient: None,
+            blinn_phong: false,
+            exact_colors: false,
+            volume: VolumeSpec::default(),
+            rays: 64,
+            seed: 0,
+        }
+    }
+}
+
+/// Where the light along a cone is found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
+#[serde(rename_all = "snake_case")]
+#[clap(rename_all = "snake_case")]
+pub enum LightMode {
+    /// Not at all: nothing is shaded.
+    Off,
+    /// At every sample of a ray.
+    Image,
+    /// Before the rays, in a light volume that they sample.
+    Preilluminated,
+    /// At every sample, by many rays over the cone: slow, for comparison.
+    MonteCarlo,
+}
+
+/// Directional occlusion.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct OcclusionSpec {
+    /// Where it is found.
+    pub mode: LightMode,
+    /// Half of the cone's opening.
+    pub half_angle_degrees: f64,
+    /// Parts that the cone is split into at most: 1, 3 or 7.
+    pub splits: u32,
+    /// Factor on the extinction that occludes.
+    pub attenuation: f64,
+    /// Part of the darkening that is applied.
+    pub strength: f64,
+    /// Distance at which a cone starts, in standard deviations of the finest level.
+    pub gap: f64,
+    /// Length of a cone, as a part of the diagonal of the model's box.
+    pub length: f64,
+    /// Sections count as if the medium in them were even, so that even media are not too light.
+    pub even_media: bool,
+}
+
+impl Default for OcclusionSpec {
+    fn default() -> Self {
+        Self {
+            mode: LightMode::Preilluminated,
+            half_angle_degrees: 20.0,
+            splits: 7,
+            attenuation: 0.6,
+            strength: 1.0,
+            gap: 3.0,
+            length: 0.5,
+            even_media: false,
+        }
+    }
+}
+
+/// Shadows of all lights.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct ShadowSpec {
+    /// Where they are found.
+    pub mode: LightMode,
+    /// Parts that a cone is split into at most: 1, 3 or 7.
+    pub splits: u32,
+    /// Factor on the extinction that casts a shadow.
+    pub attenuation: f64,
+    /// Distance at which a cone starts, in standard deviations of the finest level.
+    pub gap: f64,
+    /// Length of a cone, as a part of the diagonal of the model's box.
+    pub length: f64,
+    /// As for occlusion.
+    pub even_media: bool,
+}
+
+impl Default for ShadowSpec {
+    fn default() -> Self {
+        Self {
+            mode: LightMode::Preilluminated,
+            splits: 1,
+            attenuation: 1.0,
+            gap: 3.0,
+            length: 0.75,
+            even_media: false,
+        }
+    }
+}
+
+/// A light. Positions and directions are in world coordinates.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "lowercase", deny_unknown_fields)]
+pub enum LightSpec {
+    /// From far away, everywhere from the same side.
+    Directional {
+        /// Where its light goes.
+        direction: [f64; 3],
+        /// Half of the cone's opening: how soft its shadows are.
+        #[serde(default = "shadow_half_angle")]
+        half_angle_degrees: f64,
+        /// Its part of the light; what ambient light leaves, divided by the lights, where absent.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        intensity: Option<f64>,
+        /// `#rrggbb`.
+        #[serde(default = "white")]
+        color: String,
+    },
+    /// From a point to all sides.
+    Point {
+        /// Where it is.
+        position: [f64; 3],
+        /// As for a directional one.
+        #[serde(default = "shadow_half_angle")]
+        half_angle_degrees: f64,
+        /// As for a directional one.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        intensity: Option<f64>,
+        /// `#rrggbb`.
+        #[serde(default = "white")]
+        color: String,
+    },
+    /// From a point within a cone.
+    Spot {
+        /// Where it is.
+        position: [f64; 3],
+        /// The axis of its light.
+        direction: [f64; 3],
+        /// Half of the opening of its light.
+        #[serde(default = "spot_opening")]
+        opening_degrees: f64,
+        /// As for a directional one.
+        #[serde(default = "shadow_half_angle")]
+        half_angle_degrees: f64,
+        /// As for a directional one.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        intensity: Option<f64>,
+        /// `#rrggbb`.
+        #[serde(default = "white")]
+        color: String,
+    },
+}
+
+fn shadow_half_angle() -> f64 {
+    1.0
+}
+
+fn spot_opening() -> f64 {
+    30.0
+}
+
+fn white() -> String {
+    "#ffffff".into()
+}
+
+/// Sizes of the volumes; chosen from the model's shape where absent.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct VolumeSpec {
+    /// Megabytes (2^20 bytes) of the extinction volume on the device, while it is made.
+    pub budget_mb: Option<u32>,
+    /// Voxels of the extinction volume along the grid's x, y and depth.
+    pub size: Option<[u32; 3]>,
+    /// Voxels of a light volume; half of the extinction volume's each way where absent.
+    pub light_size: Option<[u32; 3]>,
+}
+
+/// Names of the presets, and what each does in a few words.
+pub const PRESETS: [(&str, &str); 5] = [
+    ("off", "no shading"),
+    ("soft", "gentle occlusion"),
+    ("strong", "strong occlusion"),
+    (
+        "key",
+        "occlusion and a light with shadows from the upper left",
+    ),
+    ("technical", "exact colors; only inactive cells are shaded"),
+];
+
+impl LightingSpec {
+    /// The preset called `name`.
+    pub fn preset(name: &str) -> Option<Self> {
+        let occlusion = |half_angle_degrees, attenuation, strength| {
+            Some(OcclusionSpec {
+                half_angle_degrees,
+                attenuation,
+                strength,
+                ..OcclusionSpec::default()
+            })
+        };
+        let none = Self::default();
+        Some(match name {
+            "off" => none,
+            "soft" => Self {
+                occlusion: occlusion(25.0, 0.4, 0.7),
+                ..none
+            },
+            "strong" => Self {
+                occlusion: occlusion(20.0, 0.8, 1.0),
+                ..none
+            },
+            "key" => Self {
+                occlusion: occlusion(20.0, 0.6, 1.0),
+                lights: vec![LightSpec::Directional {
+                    direction: [1.0, -0.6, -1.6],
+                    half_angle_degrees: 2.0,
+                    intensity: None,
+                    color: white(),
+                }],
+                blinn_phong: true,
+                ..none
+            },
+            "technical" => Self {
+                occlusion: occlusion(20.0, 0.6, 1.0),
+                exact_colors: true,
+                ..none
+            },
+            _ => return None,
+        })
+    }
+}
+
+/// A cone along which light comes, checked.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Cone {
+    /// Half of its opening in radians.
+    pub half_angle: f64,
+    /// Parts that it is split into at most: 1, 3 or 7.
+    pub splits: u32,
+    /// Factor on the extinction along it.
+    pub attenuation: f64,
+    /// Distance at which it starts, in standard deviations of the finest level.
+    pub gap: f64,
+    /// Its length in world space.
+    pub length: f64,
+    /// Sections count as if the medium in them were even.
+    pub even_media: bool,
+}
+
+/// Where a light is and what it reaches, in world space.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Source {
+    /// Light from far away; the unit vector points to it.
+    Directional {
+        /// Where it comes from.
+        toward: DVec3,
+    },
+    /// Light from a point.
+    Point {
+        /// Where it is.
+        position: DVec3,
+    },
+    /// Light from a point within a cone.
+    Spot {
+        /// Where it is.
+        position: DVec3,
+        /// Its axis, unit length.
+        axis: DVec3,
+        /// Half of its opening in radians.
+        opening: f64,
+    },
+}
+
+/// Changes of the transfer function's position over its reference length between which the gradient comes
+/// to count: below the first there is no surface to shade.
+pub const GRADIENT_FADE: [f64; 2] = [0.01, 0.1];
+/// Highlights: their brightness as a part of the light, and the exponent of Blinn's cosine.
+pub const SPECULAR: f64 = 0.25;
+/// See [`SPECULAR`].
+pub const SHININESS: f64 = 40.0;
+
+/// Angles over which the light of a spot fades out at its edge, as a part of its opening.
+pub const SPOT_EDGE: f64 = 0.1;
+
+/// A light, checked.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Light {
+    /// Where it is.
+    pub source: Source,
+    /// Linear color times intensity.
+    pub color: DVec3,
+    /// Its cone.
+    pub cone: Cone,
+}
+
+/// Occlusion toward the viewer, checked.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Occlusion {
+    /// Where it is found; never `Off`.
+    pub mode: LightMode,
+    /// Its cone.
+    pub cone: Cone,
+    /// Part of the darkening that is applied.
+    pub strength: f64,
+}
+
+/// All of a view's lighting, checked.
+///
+/// A sample's linear color `c` becomes `c * (ambient * (1 - strength * (1 - occlusion)) + sum of l * shadow *
+/// diffuse) + sum of l * shadow * specular` over the lights, `l` a light's color. Occlusion and shadow are
+/// transmittances of a cone from the sample toward the viewer, or toward the light. Light does not fade
+/// with distance; a spot's fades to nothing over the edge of its cone, by a smooth step of the cosine.
+///
+/// With Blinn-Phong, `diffuse` is `1 - w + w |n d|` and `specular` is [`SPECULAR`]` w |n h|^`[`SHININESS`]:
+/// `n` is the field's unit gradient (its sign means nothing), `d` the direction to the light, `h` the unit
+/// vector halfway between it and the direction to the viewer, and `w` a smooth step over [`GRADIENT_FADE`]
+/// of how much the transfer function's position changes along the gradient over a reference length. Values
+/// that are constant in a cell have no gradient, nor do inactive cells: `w` is 0. Elsewhere `diffuse` is 1
+/// and `specular` 0.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Lighting {
+    /// Occlusion, where there is some.
+    pub occlusion: Option<Occlusion>,
+    /// The lights.
+    pub lights: Vec<Light>,
+    /// Where their shadows are found.
+    pub shadows: LightMode,
+    /// Part of the light that comes from everywhere.
+    pub ambient: f64,
+    /// Lights make highlights and shade by the field's gradient.
+    pub blinn_phong: bool,
+    /// Only inactive cells are shaded.
+    pub exact_colors: bool,
+    /// Rays over a cone in the mode `MonteCarlo`.
+    pub rays: u32,
+    /// Picks their random numbers.
+    pub seed: u32,
+    /// World-space edges of the model's box along the grid's x, y and depth.
+    pub extent: DVec3,
+    /// Cells of the grid.
+    pub cells: usize,
+    volume: VolumeSpec,
+}
+
+/// Voxels along an axis, at most.
+const MOST_ALONG: u32 = 2048;
+/// Voxels of the extinction volume for each cell of the grid, at most: about what the paper took for
+/// its models of ten to fifty thousand cells.
+const VOXELS_A_CELL: f64 = 256.0;
+/// Bytes that a voxel of the extinction volume takes while it is made: value, extinction, pyramid, in
+/// half floats (campagnolo-2021, 4.3.4).
+const VOXEL_BYTES: f64 = 2.0 * (2.0 + 1.0 / 7.0);
+/// Megabytes of the extinction volume where the scene says nothing: of a GPU, and of an adapter in
+/// software.
+const BUDGET_MB: [u32; 2] = [160, 10];
+
+impl Lighting {
+    /// True where nothing is shaded.
+    pub fn is_off(&self) -> bool {
+        self.occlusion.is_none() && self.lights.is_empty()
+    }
+
+    /// Voxels of the extinction volume along the grid's x, y and depth: cubes in world space, unless the
+    /// scene says otherwise.
+    pub fn size(&self, is_software: bool) -> [u32; 3] {
+        self.volume.size.unwrap_or_else(|| {
+            let budget = BUDGET_MB[usize::from(is_software)];
+            let bytes = f64::from(self.volume.budget_mb.unwrap_or(budget)) * f64::from(1 << 20);
+            let voxels = (bytes / VOXEL_BYTES).min(VOXELS_A_CELL * self.cells as f64);
+            let edge = (self.extent.element_product() / voxels.max(1.0)).cbrt();
+            (self.extent / edge)
+                .to_array()
+                .map(|n| (n.round() as u32).clamp(4, MOST_ALONG))
+        })
+    }
+
+    /// Voxels of a light volume.
+    pub fn light_size(&self, is_software: bool) -> [u32; 3] {
+        let half = || self.size(is_software).map(|n| n.div_ceil(2));
+        self.volume.light_size.unwrap_or_else(half)
+    }
+
+    /// Standard deviation of the finest level of the extinction pyramid, in world space: the mean edge of
+    /// a voxel.
+    pub fn sigma(&self, is_software: bool) -> f64 {
+        let voxels = self.size(is_software).map(f64::from);
+        (self.extent / DVec3::from_array(voxels)).element_sum() / 3.0
+    }
+
+    /// Distance at which the rays of the mode `MonteCarlo` start, in standard deviations of the finest
+    /// level (campagnolo-2021, 3.5: one voxel).
+    pub const REFERENCE_GAP: f64 = 1.0;
+    /// Distance of their samples, in the same unit.
+    pub const REFERENCE_STEP: f64 = 0.5;
+}
+
+/// Checks a scene's lighting for a model whose box has these edges in world space.
+pub(super) fn resolve(
+    spec: &LightingSpec,
+    extent: DVec3,
+    cells: usize,
+) -> Result<Lighting, SceneError> {
+    let extent = extent.max(DVec3::splat(1e-6));
+    let diagonal = extent.length();
+    let occlusion = match spec.occlusion.filter(|o| o.mode != LightMode::Off) {
+        None => None,
+        Some(o) => Some(Occlusion {
+            mode: o.mode,
+            cone: Cone {
+                half_angle: within(
+                    "lighting.occlusion.half_angle_degrees",
+                    o.half_angle_degrees,
+                    [1.0, 45.0],
+                )?
+                .to_radians(),
+                splits: splits("lighting.occlusion.splits", o.splits)?,
+                attenuation: within("lighting.occlusion.attenuation", o.attenuation, [0.0, 4.0])?,
+                gap: within("lighting.occlusion.gap", o.gap, [0.0, 20.0])?,
+                length: diagonal * within("lighting.occlusion.length", o.length, [0.01, 1.0])?,
+                even_media: o.even_media,
+            },
+            strength: within("lighting.occlusion.strength", o.strength, [0.0, 1.0])?,
+        }),
+    };
+    let s = spec.shadows;
+    let cone = |half_angle_degrees| -> Result<Cone, SceneError> {
+        Ok(Cone {
+            half_angle: within(
+                "lighting.lights.half_angle_degrees",
+                half_angle_degrees,
+                [0.05, 10.0],
+            )?
+            .to_radians(),
+            splits: splits("lighting.shadows.splits", s.splits)?,
+            attenuation: within("lighting.shadows.attenuation", s.attenuation, [0.0, 4.0])?,
+            gap: within("lighting.shadows.gap", s.gap, [0.0, 20.0])?,
+            length: diagonal * within("lighting.shadows.length", s.length, [0.01, 1.0])?,
+            even_media: s.even_media,
+        })
+    };
+    let ambient = spec
+        .ambient
+        .unwrap_or(if spec.lights.is_empty() { 1.0 } else { 0.4 });
+    let ambient = within("lighting.ambient", ambient, [0.0, 1.0])?;
+    // Together with ambient light no brighter than without lights, so that colors stay within the legend.
+    let share = (1.0 - ambient) / spec.lights.len().max(1) as f64;
+    let checked = |light| -> Result<Light, SceneError> {
+        let (source, half_angle, intensity, color) = source(light)?;
+        let intensity = intensity.unwrap_or(share);
+        let rgb = parse_color(color)
+            .ok_or_else(|| wrong("lighting.lights.color", "must be a color like #ffffff"))?;
+        Ok(Light {
+            source,
+            color: DVec3::from_array(rgb.map(linear_from_srgb))
+                * within("lighting.lights.intensity", intensity, [0.0, 10.0])?,
+            cone: cone(half_angle)?,
+        })
+    };
+    if !(1..=1024).contains(&spec.rays) {
+        return Err(wrong("lighting.rays", "must be 1 to 1024"));
+    }
+    volume(&spec.volume)?;
+    Ok(Lighting {
+        occlusion,
+        lights: spec.lights.iter().map(checked).collect::<Result<_, _>>()?,
+        shadows: s.mode,
+        ambient,
+        blinn_phong: spec.blinn_phong && !spec.lights.is_empty(),
+        exact_colors: spec.exact_colors,
+        rays: spec.rays,
+        seed: spec.seed,
+        extent,
+        cells,
+        volume: spec.volume,
+    })
+}
+
+fn source(light: &LightSpec) -> Result<(Source, f64, Option<f64>, &str), SceneError> {
+    let unit = |v: &[f64; 3]| {
+        DVec3::from_array(*v)
+            .try_normalize()
+            .ok_or_else(|| wrong("lighting.lights.direction", "must have a length above 0"))
+    };
+    let place = |v: &[f64; 3]| {
+        let position = DVec3::from_array(*v);
+        match position.is_finite() {
+            true => Ok(position),
+            false => Err(wrong(
+                "lighting.lights.position",
+                "must be three finite numbers",
+            )),
+        }
+    };
+    Ok(match light {
+        LightSpec::Directional {
+            direction,
+            half_angle_degrees,
+            intensity,
+            color,
+        } => {
+            let toward = -unit(direction)?;
+            let source = Source::Directional { toward };
+            (source, *half_angle_degrees, *intensity, color)
+        }
+        LightSpec::Point {
+            position,
+            half_angle_degrees,
+            intensity,
+            color,
+        } => {
+            let position = place(position)?;
+            let source = Source::Point { position };
+            (source, *half_angle_degrees, *intensity, color)
+        }
+        LightSpec::Spot {
+            position,
+            direction,
+            opening_degrees,
+            half_angle_degrees,
+            intensity,
+            color,
+        } => {
+            let opening = within(
+                "lighting.lights.opening_degrees",
+                *opening_degrees,
+                [0.5, 89.0],
+            )?;
+            let source = Source::Spot {
+                position: place(position)?,
+                axis: unit(direction)?,
+                opening: opening.to_radians(),
+            };
+            (source, *half_angle_degrees, *intensity, color)
+        }
+    })
+}
+
+fn volume(spec: &VolumeSpec) -> Result<(), SceneError> {
+    if spec.budget_mb == Some(0) {
+        return Err(wrong("lighting.volume.budget_mb", "must be at least 1"));
+    }
+    for (field, size) in [
+        ("lighting.volume.size", spec.size),
+        ("lighting.volume.light_size", spec.light_size),
+    ] {
+        if size.is_some_and(|s| s.iter().any(|n| !(2..=MOST_ALONG).contains(n))) {
+            let problem = format!("must be 2 to {MOST_ALONG} voxels along each axis");
+            return Err(wrong(field, problem));
+        }
+    }
+    Ok(())
+}
+
+fn within(field: &'static str, value: f64, [low, high]: [f64; 2]) -> Result<f64, SceneError> {
+    if (low..=high).contains(&value) {
+        Ok(value)
+    } else {
+        Err(wrong(field, format!("{value} must be {low} to {high}")))
+    }
+}
+
+fn splits(field: &'static str, splits: u32) -> Result<u32, SceneError> {
+    match splits {
+        1 | 3 | 7 => Ok(splits),
+        _ => Err(wrong(field, format!("{splits} must be 1, 3 or 7"))),
+    }
+}
