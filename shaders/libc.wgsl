@@ -15,6 +15,7 @@
 // the rays that found no way out of their cell. Software adapters run both sides of every branch for
 // eight rays together, so what is rare stands outside the loops, and options are pipeline constants.
 #import section
+#import shading
 #import facing
 
 // Rays go on across faults and collapsed layers.
@@ -282,7 +283,9 @@ fn walk(@builtin(global_invocation_id) id: vec3u) {
             }
             let uvw = on_face(exit.face, exit.at);
             let t = max(exit.t, walk.t);
-            integrate(&walk, &sum, ray, t, uvw, &tally);
+            if !integrate(&walk, &sum, ray, t, uvw, &tally) {
+                break;
+            }
             walk.t = t;
             walk.done = t;
             walk.uvw = uvw;
@@ -503,9 +506,10 @@ fn segment_value(s: Segment, t: f32) -> f32 {
     return mix(pair.x, pair.y, q.y);
 }
 
-// Adds what lies between the current place of the ray and its exit at distance `t`.
+// Adds what lies between the current place of the ray and its exit at distance `t`; false where the ray
+// pauses before.
 fn integrate(walk: ptr<function, Walk>, sum: ptr<function, Accumulated>, ray: Ray, t: f32, uvw: vec3f,
-    tally: ptr<function, Tally>) {
+    tally: ptr<function, Tally>) -> bool {
     var s: Segment;
     s.t = (*walk).t;
     s.length = max(t - s.t, 1e-20);
@@ -519,23 +523,26 @@ fn integrate(walk: ptr<function, Walk>, sum: ptr<function, Accumulated>, ray: Ra
         s.top = vec4f(values[drawn_rank((*walk).column, (*walk).layer)]);
         s.bottom = s.top;
     }
+    let is_ghost = is_ghost((*walk).column, (*walk).layer);
     if BY_SEGMENT {
         let from_t = max(max(s.t, (*walk).done), ray.enter);
-        if is_ghost((*walk).column, (*walk).layer) {
-            *sum = absorb(*sum, frame.ghost, frame.ghost.w * max(0.0, min(t, ray.leave) - from_t));
-            return;
+        if is_ghost {
+            let to_t = max(from_t, min(t, ray.leave));
+            let entry = lit(frame.ghost, ray, 0.5 * (from_t + to_t), true, tally);
+            *sum = absorb(*sum, entry, frame.ghost.w * (to_t - from_t));
+            return true;
         }
-        integrate_segment(s, sum, from_t, min(t, ray.leave), tally);
-        return;
+        integrate_segment(s, sum, ray, from_t, min(t, ray.leave), tally);
+        return true;
     }
     // Samples from the first one at or behind the entry to the last one before the exit.
     let first = ceil(s.t / frame.step - 0.5) - ray.first;
     let end = min(ceil(t / frame.step - 0.5) - ray.first, ray.count);
     var n = max((*walk).n, first);
     let count = max(0.0, end - n);
-    if !BY_VERTEX || is_ghost((*walk).column, (*walk).layer) {
+    if !LIT && (!BY_VERTEX || is_ghost) {
         var entry = transfer(s.top.x);
-        if is_ghost((*walk).column, (*walk).layer) {
+        if is_ghost {
             entry = frame.ghost;
         }
         let depth = entry.w * frame.step;
@@ -546,14 +553,33 @@ fn integrate(walk: ptr<function, Walk>, sum: ptr<function, Accumulated>, ray: Ra
         (*tally).work += 1u;
         n += count;
     }
-    while n < end && is_open(*sum) {
+    // Shaded samples may be so dear that a ray pauses within a cell.
+    while n < end && is_open(*sum) && (!LIT || (*tally).work < tile.work_limit) {
         let at = (ray.first + n + 0.5) * frame.step;
-        *sum = accumulate(*sum, transfer(segment_value(s, at)));
+        var entry = transfer(segment_value(s, at));
+        if LIT {
+            if is_ghost {
+                entry = frame.ghost;
+            }
+            entry = lit(entry, ray, at, is_ghost, tally);
+        }
+        *sum = accumulate(*sum, entry);
         n += 1.0;
         (*tally).samples += 1u;
         (*tally).work += 1u;
     }
-    (*walk).n = max(max((*walk).n, end), n);
+    let is_whole = n >= end || !is_open(*sum);
+    (*walk).n = select(n, max((*walk).n, max(end, n)), is_whole);
+    return is_whole;
+}
+
+// The color and extinction of a sample at a distance from the eye, shaded.
+fn lit(entry: vec4f, ray: Ray, t: f32, is_ghost: bool, tally: ptr<function, Tally>) -> vec4f {
+    if LIT && entry.w > 0.0 {
+        (*tally).work += lighting.work;
+        return vec4f(shade(entry.rgb, frame.eye + t * ray.direction, is_ghost), entry.w);
+    }
+    return entry;
 }
 
 // Adds a stretch of one color and an optical depth.
@@ -564,7 +590,8 @@ fn absorb(a: Accumulated, color: vec4f, optical_depth: f32) -> Accumulated {
 
 // The segment in pieces so small that the order of colors within one does not matter; in each the means
 // of extinction and color over its values are differences of integrals.
-fn integrate_segment(s: Segment, sum: ptr<function, Accumulated>, from_t: f32, to_t: f32, tally: ptr<function, Tally>) {
+fn integrate_segment(s: Segment, sum: ptr<function, Accumulated>, ray: Ray, from_t: f32, to_t: f32,
+    tally: ptr<function, Tally>) {
     if to_t <= from_t {
         return;
     }
@@ -579,7 +606,9 @@ fn integrate_segment(s: Segment, sum: ptr<function, Accumulated>, from_t: f32, t
     for (var n = 1.0; n <= pieces && is_open(*sum); n += 1.0) {
         let value = segment_value(s, from_t + length * n / pieces);
         let mean = transfer_mean(before, value);
-        *sum = absorb(*sum, mean / max(mean.w, 1e-30), mean.w * length / pieces);
+        let entry = vec4f(mean.rgb / max(mean.w, 1e-30), mean.w);
+        let middle = from_t + length * (n - 0.5) / pieces;
+        *sum = absorb(*sum, lit(entry, ray, middle, false, tally), mean.w * length / pieces);
         before = value;
         (*tally).samples += 1u;
         (*tally).work += 1u;

@@ -9,6 +9,7 @@
 // has done tile.work_limit loop iterations pauses: drivers end long loops without a word (llvmpipe
 // after 65,535 iterations of all loops together), and no submission may run for long.
 #import section
+#import shading
 #import topology
 
 @compute @workgroup_size(8, 8)
@@ -41,9 +42,14 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         }
         while track.has_cell {
             samples += 1u;
+            let is_ghost = is_ghost(track.cell.column, track.cell.layer);
             var entry = transfer(value_on(track));
-            if is_ghost(track.cell.column, track.cell.layer) {
+            if is_ghost {
                 entry = frame.ghost;
+            }
+            if LIT && entry.w > 0.0 {
+                entry = vec4f(shade(entry.rgb, ray.base + n * ray.advance, is_ghost), entry.w);
+                track.work += lighting.work;
             }
             sum = accumulate(sum, entry);
             n += 1.0;

@@ -7,6 +7,7 @@
 // A ray passes a brick, or a larger part of the pyramid, at once where it is empty; in one step where it
 // is even; in longer steps, from the average pyramid, where it is thin.
 #import section
+#import random
 
 // A clip plane has an opaque section.
 override SECTIONS: bool = false;
@@ -99,7 +100,9 @@ fn march(@builtin(global_invocation_id) id: vec3u) {
         let at = base + (n + 0.5 * (taken - 1.0)) * advance;
         let voxel = textureSampleLevel(voxels, linear, at, stretch.level).xyz;
         let before = sum.transmittance;
-        sum = add(sum, voxel, taken);
+        let place = ray.base + (n + 0.5 * (taken - 1.0)) * ray.advance;
+        sum = add(sum, voxel, taken, place);
+        work += select(0u, lighting.work, LIT && sum.transmittance < before);
         sees_nothing = sum.transmittance == before;
         samples += select(0u, 1u, voxel.y + voxel.z > 0.0);
         n += taken;
@@ -122,7 +125,7 @@ fn march(@builtin(global_invocation_id) id: vec3u) {
 }
 
 // Adds a sample that stands for `taken` of them; its opacity is multiplied by presence.
-fn add(a: Accumulated, voxel: vec3f, taken: f32) -> Accumulated {
+fn add(a: Accumulated, voxel: vec3f, taken: f32, place: vec3f) -> Accumulated {
     var stored = voxel.x;
     if WEIGHTED {
         stored /= max(voxel.y, 1e-6);
@@ -130,9 +133,16 @@ fn add(a: Accumulated, voxel: vec3f, taken: f32) -> Accumulated {
     let entry = transfer_at(bricks.position_low + bricks.position_scale * stored);
     var color = entry.rgb;
     var opacity = voxel.y * (1.0 - exp(-entry.w * frame.step));
+    if LIT && opacity > 0.0 {
+        color = shade(color, place, false);
+    }
     if GHOSTS {
         let ghost = voxel.z * (1.0 - exp(-frame.ghost.w * frame.step));
-        color = (opacity * color + ghost * frame.ghost.rgb) / max(opacity + ghost, 1e-20);
+        var gray = frame.ghost.rgb;
+        if LIT && ghost > 0.0 {
+            gray = shade(gray, place, true);
+        }
+        color = (opacity * color + ghost * gray) / max(opacity + ghost, 1e-20);
         opacity += ghost;
     }
     var passed = 1.0 - opacity;
@@ -167,13 +177,7 @@ fn stretch_at(at: vec3f, advance: vec3f, n: f32, end: f32) -> Stretch {
     return stretch;
 }
 
-// A number in [0, 1) that depends on pixel and sample alone (PCG; Jarzynski and Olano 2020).
+// A number in [0, 1) that depends on pixel and sample alone.
 fn random(pixel: vec2u, sample: u32) -> f32 {
     return f32(pcg(pixel.x + pcg(pixel.y + pcg(sample))) >> 8u) / 16777216.0;
-}
-
-fn pcg(v: u32) -> u32 {
-    let state = v * 747796405u + 2891336453u;
-    let word = ((state >> ((state >> 28u) + 4u)) ^ state) * 277803737u;
-    return (word >> 22u) ^ word;
 }

@@ -3,6 +3,8 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use crate::gpu::illumination::{Illumination, LightTimes};
+use crate::gpu::transfer_tables::TransferTables;
 use crate::gpu::{FrameRenderer, FrameStats, Gpu, GpuBytes, GpuError, GpuGrid};
 use crate::model::{CellField, Grid};
 use crate::picture::Image;
@@ -15,6 +17,8 @@ pub struct Renderer {
     gpu: Arc<Gpu>,
     grid: GpuGrid,
     frames: FrameRenderer,
+    tables: Option<TransferTables>,
+    light: Illumination,
     strategies: Vec<(StrategyKind, Box<dyn RenderStrategy>)>,
     shown: Option<Shown>,
 }
@@ -36,6 +40,8 @@ pub struct Frame {
     pub stats: FrameStats,
     /// Time to bring field, selection and what the strategy keeps up to date.
     pub prepare: Duration,
+    /// Of it, what bringing the light up to date took.
+    pub light: LightTimes,
     /// Bytes on the device by purpose.
     pub bytes: GpuBytes,
 }
@@ -57,6 +63,8 @@ impl Renderer {
     pub fn new(gpu: Arc<Gpu>, grid: &Grid) -> Result<Self, GpuError> {
         Ok(Self {
             grid: GpuGrid::new(&gpu, grid)?,
+            light: Illumination::new(&gpu)?,
+            tables: None,
             gpu,
             frames: FrameRenderer::default(),
             strategies: Vec::new(),
@@ -92,8 +100,17 @@ impl Renderer {
             gpu,
             grid: on_device,
             frames,
+            tables,
+            light,
             ..
         } = self;
+        let tables = match tables.take().filter(|t| t.are_of(&view.transfer)) {
+            Some(known) => tables.insert(known),
+            None => tables.insert(TransferTables::new(gpu, &view.transfer)?),
+        };
+        if !light.update(gpu, on_device, view, tables, progress)? {
+            return Ok(None);
+        }
         let strategy = strategy(gpu, &mut self.strategies, view.strategy)?;
         let preparation = Preparation {
             gpu,
@@ -107,18 +124,26 @@ impl Renderer {
         }
         gpu.wait()?;
         let prepare = start.elapsed();
-        let made = frames.render(gpu, on_device, strategy, view, progress)?;
+        let group = light.bind(gpu, tables);
+        let made = frames.render(gpu, on_device, group, strategy, view, progress)?;
         Ok(made.map(|(image, stats)| Frame {
             image,
             stats,
             prepare,
+            light: light.times,
             bytes: on_device.bytes()
                 + strategy.bytes()
                 + GpuBytes {
                     targets: stats.target_bytes,
+                    lighting: light.bytes(),
                     ..GpuBytes::default()
                 },
         }))
+    }
+
+    /// The light, as the last picture had it.
+    pub fn light(&self) -> &Illumination {
+        &self.light
     }
 
     /// Brings field and selection of a view to the device. Rendering does so by itself; done before,

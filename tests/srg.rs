@@ -14,9 +14,10 @@ use glam::DVec3;
 use half::f16;
 use rayon::prelude::*;
 use strataray::case::Case;
-use strataray::gpu::resample::{self, Resampler, Volume};
+use strataray::gpu::resample::Resampler;
 use strataray::gpu::slabs::Slabs;
 use strataray::gpu::tiles::Pace;
+use strataray::gpu::volume::{self, Volume};
 use strataray::gpu::{Gpu, GpuGrid};
 use strataray::load;
 use strataray::metrics::{Comparison, psnr_8bit};
@@ -102,14 +103,14 @@ fn volume_of(
     on_device
         .show(gpu, grid, field, &drawn, interpolation)
         .unwrap();
-    let volume = Volume::new(gpu, resample::Shape::of(grid.dims(), factor, false));
+    let volume = Volume::new(gpu, volume::Shape::of(grid.dims(), factor, false));
     let mut slabs = Slabs {
         gpu,
         pace: &mut Pace::default(),
         progress: &|_| true,
     };
     let range = range_of(field);
-    let mut resampler = Resampler::new(gpu).unwrap();
+    let mut resampler = Resampler::new(gpu, false).unwrap();
     let done = resampler.fill(&mut slabs, &on_device, &volume, range, interpolation);
     assert!(done.unwrap());
     let halves =

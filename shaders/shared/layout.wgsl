@@ -110,6 +110,91 @@ struct BricksInfo {
     reserved1: u32,
 }
 
+// What a pass of the blur makes of a volume, along one axis.
+struct BlurInfo {
+    axis: u32,
+    // Voxels along the axis, of what is read and of what is made.
+    source_count: u32,
+    made_count: u32,
+    // Standard deviation in voxels of what is read.
+    deviation: f32,
+    // Where values are read: box and planes in grid space relative to the origin, as in a frame; the transfer
+    // function's position of a value: low + scale * part of the range.
+    box_low: vec3f,
+    position_low: f32,
+    // From one voxel to the next.
+    spacing: vec3f,
+    position_scale: f32,
+    // World-space length of the finest level's standard deviation.
+    sigma: f32,
+    // Extinction of inactive cells.
+    ghost: f32,
+    clip_count: u32,
+    reserved: u32,
+    clip_planes: array<vec4f, MAX_CLIP_PLANES>,
+}
+
+// Lighting of a view. Its space: the grid's axes from the low corner of the box, in units of the finest
+// level's standard deviation in world space, so that lengths are those of world space.
+struct LightingInfo {
+    // Grid space relative to the origin.
+    box_low: vec3f,
+    // World-space length of the unit.
+    sigma: f32,
+    // Units a grid-space length.
+    scale: vec3f,
+    strength: f32,
+    // Of the box.
+    size: vec3f,
+    ambient: f32,
+    // Voxels of a light volume, of which there are `volumes`, one above the other.
+    light_size: vec3u,
+    volumes: u32,
+    // The viewer is the first, the lights follow.
+    emitters: u32,
+    // Levels of the extinction pyramid.
+    levels: u32,
+    // Transfer-function position of a value: low + scale * part of the range.
+    position_low: f32,
+    position_scale: f32,
+    // Of the rays over a cone: number, seed, start and step.
+    rays: u32,
+    seed: u32,
+    gap: f32,
+    step: f32,
+    // Extinction of inactive cells.
+    ghost: f32,
+    // Reference lengths of the transfer function a unit.
+    gradient_scale: f32,
+    // Loop iterations that a sample costs, about.
+    work: u32,
+    reserved: u32,
+}
+
+// The viewer, or a light.
+struct Emitter {
+    // Where it is, or for a directional light the unit vector toward it.
+    at: vec3f,
+    kind: u32,
+    // Axis of a spot.
+    axis: vec3f,
+    // Cosines of the angle at which a spot's light ends, and at which it begins to fade.
+    cos_outer: f32,
+    // Linear color times intensity.
+    color: vec3f,
+    cos_inner: f32,
+    // First of its sections, and how many have one part, three and seven.
+    first: u32,
+    ones: u32,
+    threes: u32,
+    sevens: u32,
+    // Tangent and cosine of the cone's half angle, its length, and the number of its light volume.
+    tangent: f32,
+    cosine: f32,
+    length: f32,
+    volume: u32,
+}
+
 // One found point for the probe: cell column and layer, or NOT_FOUND, and (s, t, r) and value.
 struct Found {
     column: u32,
@@ -140,6 +225,17 @@ const PASS_PLAIN: u32 = 0u;
 const PASS_EMPTY: u32 = 1u;
 const PASS_EVEN: u32 = 2u;
 const PASS_THIN: u32 = 3u;
+// Kinds of emitters.
+const EMITTER_DIRECTIONAL: u32 = 0u;
+const EMITTER_POINT: u32 = 1u;
+const EMITTER_SPOT: u32 = 2u;
+// Where light along a cone is found.
+const LIGHT_OFF: u32 = 0u;
+const LIGHT_IMAGE: u32 = 1u;
+const LIGHT_VOLUME: u32 = 2u;
+const LIGHT_RAYS: u32 = 3u;
+// Number of an inactive cell in a volume of single numbers; values are 1 to 2, and 0 is no cell.
+const GHOST_NUMBER: f32 = 3.0;
 // Counters, each of a low and a high word.
 const COUNTERS: u32 = 12u;
 const COUNT_SAMPLES: u32 = 0u;

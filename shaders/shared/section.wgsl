@@ -1,5 +1,6 @@
 // Where a clip plane opens the model, the cells that it cuts can be shown as an opaque section.
 #import locate
+#import shading
 #import transfer
 
 // Steps below this end the iteration on a section.
@@ -16,5 +17,5 @@ fn section_color(ray: Ray) -> vec4f {
         return vec4f(0.0);
     }
     let inside = clamp(location.solution.uvw, vec3f(0.0), vec3f(1.0));
-    return vec4f(transfer(evaluate(location.cell, inside).w).rgb, 1.0);
+    return vec4f(shade(transfer(evaluate(location.cell, inside).w).rgb, point, false), 1.0);
 }

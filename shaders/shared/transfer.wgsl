@@ -1,20 +1,9 @@
-// Value to color and extinction, from a table.
+// Value to color and extinction, and sums of them along a ray.
 #import frame
-
-// Linear red, green, blue and extinction per world-space length at LUT_SIZE positions over the range.
-@group(2) @binding(0) var<storage, read> transfer_table: array<vec4f>;
-
-// Integrals of extinction times color, and of extinction, over the position from 0 to each entry.
-@group(2) @binding(1) var<storage, read> transfer_integrals: array<vec4f>;
+#import table
 
 fn transfer(value: f32) -> vec4f {
     return transfer_at((value - frame.value_low) * frame.value_scale);
-}
-
-fn transfer_at(position: f32) -> vec4f {
-    let at = clamp(position, 0.0, 1.0) * f32(LUT_SIZE - 1u);
-    let entry = min(u32(at), LUT_SIZE - 2u);
-    return mix(transfer_table[entry], transfer_table[entry + 1u], at - f32(entry));
 }
 
 // Means over the values between two: of extinction times color, and of extinction.

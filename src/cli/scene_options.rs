@@ -7,7 +7,10 @@ use anyhow::Context;
 use strataray::case::Case;
 use strataray::gpu::Gpu;
 use strataray::load;
-use strataray::scene::{CameraSpec, FramingCamera, Interpolation, Scene, StepSpec};
+use strataray::scene::lighting::PRESETS;
+use strataray::scene::{
+    CameraSpec, FramingCamera, Interpolation, LightMode, LightingSpec, Scene, StepSpec,
+};
 
 use super::progress::Reporter;
 
@@ -31,9 +34,12 @@ pub struct SceneOptions {
     /// Picture size, such as 1000x1000.
     #[arg(long, value_name = "WxH")]
     pub size: Option<String>,
-    /// Occlusion: only off in this version.
-    #[arg(long)]
-    occlusion: Option<String>,
+    /// Occlusion toward the viewer, and where it is found.
+    #[arg(long, value_name = "MODE")]
+    occlusion: Option<LightMode>,
+    /// Preset of occlusion and lights.
+    #[arg(long, value_name = "NAME", value_parser = lighting_preset, help = lighting_help())]
+    lighting: Option<LightingSpec>,
     /// Direction to look from, and zoom.
     #[arg(
         long,
@@ -75,10 +81,11 @@ impl SceneOptions {
         if let Some(interpolation) = self.interpolation {
             scene.interpolation = interpolation;
         }
-        if let Some(occlusion) = self.occlusion.as_deref()
-            && occlusion != "off"
-        {
-            anyhow::bail!("--occlusion {occlusion} is not supported yet; use off");
+        if let Some(lighting) = &self.lighting {
+            scene.lighting.clone_from(lighting);
+        }
+        if let Some(mode) = self.occlusion {
+            scene.lighting.occlusion.get_or_insert_default().mode = mode;
         }
         if let Some(size) = &self.size {
             let parsed = size
@@ -131,6 +138,16 @@ pub fn open_case(path: &Path, reporter: &Reporter) -> anyhow::Result<Case> {
         reporter.note(note);
     }
     Ok(case)
+}
+
+fn lighting_preset(name: &str) -> Result<LightingSpec, String> {
+    let names = || PRESETS.map(|(name, _)| name).join(", ");
+    LightingSpec::preset(name).ok_or_else(|| format!("there are {}", names()))
+}
+
+fn lighting_help() -> String {
+    let presets = PRESETS.map(|(name, what)| format!("{name} ({what})"));
+    format!("Preset of occlusion and lights: {}", presets.join(", "))
 }
 
 fn framing(text: &str) -> anyhow::Result<FramingCamera> {

@@ -99,7 +99,7 @@ impl Gpu {
             reason,
         };
         let offered = adapter.limits();
-        let needed = 15;
+        let needed = 17;
         if offered.max_storage_buffers_per_shader_stage < needed {
             return Err(unsuitable(format!(
                 "it offers {} storage buffers a shader and {needed} are needed",
@@ -107,7 +107,8 @@ impl Gpu {
             )));
         }
         let limits = wgpu::Limits {
-            // Eight arrays of the grid, two transfer tables, counters, ray states, a strategy's own.
+            // Eight arrays of the grid, two transfer tables, emitters and their
+            // sections, counters, ray states, a strategy's own.
             max_storage_buffers_per_shader_stage: needed,
             // Depth lists and values of large models are single arrays: take what there is.
             max_storage_buffer_binding_size: offered.max_storage_buffer_binding_size,

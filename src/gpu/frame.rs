@@ -7,14 +7,13 @@ use glam::DVec3;
 
 use super::device::{Gpu, GpuError};
 use super::grid_upload::GpuGrid;
-use super::layout::{self, Frame, LUT_SIZE, MAX_CLIP_PLANES, Tile};
+use super::layout::{self, Frame, MAX_CLIP_PLANES, Tile};
 use super::pipeline::Pipeline;
 use super::target;
 use super::tiles::{self, Pace, Rect};
 use crate::picture::Image;
 use crate::scene::{View, ghosts};
 use crate::strategies::RenderStrategy;
-use crate::transfer::TransferFunction;
 use crate::transfer::function::linear_from_srgb;
 
 /// What a frame cost.
@@ -195,7 +194,7 @@ impl Round<'_> {
 }
 
 impl FrameRenderer {
-    /// Renders a view; `None` where `progress` cancelled it.
+    /// Renders a view; `None` where `progress` cancelled it. `light` is bind group 2.
     ///
     /// # Errors
     /// When the picture is too large for the adapter or the device reports an error.
@@ -203,6 +202,7 @@ impl FrameRenderer {
         &mut self,
         gpu: &Gpu,
         grid: &GpuGrid,
+        light: wgpu::BindGroup,
         strategy: &mut dyn RenderStrategy,
         view: &View,
         progress: &dyn Fn(f64) -> bool,
@@ -220,9 +220,6 @@ impl FrameRenderer {
         let pixels = u64::from(view.size[0]) * u64::from(view.size[1]);
         let state_bytes = strategy.ray_state_bytes() * pixels.min(tiles::MAX_AREA);
         let states = gpu.scratch("ray states", state_bytes);
-        let table = transfer_table(&view.transfer);
-        let integrals = gpu.storage("transfer integrals", &transfer_integrals(&table))?;
-        let table = gpu.storage("transfer table", &table)?;
         let frame = gpu.uniform("frame", &frame_uniform(grid, view));
         let tile = gpu.uniform("tile", &Tile::zeroed());
         let texture = target.create_view(&wgpu::TextureViewDescriptor::default());
@@ -233,13 +230,12 @@ impl FrameRenderer {
             counters.as_entire_binding(),
             states.as_entire_binding(),
         ];
-        let transfer_resources = [table.as_entire_binding(), integrals.as_entire_binding()];
         let bound = Bound {
             gpu,
             groups: [
                 gpu.bind(gpu.layouts.group(0), &frame_resources),
                 grid.bind(gpu),
-                gpu.bind(gpu.layouts.group(2), &transfer_resources),
+                light,
             ],
             tile,
             counters,
@@ -383,41 +379,6 @@ fn queries(gpu: &Gpu) -> Option<(wgpu::QuerySet, wgpu::Buffer)> {
     Some((set, resolve))
 }
 
-/// Linear red, green, blue and extinction at equal distances over the range.
-pub(super) fn transfer_table(transfer: &TransferFunction) -> Vec<[f32; 4]> {
-    (0..LUT_SIZE)
-        .map(|n| {
-            let position = f64::from(n) / f64::from(LUT_SIZE - 1);
-            let [r, g, b] = transfer.linear_rgb(position).map(|v| v as f32);
-            [r, g, b, transfer.extinction(position) as f32]
-        })
-        .collect()
-}
-
-/// Integrals over the position, from 0 to each entry of the table, of extinction times color and of
-/// extinction: between two positions the mean of both is a difference away.
-fn transfer_integrals(table: &[[f32; 4]]) -> Vec<[f32; 4]> {
-    let width = 1.0 / f64::from(LUT_SIZE - 1);
-    let mut sum = [0.0f64; 4];
-    let mut before = [0.0f64; 4];
-    table
-        .iter()
-        .enumerate()
-        .map(|(n, entry)| {
-            let tau = f64::from(entry[3]);
-            let [r, g, b] = [0, 1, 2].map(|c| tau * f64::from(entry[c]));
-            let now = [r, g, b, tau];
-            if n > 0 {
-                for c in 0..4 {
-                    sum[c] += 0.5 * width * (before[c] + now[c]);
-                }
-            }
-            before = now;
-            sum.map(|v| v as f32)
-        })
-        .collect()
-}
-
 fn frame_uniform(grid: &GpuGrid, view: &View) -> Frame {
     let camera = &view.camera;
     let aspect = view.aspect();
@@ -472,7 +433,7 @@ fn farthest(view: &View) -> f64 {
 }
 
 /// Planes from world space to grid space relative to the grid's origin; f64 until nothing cancels.
-fn clip_planes(grid: &GpuGrid, view: &View) -> [[f32; 4]; MAX_CLIP_PLANES] {
+pub(super) fn clip_planes(grid: &GpuGrid, view: &View) -> [[f32; 4]; MAX_CLIP_PLANES] {
     let mut planes = [[0.0; 4]; MAX_CLIP_PLANES];
     for (plane, clip) in planes.iter_mut().zip(&view.clip) {
         let to_world = &view.spaces.world_from_grid;

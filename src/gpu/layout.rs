@@ -108,6 +108,74 @@ pub struct BricksInfo {
     pub reserved1: u32,
 }
 
+/// What a pass of the blur makes of a volume.
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+#[allow(missing_docs, reason = "described where the shader reads them")]
+pub struct BlurInfo {
+    pub axis: u32,
+    pub source_count: u32,
+    pub made_count: u32,
+    pub deviation: f32,
+    pub box_low: [f32; 3],
+    pub position_low: f32,
+    pub spacing: [f32; 3],
+    pub position_scale: f32,
+    pub sigma: f32,
+    pub ghost: f32,
+    pub clip_count: u32,
+    pub reserved: u32,
+    pub clip_planes: [[f32; 4]; MAX_CLIP_PLANES],
+}
+
+/// Lighting of a view.
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+#[allow(missing_docs, reason = "described where the shader reads them")]
+pub struct LightingInfo {
+    pub box_low: [f32; 3],
+    pub sigma: f32,
+    pub scale: [f32; 3],
+    pub strength: f32,
+    pub size: [f32; 3],
+    pub ambient: f32,
+    pub light_size: [u32; 3],
+    pub volumes: u32,
+    pub emitters: u32,
+    pub levels: u32,
+    pub position_low: f32,
+    pub position_scale: f32,
+    pub rays: u32,
+    pub seed: u32,
+    pub gap: f32,
+    pub step: f32,
+    pub ghost: f32,
+    pub gradient_scale: f32,
+    pub work: u32,
+    pub reserved: u32,
+}
+
+/// The viewer, or a light.
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+#[allow(missing_docs, reason = "described where the shader reads them")]
+pub struct Emitter {
+    pub at: [f32; 3],
+    pub kind: u32,
+    pub axis: [f32; 3],
+    pub cos_outer: f32,
+    pub color: [f32; 3],
+    pub cos_inner: f32,
+    pub first: u32,
+    pub ones: u32,
+    pub threes: u32,
+    pub sevens: u32,
+    pub tangent: f32,
+    pub cosine: f32,
+    pub length: f32,
+    pub volume: u32,
+}
+
 /// One answer of the probe.
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 #[repr(C)]
@@ -157,6 +225,22 @@ pub const LIST_OFFSET: u32 = 0x3fff_ffff;
 pub const BRICK: u32 = 8;
 /// Voxels that a thread fills one after the other, downwards.
 pub const RUN: u32 = 16;
+/// An emitter far away.
+pub const EMITTER_DIRECTIONAL: u32 = 0;
+/// An emitter at a point.
+pub const EMITTER_POINT: u32 = 1;
+/// An emitter at a point, within a cone.
+pub const EMITTER_SPOT: u32 = 2;
+/// No light along cones.
+pub const LIGHT_OFF: u32 = 0;
+/// Light found at every sample.
+pub const LIGHT_IMAGE: u32 = 1;
+/// Light found in a volume before.
+pub const LIGHT_VOLUME: u32 = 2;
+/// Light found at every sample by rays over the cone.
+pub const LIGHT_RAYS: u32 = 3;
+/// Number of an inactive cell in a volume of single numbers.
+pub const GHOST_NUMBER: f32 = 3.0;
 /// Counters, each of a low and a high word.
 pub const COUNTERS: u32 = 12;
 /// Counter of the samples inside drawn cells.

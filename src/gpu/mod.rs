@@ -1,10 +1,13 @@
 //! Everything that owns a GPU object: device, shaders, the compact grid, frames and probes.
 
 pub mod accel;
+pub mod cones;
 pub mod device;
+pub mod extinction;
 pub mod faces;
 pub mod frame;
 pub mod grid_upload;
+pub mod illumination;
 pub mod layout;
 pub mod pipeline;
 pub mod probe;
@@ -14,6 +17,8 @@ pub mod shader;
 pub mod slabs;
 mod target;
 pub mod tiles;
+pub mod transfer_tables;
+pub mod volume;
 
 pub use device::{Gpu, GpuError};
 pub use frame::{FrameRenderer, FrameStats, Place, Round};

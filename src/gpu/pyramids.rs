@@ -1,17 +1,21 @@
 //! Pyramids over a resampled volume: averages, and how rays may pass its bricks.
 
 use super::device::{Gpu, GpuError};
-use super::frame::transfer_table;
 use super::layout::{BRICK, BricksInfo, LUT_SIZE, Slab};
 use super::pipeline::Pipeline;
-use super::resample::Volume;
+use super::transfer_tables::transfer_table;
+
 use super::slabs::Slabs;
+use super::volume::{Volume, Voxel};
 use crate::transfer::TransferFunction;
 
 /// Bytes of a part of the pyramid: range, presence, extinction.
 const PART_BYTES: u64 = 16;
 /// Levels of [`range_maxima`].
 const MAXIMA_LEVELS: u32 = LUT_SIZE.ilog2() + 1;
+
+/// Loop iterations that a voxel of an average costs, about.
+const AVERAGE_WORK: u64 = 8;
 
 /// What bricks are classified by; each negative for never.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -197,18 +201,19 @@ impl PyramidMaker {
         bricks: &Bricks,
     ) -> Result<bool, GpuError> {
         let gpu = slabs.gpu;
-        let average = &self.average[usize::from(volume.shape.ghosts)];
+        let average = &self.average[usize::from(volume.shape.voxel == Voxel::Quad)];
         for level in 1..volume.shape.levels {
             let finer = volume.level(level - 1);
-            let done = volume.make_level(slabs, level, &|encoder, slab, voxels| {
-                let what = What {
-                    slab: *slab,
-                    volume: &finer,
-                    voxels,
-                    size: slab.size,
-                };
-                self.record(average, gpu, encoder, bricks, &what);
-            })?;
+            let done =
+                volume.make_level(slabs, level, AVERAGE_WORK, &|encoder, slab, voxels| {
+                    let what = What {
+                        slab: *slab,
+                        volume: &finer,
+                        voxels,
+                        size: slab.size,
+                    };
+                    self.record(average, gpu, encoder, bricks, &what);
+                })?;
             if !done {
                 return Ok(false);
             }

@@ -1,248 +1,42 @@
-//! A field resampled on the device: a volume of value and presence over the box of the active cells.
+//! Fills volumes with a field by point location.
 
 use super::device::{Gpu, GpuError};
 use super::grid_upload::{Constants, GpuGrid};
-use super::layout::{self, RUN, Slab, VolumeInfo};
-use super::pipeline::Pipeline;
+use super::layout::{self, VolumeInfo};
+use super::pipeline::{Pipeline, flag};
 use super::slabs::Slabs;
-use crate::model::Dims;
+use super::volume::Volume;
 use crate::scene::Interpolation;
 
-/// Bytes of the buffer through which voxels come into the texture: no adapter needs to write it from a
-/// shader.
-const SLAB_BYTES: u64 = 16 << 20;
 /// Loop iterations that a voxel costs, about: bins, column, Newton's method.
 const VOXEL_WORK: u64 = 8;
-
-/// How large a volume is, and what it can hold.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Shape {
-    /// Voxels along x, y and depth.
-    pub size: [u32; 3],
-    /// Levels of the texture: the volume, and those of its average pyramid.
-    pub levels: u32,
-    /// Inactive cells are shown.
-    pub ghosts: bool,
-}
-
-/// Levels of the average pyramid above the volume, at most: the longest step is of 2^3 samples.
-const AVERAGES: u32 = 3;
-/// Voxels along an axis, at most; no adapter has more.
-const MOST_ALONG: f64 = 16384.0;
-
-impl Shape {
-    /// `factor` voxels for each cell of the grid along i, j and k, with all levels.
-    pub fn of(dims: Dims, factor: f64, ghosts: bool) -> Self {
-        let along = |n: usize| (factor * n as f64).round().clamp(1.0, MOST_ALONG) as u32;
-        let size = [dims.ni, dims.nj, dims.nk].map(along);
-        let coarsest = size.iter().max().map_or(0, |n| n.ilog2());
-        Self {
-            size,
-            levels: 1 + AVERAGES.min(coarsest),
-            ghosts,
-        }
-    }
-
-    /// Half floats, which every adapter can interpolate.
-    fn format(&self) -> wgpu::TextureFormat {
-        match self.ghosts {
-            true => wgpu::TextureFormat::Rgba16Float,
-            false => wgpu::TextureFormat::Rg16Float,
-        }
-    }
-
-    /// Bytes of a voxel.
-    fn voxel_bytes(&self) -> u32 {
-        if self.ghosts { 8 } else { 4 }
-    }
-
-    /// Bytes of all levels.
-    pub fn bytes(&self) -> u64 {
-        let voxels = |level| -> u64 { self.at(level).map(u64::from).iter().product() };
-        u64::from(self.voxel_bytes()) * (0..self.levels).map(voxels).sum::<u64>()
-    }
-
-    /// Voxels of a level along each axis.
-    fn at(&self, level: u32) -> [u32; 3] {
-        self.size.map(|n| (n >> level).max(1))
-    }
-
-    /// Voxels from one row to the next in a buffer: copies want whole multiples of 256 bytes.
-    fn row(&self, level: u32) -> u32 {
-        let step = wgpu::COPY_BYTES_PER_ROW_ALIGNMENT / self.voxel_bytes();
-        self.at(level)[0].next_multiple_of(step)
-    }
-
-    /// Bytes of a slab in a buffer.
-    fn slab_bytes(&self, slab: &Slab) -> u64 {
-        let voxels = [slab.row, slab.size[1], slab.size[2]].map(u64::from);
-        u64::from(self.voxel_bytes()) * voxels.iter().product::<u64>()
-    }
-}
-
-/// A volume over the box of the active cells.
-///
-/// **Shape**: x fastest, then y, then depth; voxel n of N along an axis has its middle at (n + 1/2) / N of
-/// the box.
-pub struct Volume {
-    /// Its size.
-    pub shape: Shape,
-    /// Half floats: the value, as a part of the range that it was filled with, times presence; presence,
-    /// 1 in a drawn cell and 0 elsewhere; and where inactive cells are shown, presence of such a cell,
-    /// and 0.
-    pub texture: wgpu::Texture,
-    /// What shaders know of it: a [`VolumeInfo`].
-    pub info: wgpu::Buffer,
-}
-
-impl Volume {
-    /// An empty volume.
-    pub fn new(gpu: &Gpu, shape: Shape) -> Self {
-        let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
-            label: Some("resampled grid"),
-            size: extent(shape.size),
-            mip_level_count: shape.levels,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D3,
-            format: shape.format(),
-            usage: wgpu::TextureUsages::TEXTURE_BINDING
-                | wgpu::TextureUsages::COPY_SRC
-                | wgpu::TextureUsages::COPY_DST,
-            view_formats: &[],
-        });
-        Self {
-            shape,
-            texture,
-            info: gpu.uniform("volume", &<VolumeInfo as bytemuck::Zeroable>::zeroed()),
-        }
-    }
-
-    /// A view of one level.
-    pub fn level(&self, level: u32) -> wgpu::TextureView {
-        self.texture.create_view(&wgpu::TextureViewDescriptor {
-            base_mip_level: level,
-            mip_level_count: Some(1),
-            ..Default::default()
-        })
-    }
-
-    /// Copies a level back: a word a voxel, value times presence in its low half, or two with ghosts.
-    ///
-    /// # Errors
-    /// When the device reports an error.
-    pub fn read(&self, gpu: &Gpu, level: u32) -> Result<Vec<u32>, GpuError> {
-        let slab = Slab {
-            first: [0; 3],
-            row: self.shape.row(level),
-            size: self.shape.at(level),
-            level,
-        };
-        let staging = gpu.staging(self.shape.slab_bytes(&slab));
-        let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        let (texture, buffer) = self.copy_places(&slab, &staging);
-        encoder.copy_texture_to_buffer(texture, buffer, extent(slab.size));
-        gpu.queue.submit([encoder.finish()]);
-        let words: Vec<u32> = bytemuck::pod_collect_to_vec(&gpu.map(&staging)?);
-        let of = |voxels: u32| (voxels * self.shape.voxel_bytes() / 4) as usize;
-        let rows = words.chunks_exact(of(slab.row));
-        Ok(rows.flat_map(|r| &r[..of(slab.size[0])]).copied().collect())
-    }
-
-    /// Makes the voxels of a level by `dispatch`, which writes a slab of them to a buffer; false where it
-    /// was cancelled.
-    ///
-    /// # Errors
-    /// When the device reports an error.
-    pub fn make_level(
-        &self,
-        slabs: &mut Slabs<'_>,
-        level: u32,
-        dispatch: &dyn Fn(&mut wgpu::CommandEncoder, &Slab, &wgpu::Buffer),
-    ) -> Result<bool, GpuError> {
-        let size = self.shape.at(level);
-        let row = self.shape.row(level);
-        let bytes = |rows| {
-            let slab = Slab {
-                first: [0; 3],
-                row,
-                size: [size[0], rows, RUN],
-                level,
-            };
-            self.shape.slab_bytes(&slab)
-        };
-        let most_rows = (SLAB_BYTES / bytes(1)).clamp(1, u64::from(size[1])) as u32;
-        let voxels = slabs.gpu.scratch("voxels", bytes(most_rows));
-        slabs.cover(size, [most_rows, RUN], VOXEL_WORK, &|encoder, slab| {
-            let slab = Slab {
-                level,
-                row,
-                ..*slab
-            };
-            encoder.clear_buffer(&voxels, 0, Some(self.shape.slab_bytes(&slab)));
-            dispatch(encoder, &slab, &voxels);
-            self.take(&slab, &voxels, encoder);
-        })
-    }
-
-    /// Records the copy of a slab of voxels into its level.
-    fn take(&self, slab: &Slab, voxels: &wgpu::Buffer, encoder: &mut wgpu::CommandEncoder) {
-        let (texture, buffer) = self.copy_places(slab, voxels);
-        encoder.copy_buffer_to_texture(buffer, texture, extent(slab.size));
-    }
-
-    fn copy_places<'a>(
-        &'a self,
-        slab: &Slab,
-        buffer: &'a wgpu::Buffer,
-    ) -> (
-        wgpu::TexelCopyTextureInfo<'a>,
-        wgpu::TexelCopyBufferInfo<'a>,
-    ) {
-        let [x, y, z] = slab.first;
-        let texture = wgpu::TexelCopyTextureInfo {
-            mip_level: slab.level,
-            origin: wgpu::Origin3d { x, y, z },
-            ..self.texture.as_image_copy()
-        };
-        let layout = wgpu::TexelCopyBufferLayout {
-            offset: 0,
-            bytes_per_row: Some(self.shape.voxel_bytes() * slab.row),
-            rows_per_image: Some(slab.size[1]),
-        };
-        (texture, wgpu::TexelCopyBufferInfo { buffer, layout })
-    }
-}
-
-fn extent([width, height, depth_or_array_layers]: [u32; 3]) -> wgpu::Extent3d {
-    wgpu::Extent3d {
-        width,
-        height,
-        depth_or_array_layers,
-    }
-}
 
 /// Fills volumes by point location.
 pub struct Resampler {
     fill: Pipeline,
     /// Constants that it was compiled with.
     constants: Constants,
+    /// Volumes have one number a voxel.
+    single: bool,
 }
 
 impl Resampler {
-    /// Compiles the shader.
+    /// Compiles the shader for volumes of a field, or for those of single numbers.
     ///
     /// # Errors
     /// When the driver refuses it.
-    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+    pub fn new(gpu: &Gpu, single: bool) -> Result<Self, GpuError> {
         let constants = Constants::default();
         Ok(Self {
-            fill: Pipeline::variant(gpu, "resample", "fill", &constants.pairs())?,
+            fill: compile(gpu, constants, single)?,
             constants,
+            single,
         })
     }
 
     /// Fills the first level of a volume with the field that the grid shows; false where it was
-    /// cancelled, and the volume is worth nothing then.
+    /// cancelled, and the volume is worth nothing then. A single number is 0 in no cell, 1 to 2 for the
+    /// range of values, and 3 in an inactive cell that is shown.
     ///
     /// `range` has the values that are stored as 0 and 1.
     ///
@@ -259,14 +53,14 @@ impl Resampler {
         let gpu = slabs.gpu;
         let constants = grid.constants();
         if constants != self.constants {
-            self.fill = Pipeline::variant(gpu, "resample", "fill", &constants.pairs())?;
+            self.fill = compile(gpu, constants, self.single)?;
             self.constants = constants;
         }
         let info = volume_info(grid, volume.shape.size, range, interpolation);
         gpu.queue
             .write_buffer(&volume.info, 0, bytemuck::bytes_of(&info));
         let grid = grid.bind(gpu);
-        volume.make_level(slabs, 0, &|encoder, slab, voxels| {
+        volume.make_level(slabs, 0, VOXEL_WORK, &|encoder, slab, voxels| {
             let slab_info = gpu.uniform("slab", slab);
             let own = [
                 volume.info.as_entire_binding(),
@@ -275,9 +69,17 @@ impl Resampler {
             ];
             let groups = [(1, &grid), (3, &gpu.bind(&self.fill.own, &own))];
             let [width, height, _] = slab.size;
-            self.fill.dispatch(encoder, &groups, [width, height, 1]);
+            let wide = if self.single { 2 } else { 1 };
+            let size = [width.div_ceil(wide), height, 1];
+            self.fill.dispatch(encoder, &groups, size);
         })
     }
+}
+
+fn compile(gpu: &Gpu, constants: Constants, single: bool) -> Result<Pipeline, GpuError> {
+    let own = [("SINGLE", flag(single))];
+    let constants: Vec<_> = own.into_iter().chain(constants.pairs()).collect();
+    Pipeline::variant(gpu, "resample", "fill", &constants)
 }
 
 fn volume_info(

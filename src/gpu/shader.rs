@@ -15,12 +15,20 @@ sources! {
     "cell" => "shared/cell.wgsl",
     "locate" => "shared/locate.wgsl",
     "frame" => "shared/frame.wgsl",
+    "table" => "shared/table.wgsl",
     "transfer" => "shared/transfer.wgsl",
     "topology" => "shared/topology.wgsl",
     "section" => "shared/section.wgsl",
     "facing" => "shared/facing.wgsl",
+    "light" => "shared/light.wgsl",
+    "cones" => "shared/cones.wgsl",
+    "cone_rays" => "shared/cone_rays.wgsl",
+    "shading" => "shared/shading.wgsl",
+    "random" => "shared/random.wgsl",
     "groups" => "shared/groups.wgsl",
+    "extinction" => "extinction.wgsl",
     "faces" => "faces.wgsl",
+    "illuminate" => "illuminate.wgsl",
     "libc" => "libc.wgsl",
     "plts" => "plts.wgsl",
     "probe" => "probe.wgsl",
@@ -30,8 +38,16 @@ sources! {
 }
 
 /// The stems of all shaders that are entry points of a pipeline.
-pub const ENTRIES: [&str; 7] = [
-    "faces", "libc", "plts", "probe", "pyramids", "resample", "srg",
+pub const ENTRIES: [&str; 9] = [
+    "extinction",
+    "faces",
+    "illuminate",
+    "libc",
+    "plts",
+    "probe",
+    "pyramids",
+    "resample",
+    "srg",
 ];
 
 /// The whole text of a shader with its imports in front, each once.

@@ -45,7 +45,7 @@ impl Default for LightingSpec {
             blinn_phong: false,
             exact_colors: false,
             volume: VolumeSpec::default(),
-            rays: 64,
+            rays: 16,
             seed: 0,
         }
     }

@@ -12,7 +12,7 @@ use super::{
     LibcSettings, Scene, SrgSettings, StepSpec,
 };
 use crate::case::{Case, CaseError};
-use crate::gpu::resample::Shape;
+use crate::gpu::volume::Shape;
 use crate::model::{CellField, Dims, Ijk, Spaces};
 use crate::strategies::StrategyKind;
 use crate::transfer::{TransferFunction, presets};

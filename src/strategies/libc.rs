@@ -8,6 +8,7 @@
 use super::{Preparation, RenderStrategy};
 use crate::gpu::faces::{BoundaryFaces, FaceMode, FaceTarget};
 use crate::gpu::grid_upload::Constants;
+use crate::gpu::illumination::Shading;
 use crate::gpu::{Gpu, GpuBytes, GpuError, Pipeline, Place, Round, flag, tiles};
 use crate::scene::{Integration, Interpolation, LibcSettings};
 
@@ -30,11 +31,14 @@ struct Variant {
     settings: LibcSettings,
     interpolation: Interpolation,
     grid: Constants,
+    shading: Shading,
 }
 
 impl Variant {
     fn compile(self, gpu: &Gpu) -> Result<Pipeline, GpuError> {
-        let by_segment = self.settings.integration == Integration::Segments;
+        // Many rays a sample are more than a segment can wait for.
+        let by_segment =
+            self.settings.integration == Integration::Segments && !self.shading.casts_rays();
         let own = [
             ("CROSSES", flag(self.settings.cross_faults)),
             ("BY_SEGMENT", flag(by_segment)),
@@ -43,8 +47,13 @@ impl Variant {
                 flag(self.interpolation == Interpolation::Vertex),
             ),
         ];
-        let constants: Vec<_> = own.into_iter().chain(self.grid.pairs()).collect();
+        let constants: Vec<_> = own.into_iter().chain(self.shared()).collect();
         Pipeline::variant(gpu, "libc", "walk", &constants)
+    }
+
+    /// Constants that all entry points have.
+    fn shared(self) -> impl Iterator<Item = (&'static str, f64)> {
+        self.grid.pairs().into_iter().chain(self.shading.pairs())
     }
 }
 
@@ -58,6 +67,7 @@ impl Libc {
             settings: LibcSettings::default(),
             interpolation: Interpolation::Vertex,
             grid: Constants::default(),
+            shading: Shading::default(),
         };
         Ok(Self {
             begin: Pipeline::variant(gpu, "libc", "begin", &[])?,
@@ -96,10 +106,11 @@ impl RenderStrategy for Libc {
             settings: what.view.libc,
             interpolation: what.view.interpolation,
             grid: what.grid.constants(),
+            shading: Shading::of(&what.view.lighting),
         };
         if variant != self.variant {
-            if variant.grid != self.variant.grid {
-                let located = variant.grid.pairs();
+            if (variant.grid, variant.shading) != (self.variant.grid, self.variant.shading) {
+                let located: Vec<_> = variant.shared().collect();
                 self.begin = Pipeline::variant(what.gpu, "libc", "begin", &located)?;
                 self.set_right = Pipeline::variant(what.gpu, "libc", "set_right", &located)?;
             }

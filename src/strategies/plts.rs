@@ -7,13 +7,14 @@
 
 use super::{Preparation, RenderStrategy};
 use crate::gpu::grid_upload::Constants;
+use crate::gpu::illumination::Shading;
 use crate::gpu::{Gpu, GpuError, Pipeline, Place, Round};
 
 /// The strategy with its compiled shader.
 pub struct Plts {
     pipeline: Pipeline,
     /// Constants that it was compiled with.
-    constants: Constants,
+    constants: (Constants, Shading),
 }
 
 impl Plts {
@@ -24,7 +25,7 @@ impl Plts {
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         Ok(Self {
             pipeline: Pipeline::new(gpu, "plts")?,
-            constants: Constants::default(),
+            constants: Default::default(),
         })
     }
 }
@@ -35,9 +36,11 @@ impl RenderStrategy for Plts {
     }
 
     fn prepare(&mut self, what: &Preparation<'_>) -> Result<bool, GpuError> {
-        let constants = what.grid.constants();
+        let constants = (what.grid.constants(), Shading::of(&what.view.lighting));
         if constants != self.constants {
-            self.pipeline = Pipeline::variant(what.gpu, "plts", "main", &constants.pairs())?;
+            let (grid, shading) = constants;
+            let pairs: Vec<_> = grid.pairs().into_iter().chain(shading.pairs()).collect();
+            self.pipeline = Pipeline::variant(what.gpu, "plts", "main", &pairs)?;
             self.constants = constants;
         }
         Ok(true)

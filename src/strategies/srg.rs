@@ -9,10 +9,12 @@
 use super::{Preparation, RenderStrategy};
 use crate::gpu::faces::{BoundaryFaces, FaceMode, FaceTarget};
 use crate::gpu::grid_upload::Constants;
+use crate::gpu::illumination::Shading;
 use crate::gpu::pyramids::{Bricks, Classifier, Limits, PyramidMaker};
-use crate::gpu::resample::{Resampler, Shape, Volume};
+use crate::gpu::resample::Resampler;
 use crate::gpu::slabs::Slabs;
 use crate::gpu::tiles::Pace;
+use crate::gpu::volume::{Shape, Volume};
 use crate::gpu::{Gpu, GpuBytes, GpuError, Pipeline, Place, Round, Versions, flag};
 use crate::model::Dims;
 use crate::scene::{SrgSettings, View};
@@ -105,6 +107,7 @@ struct Variant {
     long_steps: bool,
     roulette: f64,
     grid: Constants,
+    shading: Shading,
 }
 
 impl Variant {
@@ -116,11 +119,12 @@ impl Variant {
             ("LONG_STEPS", flag(self.long_steps)),
             ("ROULETTE", self.roulette),
         ];
-        let constants: Vec<_> = own.into_iter().chain(self.grid.pairs()).collect();
+        let shared = self.grid.pairs().into_iter().chain(self.shading.pairs());
+        let constants: Vec<_> = own.into_iter().chain(shared).collect();
         Pipeline::variant(gpu, "srg", entry, &constants)
     }
 
-    fn of(settings: &SrgSettings, sections: bool, grid: Constants) -> Self {
+    fn of(settings: &SrgSettings, sections: bool, grid: Constants, shading: Shading) -> Self {
         Self {
             sections,
             weighted: settings.weighted,
@@ -128,6 +132,7 @@ impl Variant {
             long_steps: settings.even > 0.0 || settings.thin > 0.0,
             roulette: settings.roulette,
             grid,
+            shading,
         }
     }
 }
@@ -138,12 +143,17 @@ impl Srg {
     /// # Errors
     /// When the driver refuses one.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        let variant = Variant::of(&SrgSettings::default(), false, Constants::default());
+        let variant = Variant::of(
+            &SrgSettings::default(),
+            false,
+            Constants::default(),
+            Shading::default(),
+        );
         Ok(Self {
             begin: variant.compile(gpu, "begin")?,
             march: variant.compile(gpu, "march")?,
             variant,
-            resampler: Resampler::new(gpu)?,
+            resampler: Resampler::new(gpu, false)?,
             pyramids: PyramidMaker::new(gpu)?,
             sampler: gpu.device.create_sampler(&wgpu::SamplerDescriptor {
                 mag_filter: wgpu::FilterMode::Linear,
@@ -255,7 +265,12 @@ impl RenderStrategy for Srg {
         let view = what.view;
         let settings = useful(view);
         let sections = view.clip.iter().any(|plane| plane.opaque);
-        let variant = Variant::of(&settings, sections, what.grid.constants());
+        let variant = Variant::of(
+            &settings,
+            sections,
+            what.grid.constants(),
+            Shading::of(&view.lighting),
+        );
         if variant != self.variant {
             self.begin = variant.compile(what.gpu, "begin")?;
             self.march = variant.compile(what.gpu, "march")?;

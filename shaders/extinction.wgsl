@@ -1,0 +1,84 @@
+// Representative extinction: a Gaussian blur of opacities along one axis; three of them make a level of the
+// pyramid (campagnolo-2021, 3.2.1 and 3.5.3).
+//
+// One thread = two voxels along x, which share a word; dispatch covers a slab. Reads a volume of single
+// numbers: values, opacities of a unit of length, or optical depths of it. Writes opacities, or in the last
+// of three passes depths, which is what the pyramid holds. Unit of length is the finest level's standard
+// deviation in world space. Nothing is outside the box.
+#import table
+
+// What is read.
+override READS: u32 = 1u;
+const READS_VALUES: u32 = 0u;
+const READS_OPACITIES: u32 = 1u;
+const READS_DEPTHS: u32 = 2u;
+// Depths are written.
+override WRITES_DEPTHS: bool = false;
+// Clip planes cut values away.
+override CLIPS: bool = false;
+
+// Opacities are kept below one, as in the transfer function.
+const MOST_OPACITY: f32 = 0.999999;
+// Standard deviations after which a Gaussian ends.
+const REACH: f32 = 3.0;
+
+@group(3) @binding(0) var<uniform> blur: BlurInfo;
+@group(3) @binding(1) var<uniform> slab: Slab;
+@group(3) @binding(2) var source: texture_3d<f32>;
+@group(3) @binding(3) var<storage, read_write> voxels: array<u32>;
+
+@compute @workgroup_size(16, 4)
+fn main(@builtin(global_invocation_id) id: vec3u) {
+    if 2u * id.x >= slab.size.x || any(id.yz >= slab.size.yz) {
+        return;
+    }
+    let first = slab.first + vec3u(2u * id.x, id.yz);
+    let word = (slab.row * (id.y + slab.size.y * id.z)) / 2u + id.x;
+    voxels[word] = pack2x16float(vec2f(blurred(first), blurred(first + vec3u(1u, 0u, 0u))));
+}
+
+fn blurred(voxel: vec3u) -> f32 {
+    let ratio = f32(blur.source_count) / f32(blur.made_count);
+    let center = (f32(voxel[blur.axis]) + 0.5) * ratio - 0.5;
+    let reach = max(REACH * blur.deviation, 0.5);
+    let count = i32(blur.source_count);
+    var sum = 0.0;
+    var weights = 0.0;
+    for (var n = i32(ceil(center - reach)); n <= i32(floor(center + reach)); n++) {
+        let off = (f32(n) - center) / max(blur.deviation, 1e-3);
+        let weight = exp(-0.5 * off * off);
+        weights += weight;
+        if n >= 0 && n < count {
+            var at = vec3i(voxel);
+            at[blur.axis] = n;
+            sum += weight * opacity(at);
+        }
+    }
+    let opacity = sum / max(weights, 1e-30);
+    if WRITES_DEPTHS {
+        return -log(1.0 - min(opacity, MOST_OPACITY));
+    }
+    return opacity;
+}
+
+// Opacity of a unit of length.
+fn opacity(at: vec3i) -> f32 {
+    let number = textureLoad(source, at, 0).x;
+    if READS == READS_OPACITIES {
+        return number;
+    }
+    if READS == READS_DEPTHS {
+        return 1.0 - exp(-number);
+    }
+    let position = blur.position_low + blur.position_scale * (number - 1.0);
+    let in_cell = select(transfer_at(position).w, blur.ghost, number == GHOST_NUMBER);
+    var is_there = number > 0.0;
+    if CLIPS {
+        let point = blur.box_low + (vec3f(at) + 0.5) * blur.spacing;
+        for (var n = 0u; n < blur.clip_count; n++) {
+            let plane = blur.clip_planes[n];
+            is_there = is_there && dot(plane.xyz, point) + plane.w >= 0.0;
+        }
+    }
+    return select(0.0, 1.0 - exp(-in_cell * blur.sigma), is_there);
+}

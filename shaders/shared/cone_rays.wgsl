@@ -1,0 +1,60 @@
+// Transmittance of a cone by many rays through the volume of values: slow, for comparison
+// (campagnolo-2021, 3.1.1).
+#import light
+#import random
+
+// Optical depth of a unit of length in the voxel around a point.
+fn voxel_depth(p: vec3f) -> f32 {
+    let size = vec3f(textureDimensions(field_volume));
+    let number = textureLoad(field_volume, vec3i(floor(p / lighting.size * size)), 0).x;
+    let at = lighting.position_low + lighting.position_scale * (number - 1.0);
+    let in_cell = select(transfer_at(at).w, lighting.ghost, number == GHOST_NUMBER);
+    return select(0.0, in_cell * lighting.sigma, number > 0.0);
+}
+
+// Mean of the transmittances of rays over a cone, weighted by the cosine of their angle to the axis. Their
+// directions are uniform in solid angle, one in each of as many rings; samples of a ray begin at a random
+// part of a step.
+fn rays_transmittance(emitter: Emitter, p: vec3f) -> f32 {
+    let way = toward(emitter, p);
+    let side = across(way.xyz);
+    let reach = min(emitter.length, way.w);
+    let bits = bitcast<vec3u>(p);
+    let seed = pcg(bits.x ^ pcg(bits.y ^ pcg(bits.z ^ pcg(lighting.seed))));
+    var sum = 0.0;
+    var weights = 0.0;
+    for (var n = 0u; n < lighting.rays; n++) {
+        let chance = unit3(seed + n);
+        let ring = (f32(n) + chance.x) / f32(lighting.rays);
+        let cosine = mix(1.0, emitter.cosine, ring);
+        let sine = sqrt(max(0.0, 1.0 - cosine * cosine));
+        // Golden angles spread the rings' directions; one random turn for all of them.
+        let turn = 2.3999632 * f32(n) + 6.2831853 * unit3(seed).y;
+        let direction = cosine * way.xyz + sine * (cos(turn) * side[0] + sin(turn) * side[1]);
+        sum += cosine * exp(-ray_depth(p, direction, reach, chance.z));
+        weights += cosine;
+    }
+    return sum / weights;
+}
+
+// Optical depth of a ray up to where it leaves the box.
+fn ray_depth(p: vec3f, direction: vec3f, reach: f32, offset: f32) -> f32 {
+    let safe = select(direction, vec3f(1e-9), abs(direction) < vec3f(1e-9));
+    let ends = max(-p / safe, (lighting.size - p) / safe);
+    let end = min(reach, min(ends.x, min(ends.y, ends.z)));
+    let begins = min(-p / safe, (lighting.size - p) / safe);
+    let begin = max(lighting.gap, max(begins.x, max(begins.y, begins.z)));
+    var depth = 0.0;
+    var t = begin + offset * lighting.step;
+    while t < end && depth < 8.0 {
+        depth += lighting.step * voxel_depth(p + t * direction);
+        t += lighting.step;
+    }
+    return depth;
+}
+
+fn unit3(seed: u32) -> vec3f {
+    let a = pcg(seed);
+    let b = pcg(a);
+    return vec3f(vec3u(a, b, pcg(b)) >> vec3u(8u)) / 16777216.0;
+}

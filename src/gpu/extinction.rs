@@ -1,0 +1,248 @@
+//! The pyramid of representative extinction: opacities blurred by Gaussians, each level twice as wide as the
+//! one below (campagnolo-2021, 3.2.1 and 3.2.3).
+
+use glam::DVec3;
+
+use super::device::{Gpu, GpuError};
+use super::layout::{BlurInfo, MAX_CLIP_PLANES, Slab};
+use super::pipeline::{Pipeline, flag};
+use super::slabs::Slabs;
+use super::volume::{Shape, Volume};
+use crate::transfer::TransferFunction;
+
+/// What a pyramid is made from.
+#[derive(Clone, Copy)]
+pub struct Source<'a> {
+    /// Values: 0 in no cell, 1 to 2 for the range, 3 in an inactive cell.
+    pub values: &'a Volume,
+    /// Number of their filling.
+    pub number: u64,
+    /// Transfer-function position of a value: offset, and factor on the part of the range.
+    pub position: [f32; 2],
+    /// Standard deviation of the finest level in world space.
+    pub sigma: f64,
+    /// Extinction of inactive cells.
+    pub ghost: f32,
+    /// Clip planes in grid space relative to the origin.
+    pub clip_planes: [[f32; 4]; MAX_CLIP_PLANES],
+    /// How many of them count.
+    pub clip_count: u32,
+    /// Box of the volume relative to the origin.
+    pub bounds: [DVec3; 2],
+    /// Its edges in world space.
+    pub extent: DVec3,
+}
+
+/// The pyramid, and what it was made from.
+pub struct Pyramid {
+    /// Optical depth of a length of one standard deviation of the finest level, level by level.
+    pub volume: Volume,
+    /// Counts up with each making.
+    pub number: u64,
+    of: Of,
+}
+
+#[derive(Clone, PartialEq)]
+struct Of {
+    size: [u32; 3],
+    values: u64,
+    position: [f32; 2],
+    sigma: f64,
+    ghost: f32,
+    clip_planes: [[f32; 4]; MAX_CLIP_PLANES],
+    clip_count: u32,
+    extent: DVec3,
+    transfer: TransferFunction,
+}
+
+impl Of {
+    fn new(source: &Source<'_>, transfer: &TransferFunction) -> Self {
+        Self {
+            size: source.values.shape.size,
+            values: source.number,
+            position: source.position,
+            sigma: source.sigma,
+            ghost: source.ghost,
+            clip_planes: source.clip_planes,
+            clip_count: source.clip_count,
+            extent: source.extent,
+            transfer: transfer.clone(),
+        }
+    }
+}
+
+impl Pyramid {
+    /// True where it is what would be made.
+    pub fn is_of(&self, source: &Source<'_>, transfer: &TransferFunction) -> bool {
+        self.of == Of::new(source, transfer)
+    }
+
+    /// Number of levels.
+    pub fn levels(&self) -> u32 {
+        self.volume.shape.levels
+    }
+}
+
+/// What a pass of the blur reads and writes; its constants.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Pass {
+    reads: Reads,
+    writes_depths: bool,
+    clips: bool,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Reads {
+    Values,
+    Opacities,
+    Depths,
+}
+
+/// The shaders of the blur, compiled as they are asked for.
+#[derive(Default)]
+pub struct Blurs(Vec<(Pass, Pipeline)>);
+
+/// Loop iterations that a voxel of a pass costs, about.
+const BLUR_WORK: u64 = 8;
+/// Levels at most: 2^11 voxels along an axis have no more.
+const MOST_LEVELS: u32 = 12;
+
+impl Blurs {
+    /// Makes a pyramid in the place of an existing one; `None` where it was cancelled.
+    ///
+    /// `group` is bind group 2 with the transfer function.
+    ///
+    /// # Errors
+    /// When the device reports an error.
+    pub fn make(
+        &mut self,
+        slabs: &mut Slabs<'_>,
+        source: &Source<'_>,
+        transfer: &TransferFunction,
+        group: &wgpu::BindGroup,
+        before: Option<Pyramid>,
+    ) -> Result<Option<Pyramid>, GpuError> {
+        let shape = Shape::single(source.values.shape.size, MOST_LEVELS);
+        let number = before.as_ref().map_or(0, |p| p.number) + 1;
+        let volume = match before.filter(|p| p.volume.shape == shape) {
+            Some(before) => before.volume,
+            None => Volume::new(slabs.gpu, shape),
+        };
+        for level in 0..shape.levels {
+            if !self.level(slabs, source, group, &volume, level)? {
+                return Ok(None);
+            }
+        }
+        Ok(Some(Pyramid {
+            volume,
+            number,
+            of: Of::new(source, transfer),
+        }))
+    }
+
+    /// Makes a level from the one below, or from the values: along x, y and depth in turn.
+    fn level(
+        &mut self,
+        slabs: &mut Slabs<'_>,
+        source: &Source<'_>,
+        group: &wgpu::BindGroup,
+        pyramid: &Volume,
+        level: u32,
+    ) -> Result<bool, GpuError> {
+        let gpu = slabs.gpu;
+        let made = pyramid.shape.at(level);
+        let (below, deviation) = match level {
+            0 => (made, source.sigma),
+            // Variances add up: what is below has a quarter of what is to be.
+            _ => (
+                pyramid.shape.at(level - 1),
+                3f64.sqrt() * source.sigma * f64::from(level - 1).exp2(),
+            ),
+        };
+        let partly =
+            |axes: usize| std::array::from_fn(|a| if a < axes { made[a] } else { below[a] });
+        let between = [1, 2].map(|axes| Volume::new(gpu, Shape::single(partly(axes), 1)));
+        for axis in 0..3 {
+            let (reads, read) = match (axis, level) {
+                (0, 0) => (Reads::Values, source.values.level(0)),
+                (0, _) => (Reads::Depths, pyramid.level(level - 1)),
+                _ => (Reads::Opacities, between[axis - 1].level(0)),
+            };
+            let pass = Pass {
+                reads,
+                writes_depths: axis == 2,
+                clips: reads == Reads::Values && source.clip_count > 0,
+            };
+            let edge = source.extent[axis] / f64::from(below[axis]);
+            let info = BlurInfo {
+                axis: axis as u32,
+                source_count: below[axis],
+                made_count: made[axis],
+                deviation: (deviation / edge) as f32,
+                ..source.info()
+            };
+            let info = gpu.uniform("blur", &info);
+            let pipeline = self.pipeline(gpu, pass)?;
+            let (target, at) = match between.get(axis) {
+                Some(target) => (target, 0),
+                None => (pyramid, level),
+            };
+            let dispatch = |encoder: &mut _, slab: &Slab, voxels: &wgpu::Buffer| {
+                let slab_info = gpu.uniform("slab", slab);
+                let own = [
+                    info.as_entire_binding(),
+                    slab_info.as_entire_binding(),
+                    wgpu::BindingResource::TextureView(&read),
+                    voxels.as_entire_binding(),
+                ];
+                let groups = [(2, group), (3, &gpu.bind(&pipeline.own, &own))];
+                let [width, height, depth] = slab.size;
+                pipeline.dispatch(encoder, &groups, [width.div_ceil(2), height, depth]);
+            };
+            if !target.make_level(slabs, at, BLUR_WORK, &dispatch)? {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
+
+    fn pipeline(&mut self, gpu: &Gpu, pass: Pass) -> Result<&Pipeline, GpuError> {
+        let at = match self.0.iter().position(|(p, _)| *p == pass) {
+            Some(at) => at,
+            None => {
+                let constants = [
+                    ("READS", f64::from(pass.reads as u32)),
+                    ("WRITES_DEPTHS", flag(pass.writes_depths)),
+                    ("CLIPS", flag(pass.clips)),
+                ];
+                let pipeline = Pipeline::variant(gpu, "extinction", "main", &constants)?;
+                self.0.push((pass, pipeline));
+                self.0.len() - 1
+            }
+        };
+        Ok(&self.0[at].1)
+    }
+}
+
+impl Source<'_> {
+    /// What every pass knows.
+    fn info(&self) -> BlurInfo {
+        let [low, high] = self.bounds;
+        let size = DVec3::from_array(self.values.shape.size.map(f64::from));
+        BlurInfo {
+            axis: 0,
+            source_count: 0,
+            made_count: 0,
+            deviation: 0.0,
+            box_low: low.as_vec3().to_array(),
+            position_low: self.position[0],
+            spacing: ((high - low) / size).as_vec3().to_array(),
+            position_scale: self.position[1],
+            sigma: self.sigma as f32,
+            ghost: self.ghost,
+            clip_count: self.clip_count,
+            reserved: 0,
+            clip_planes: self.clip_planes,
+        }
+    }
+}

@@ -1,0 +1,743 @@
+//! Light for the rays: emitters with their cones, the extinction pyramid, light volumes, gradients.
+//!
+//! What is made follows the scene: a volume of values follows cells and values; the pyramid follows that,
+//! transfer function and clip planes; a light volume follows the pyramid and its emitter, which for occlusion
+//! is the camera (campagnolo-2021, 3.3.3).
+
+use std::time::{Duration, Instant};
+
+use glam::{DVec3, Vec3};
+
+use super::cones::ConeTable;
+use super::device::{Gpu, GpuError};
+use super::extinction::{Blurs, Pyramid};
+use super::grid_upload::{GpuGrid, Versions};
+use super::layout::{self, Emitter, LightingInfo, Slab};
+use super::pipeline::{Pipeline, flag};
+use super::resample::Resampler;
+use super::slabs::Slabs;
+use super::tiles::Pace;
+use super::transfer_tables::TransferTables;
+use super::volume::{Shape, Volume, Voxel};
+use crate::scene::lighting::{Cone, LightMode, Lighting, SPOT_EDGE, Source};
+use crate::scene::{View, ghosts};
+
+/// Options of the light that are constants of the strategies' pipelines.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Shading {
+    occlusion: u32,
+    shadows: u32,
+    lights: bool,
+    blinn_phong: bool,
+    exact_colors: bool,
+}
+
+impl Shading {
+    /// What a view's lighting needs.
+    pub fn of(lighting: &Lighting) -> Self {
+        let lights = !lighting.lights.is_empty();
+        Self {
+            occlusion: lighting
+                .occlusion
+                .map_or(layout::LIGHT_OFF, |o| mode(o.mode)),
+            shadows: if lights {
+                mode(lighting.shadows)
+            } else {
+                layout::LIGHT_OFF
+            },
+            lights,
+            blinn_phong: lighting.blinn_phong,
+            exact_colors: lighting.exact_colors,
+        }
+    }
+
+    /// True where a sample's color depends on where it is.
+    pub fn is_on(self) -> bool {
+        self != Self::default()
+    }
+
+    /// True where samples cast rays over cones.
+    pub fn casts_rays(self) -> bool {
+        [self.occlusion, self.shadows].contains(&layout::LIGHT_RAYS)
+    }
+
+    /// Names and values of the shaders' `override` constants.
+    pub fn pairs(self) -> [(&'static str, f64); 6] {
+        [
+            ("LIT", flag(self.is_on())),
+            ("OCCLUSION", f64::from(self.occlusion)),
+            ("SHADOWS", f64::from(self.shadows)),
+            ("LIGHTS", flag(self.lights)),
+            ("BLINN_PHONG", flag(self.blinn_phong)),
+            ("EXACT_COLORS", flag(self.exact_colors)),
+        ]
+    }
+}
+
+fn mode(mode: LightMode) -> u32 {
+    match mode {
+        LightMode::Off => layout::LIGHT_OFF,
+        LightMode::Image => layout::LIGHT_IMAGE,
+        LightMode::Preilluminated => layout::LIGHT_VOLUME,
+        LightMode::MonteCarlo => layout::LIGHT_RAYS,
+    }
+}
+
+/// Times that bringing the light up to date took, by stage; zero where nothing was to be done.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct LightTimes {
+    /// Values by point location.
+    pub field: Duration,
+    /// Extinction pyramid.
+    pub extinction: Duration,
+    /// Light volumes, and gradients.
+    pub light: Duration,
+}
+
+/// Makes light and keeps it up to date.
+pub struct Illumination {
+    resampler: Resampler,
+    blurs: Blurs,
+    illuminate: Pipeline,
+    gradient: Pipeline,
+    sampler: wgpu::Sampler,
+    pace: Pace,
+    /// What is bound where there is no volume.
+    nothing: [Volume; 2],
+    info: wgpu::Buffer,
+    emitters: wgpu::Buffer,
+    sections: wgpu::Buffer,
+    field: Option<Field>,
+    pyramid: Option<Pyramid>,
+    lights: Option<LightVolumes>,
+    gradients: Option<Gradients>,
+    /// What the last update took.
+    pub times: LightTimes,
+}
+
+/// The volume of values that extinction is made from.
+struct Field {
+    versions: Versions,
+    /// Values that are stored as 1 and 2.
+    range: [f64; 2],
+    volume: Volume,
+    /// Counts up with each filling.
+    number: u64,
+}
+
+/// One volume for each emitter whose light is found before the rays, one above the other.
+struct LightVolumes {
+    volume: Volume,
+    size: [u32; 3],
+    /// What each was made from.
+    made: Vec<Option<Lit>>,
+}
+
+#[derive(Clone, PartialEq)]
+struct Lit {
+    pyramid: u64,
+    emitter: Emitter,
+    sections: Vec<[f32; 4]>,
+}
+
+struct Gradients {
+    volume: Volume,
+    field: u64,
+    scale: [f32; 3],
+    position_scale: f32,
+}
+
+/// The emitters of a view: the viewer, then the lights.
+struct Emitters {
+    emitters: Vec<Emitter>,
+    sections: Vec<[f32; 4]>,
+    /// Emitter of each light volume.
+    volumes: Vec<usize>,
+    work: u32,
+}
+
+/// Reach of the rays of a cone, and of a section of seven parts, in loop iterations.
+const SECTION_WORK: [u32; 3] = [1, 2, 4];
+/// Loop iterations of the rays over a cone, at most, on an adapter in software: llvmpipe ends a shader with
+/// 65,535 without a word, and eight rays side by side may all do theirs one after the other.
+const MOST_RAY_WORK: f64 = 7_500.0;
+/// Loop iterations that a voxel of the gradient costs, about.
+const GRADIENT_WORK: u64 = 60;
+
+impl Illumination {
+    /// Compiles the shaders.
+    ///
+    /// # Errors
+    /// When the driver refuses one.
+    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+        let none: [LightingInfo; 1] = bytemuck::Zeroable::zeroed();
+        let one = |voxel| Shape {
+            voxel,
+            ..Shape::single([1; 3], 1)
+        };
+        Ok(Self {
+            resampler: Resampler::new(gpu, true)?,
+            blurs: Blurs::default(),
+            illuminate: Pipeline::new(gpu, "illuminate")?,
+            gradient: Pipeline::variant(gpu, "illuminate", "gradient", &[])?,
+            sampler: gpu.device.create_sampler(&wgpu::SamplerDescriptor {
+                mag_filter: wgpu::FilterMode::Linear,
+                min_filter: wgpu::FilterMode::Linear,
+                mipmap_filter: wgpu::MipmapFilterMode::Nearest,
+                ..Default::default()
+            }),
+            pace: Pace::default(),
+            nothing: [Voxel::Single, Voxel::Quad].map(|v| Volume::new(gpu, one(v))),
+            info: gpu.uniform("lighting", &none),
+            emitters: gpu.storage::<Emitter>("emitters", &[bytemuck::Zeroable::zeroed()])?,
+            sections: gpu.storage::<[f32; 4]>("cone sections", &[])?,
+            field: None,
+            pyramid: None,
+            lights: None,
+            gradients: None,
+            times: LightTimes::default(),
+        })
+    }
+
+    /// Brings the light of a view up to date; false where it was cancelled.
+    ///
+    /// # Errors
+    /// When a volume exceeds what the adapter holds, or the device reports an error.
+    pub fn update(
+        &mut self,
+        gpu: &Gpu,
+        grid: &GpuGrid,
+        view: &View,
+        tables: &TransferTables,
+        progress: &dyn Fn(f64) -> bool,
+    ) -> Result<bool, GpuError> {
+        self.times = LightTimes::default();
+        if !Shading::of(&view.lighting).is_on() {
+            (self.field, self.pyramid, self.lights, self.gradients) = (None, None, None, None);
+            return Ok(true);
+        }
+        let start = Instant::now();
+        if !self.fill(gpu, grid, view, progress)? {
+            return Ok(false);
+        }
+        self.times.field = start.elapsed();
+        let start = Instant::now();
+        if !self.blur(gpu, grid, view, tables, progress)? {
+            return Ok(false);
+        }
+        self.times.extinction = start.elapsed();
+        let start = Instant::now();
+        let emitters = emitters(grid, view, gpu.is_software())?;
+        self.upload(gpu, grid, view, &emitters)?;
+        let done = self.illuminate(gpu, view, tables, &emitters, progress)?
+            && self.slope(gpu, view, tables, progress)?;
+        self.times.light = start.elapsed();
+        Ok(done)
+    }
+
+    /// Fills the volume of values where cells, values or sizes have changed.
+    fn fill(
+        &mut self,
+        gpu: &Gpu,
+        grid: &GpuGrid,
+        view: &View,
+        progress: &dyn Fn(f64) -> bool,
+    ) -> Result<bool, GpuError> {
+        let shape = Shape::single(view.lighting.size(gpu.is_software()), 1);
+        let before = self.field.take();
+        let number = before.as_ref().map_or(0, |f| f.number) + 1;
+        let before = before.filter(|f| f.volume.shape == shape);
+        if before.as_ref().is_some_and(|f| f.versions == grid.versions) {
+            self.field = before;
+            return Ok(true);
+        }
+        check_size(gpu, shape.size)?;
+        let volume = before.map_or_else(|| Volume::new(gpu, shape), |f| f.volume);
+        let range = view
+            .field
+            .statistics()
+            .map_or([0.0, 1.0], |s| [s.min, s.max]);
+        let mut slabs = Slabs {
+            gpu,
+            pace: &mut self.pace,
+            progress,
+        };
+        let done = self
+            .resampler
+            .fill(&mut slabs, grid, &volume, range, view.interpolation)?;
+        self.field = done.then_some(Field {
+            versions: grid.versions,
+            range,
+            volume,
+            number,
+        });
+        Ok(done)
+    }
+
+    /// Makes the pyramid where the values, the transfer function or the clip planes have changed.
+    fn blur(
+        &mut self,
+        gpu: &Gpu,
+        grid: &GpuGrid,
+        view: &View,
+        tables: &TransferTables,
+        progress: &dyn Fn(f64) -> bool,
+    ) -> Result<bool, GpuError> {
+        let Some(field) = &self.field else {
+            return Ok(false);
+        };
+        let source = super::extinction::Source {
+            values: &field.volume,
+            number: field.number,
+            position: position(view, field.range),
+            sigma: view.lighting.sigma(gpu.is_software()),
+            ghost: ghost(view),
+            clip_planes: super::frame::clip_planes(grid, view),
+            clip_count: view.clip.len() as u32,
+            bounds: grid.bounds,
+            extent: view.lighting.extent,
+        };
+        if self
+            .pyramid
+            .as_ref()
+            .is_some_and(|p| p.is_of(&source, &view.transfer))
+        {
+            return Ok(true);
+        }
+        let before = self.pyramid.take();
+        let group = self.bind(gpu, tables);
+        let mut slabs = Slabs {
+            gpu,
+            pace: &mut self.pace,
+            progress,
+        };
+        self.pyramid = self
+            .blurs
+            .make(&mut slabs, &source, &view.transfer, &group, before)?;
+        Ok(self.pyramid.is_some())
+    }
+
+    /// Uploads what shaders need to know.
+    fn upload(
+        &mut self,
+        gpu: &Gpu,
+        grid: &GpuGrid,
+        view: &View,
+        emitters: &Emitters,
+    ) -> Result<(), GpuError> {
+        let lighting = &view.lighting;
+        let software = gpu.is_software();
+        let space = LightSpace::new(grid, view, software);
+        let range = self.field.as_ref().map_or([0.0, 1.0], |f| f.range);
+        let [position_low, position_scale] = position(view, range);
+        let info = LightingInfo {
+            box_low: space.low.as_vec3().to_array(),
+            sigma: space.sigma as f32,
+            scale: space.scale.as_vec3().to_array(),
+            strength: lighting.occlusion.map_or(0.0, |o| o.strength as f32),
+            size: (lighting.extent / space.sigma).as_vec3().to_array(),
+            ambient: lighting.ambient as f32,
+            light_size: lighting.light_size(software),
+            volumes: emitters.volumes.len().max(1) as u32,
+            emitters: emitters.emitters.len() as u32,
+            levels: self.pyramid.as_ref().map_or(1, Pyramid::levels),
+            position_low,
+            position_scale,
+            rays: lighting.rays,
+            seed: lighting.seed,
+            gap: Lighting::REFERENCE_GAP as f32,
+            step: Lighting::REFERENCE_STEP as f32,
+            ghost: ghost(view),
+            gradient_scale: (view.transfer.reference_length / space.sigma) as f32,
+            work: emitters.work,
+            reserved: 0,
+        };
+        self.info = gpu.uniform("lighting", &info);
+        self.emitters = gpu.storage("emitters", &emitters.emitters)?;
+        self.sections = gpu.storage("cone sections", &emitters.sections)?;
+        Ok(())
+    }
+
+    /// Makes the light volumes whose emitter or pyramid has changed.
+    fn illuminate(
+        &mut self,
+        gpu: &Gpu,
+        view: &View,
+        tables: &TransferTables,
+        emitters: &Emitters,
+        progress: &dyn Fn(f64) -> bool,
+    ) -> Result<bool, GpuError> {
+        let size = view.lighting.light_size(gpu.is_software());
+        let count = emitters.volumes.len() as u32;
+        if count == 0 {
+            self.lights = None;
+            return Ok(true);
+        }
+        let shape = Shape::single([size[0], size[1], size[2] * count], 1);
+        check_size(gpu, shape.size)?;
+        let mut lights = match self.lights.take().filter(|l| l.volume.shape == shape) {
+            Some(lights) => lights,
+            None => LightVolumes {
+                volume: Volume::new(gpu, shape),
+                size,
+                made: vec![None; count as usize],
+            },
+        };
+        let pyramid = self.pyramid.as_ref().map_or(0, |p| p.number);
+        let group = self.bind(gpu, tables);
+        for (n, &at) in emitters.volumes.iter().enumerate() {
+            let emitter = emitters.emitters[at];
+            let lit = Lit {
+                pyramid,
+                emitter: Emitter {
+                    first: 0,
+                    ..emitter
+                },
+                sections: emitters.of(at).to_vec(),
+            };
+            if lights.size == size && lights.made[n].as_ref() == Some(&lit) {
+                continue;
+            }
+            lights.made[n] = None;
+            let from = n as u32 * size[2];
+            let which = gpu.uniform("emitter", &[at as u32, from, 0, 0]);
+            let mut slabs = Slabs {
+                gpu,
+                pace: &mut self.pace,
+                progress,
+            };
+            let work = u64::from(cone_work(&emitter));
+            let range = [from, from + size[2]];
+            let illuminate = &self.illuminate;
+            let done = lights.volume.make_slices(
+                &mut slabs,
+                0,
+                range,
+                work,
+                &|encoder, slab, voxels| {
+                    run(gpu, illuminate, encoder, slab, &which, voxels, &group, 2);
+                },
+            )?;
+            if !done {
+                return Ok(false);
+            }
+            lights.made[n] = Some(lit);
+        }
+        lights.size = size;
+        self.lights = Some(lights);
+        Ok(true)
+    }
+
+    /// Makes the gradients where highlights need them.
+    fn slope(
+        &mut self,
+        gpu: &Gpu,
+        view: &View,
+        tables: &TransferTables,
+        progress: &dyn Fn(f64) -> bool,
+    ) -> Result<bool, GpuError> {
+        let (Some(field), true) = (&self.field, view.lighting.blinn_phong) else {
+            self.gradients = None;
+            return Ok(true);
+        };
+        // Values that are constant in a cell have no gradient.
+        if view.interpolation == crate::scene::Interpolation::Cell {
+            self.gradients = None;
+            return Ok(true);
+        }
+        let shape = Shape {
+            voxel: Voxel::Quad,
+            ..Shape::single(view.lighting.light_size(gpu.is_software()), 1)
+        };
+        let scale = view.lighting.extent.as_vec3().to_array();
+        let [_, position_scale] = position(view, field.range);
+        let is_known = self.gradients.as_ref().is_some_and(|g| {
+            g.volume.shape == shape
+                && g.field == field.number
+                && g.scale == scale
+                && g.position_scale == position_scale
+        });
+        if is_known {
+            return Ok(true);
+        }
+        let number = field.number;
+        self.gradients = None;
+        let volume = Volume::new(gpu, shape);
+        let group = self.bind(gpu, tables);
+        let which = gpu.uniform("emitter", &[0u32; 4]);
+        let mut slabs = Slabs {
+            gpu,
+            pace: &mut self.pace,
+            progress,
+        };
+        let gradient = &self.gradient;
+        let done = volume.make_level(&mut slabs, 0, GRADIENT_WORK, &|encoder, slab, voxels| {
+            run(gpu, gradient, encoder, slab, &which, voxels, &group, 1);
+        })?;
+        self.gradients = done.then_some(Gradients {
+            volume,
+            field: number,
+            scale,
+            position_scale,
+        });
+        Ok(done)
+    }
+
+    /// Bind group 2: transfer function and light.
+    pub fn bind(&self, gpu: &Gpu, tables: &TransferTables) -> wgpu::BindGroup {
+        let [single, quad] = &self.nothing;
+        let view = |volume: &Volume| volume.texture.create_view(&Default::default());
+        let pyramid = view(self.pyramid.as_ref().map_or(single, |p| &p.volume));
+        let lights = view(self.lights.as_ref().map_or(single, |l| &l.volume));
+        let field = view(self.field.as_ref().map_or(single, |f| &f.volume));
+        let gradients = view(self.gradients.as_ref().map_or(quad, |g| &g.volume));
+        let resources = [
+            tables.table.as_entire_binding(),
+            tables.integrals.as_entire_binding(),
+            self.info.as_entire_binding(),
+            self.emitters.as_entire_binding(),
+            self.sections.as_entire_binding(),
+            wgpu::BindingResource::TextureView(&pyramid),
+            wgpu::BindingResource::TextureView(&lights),
+            wgpu::BindingResource::TextureView(&field),
+            wgpu::BindingResource::TextureView(&gradients),
+            wgpu::BindingResource::Sampler(&self.sampler),
+        ];
+        gpu.bind(gpu.layouts.group(2), &resources)
+    }
+
+    /// Bytes of all volumes.
+    pub fn bytes(&self) -> u64 {
+        let volumes = [
+            self.field.as_ref().map(|f| &f.volume),
+            self.pyramid.as_ref().map(|p| &p.volume),
+            self.lights.as_ref().map(|l| &l.volume),
+            self.gradients.as_ref().map(|g| &g.volume),
+        ];
+        volumes.iter().flatten().map(|v| v.shape.bytes()).sum()
+    }
+
+    /// The extinction pyramid, where there is one.
+    pub fn pyramid(&self) -> Option<&Volume> {
+        self.pyramid.as_ref().map(|p| &p.volume)
+    }
+
+    /// The volume of values, where there is one.
+    pub fn field(&self) -> Option<&Volume> {
+        self.field.as_ref().map(|f| &f.volume)
+    }
+
+    /// The light volumes, one above the other, where there are some.
+    pub fn light_volumes(&self) -> Option<&Volume> {
+        self.lights.as_ref().map(|l| &l.volume)
+    }
+}
+
+#[allow(clippy::too_many_arguments, reason = "the parts of one dispatch")]
+fn run(
+    gpu: &Gpu,
+    pipeline: &Pipeline,
+    encoder: &mut wgpu::CommandEncoder,
+    slab: &Slab,
+    which: &wgpu::Buffer,
+    voxels: &wgpu::Buffer,
+    group: &wgpu::BindGroup,
+    wide: u32,
+) {
+    let slab_info = gpu.uniform("slab", slab);
+    let own = [
+        slab_info.as_entire_binding(),
+        which.as_entire_binding(),
+        voxels.as_entire_binding(),
+    ];
+    let groups = [(2, group), (3, &gpu.bind(&pipeline.own, &own))];
+    let [width, height, depth] = slab.size;
+    pipeline.dispatch(encoder, &groups, [width.div_ceil(wide), height, depth]);
+}
+
+fn check_size(gpu: &Gpu, size: [u32; 3]) -> Result<(), GpuError> {
+    let limit = gpu.device.limits().max_texture_dimension_3d;
+    match size.iter().all(|&n| n <= limit) {
+        true => Ok(()),
+        false => Err(GpuError::Unsuitable {
+            adapter: gpu.info.name.clone(),
+            reason: format!(
+                "light volumes of {} x {} x {} voxels are asked for and {limit} each way are possible; use smaller ones or fewer lights",
+                size[0], size[1], size[2]
+            ),
+        }),
+    }
+}
+
+/// Transfer-function position of a value that is stored as a part of `range`: offset and factor.
+fn position(view: &View, range: [f64; 2]) -> [f32; 2] {
+    let scale = f64::from(layout::per_unit(view.transfer.range));
+    let low = (range[0] - view.transfer.range[0]) * scale;
+    [low as f32, ((range[1] - range[0]) * scale) as f32]
+}
+
+/// Extinction of inactive cells.
+fn ghost(view: &View) -> f32 {
+    view.transfer.extinction_of(ghosts::OPACITY) as f32
+}
+
+/// Lighting space: the grid's axes from the low corner of the box, in units of the finest level's standard
+/// deviation in world space.
+struct LightSpace {
+    low: DVec3,
+    scale: DVec3,
+    sigma: f64,
+}
+
+impl LightSpace {
+    fn new(grid: &GpuGrid, view: &View, software: bool) -> Self {
+        let [low, high] = grid.bounds;
+        let sigma = view.lighting.sigma(software);
+        let edges = (high - low).max(DVec3::splat(1e-6));
+        Self {
+            low,
+            scale: view.lighting.extent / edges / sigma,
+            sigma,
+        }
+    }
+
+    fn point(&self, grid: &GpuGrid, view: &View, world: DVec3) -> Vec3 {
+        let point = view.spaces.grid_from_world.transform_point3(world) - grid.origin;
+        ((point - self.low) * self.scale).as_vec3()
+    }
+
+    fn direction(&self, view: &View, world: DVec3) -> Vec3 {
+        let direction = view.spaces.grid_from_world.matrix3 * world * self.scale;
+        direction.normalize_or(DVec3::Z).as_vec3()
+    }
+}
+
+fn emitters(grid: &GpuGrid, view: &View, software: bool) -> Result<Emitters, GpuError> {
+    let lighting = &view.lighting;
+    let space = LightSpace::new(grid, view, software);
+    let mut all = Emitters {
+        emitters: Vec::new(),
+        sections: Vec::new(),
+        volumes: Vec::new(),
+        work: 0,
+    };
+    let viewer = Source::Point {
+        position: view.camera.eye,
+    };
+    let occlusion = lighting.occlusion;
+    let off = LightMode::Off;
+    all.add(
+        Emitter::at(&viewer, DVec3::ONE, grid, view, &space),
+        occlusion.map_or(off, |o| o.mode),
+        occlusion.map(|o| o.cone),
+        lighting,
+        &space,
+        software,
+    )?;
+    for light in &lighting.lights {
+        let emitter = Emitter::at(&light.source, light.color, grid, view, &space);
+        all.add(
+            emitter,
+            lighting.shadows,
+            Some(light.cone),
+            lighting,
+            &space,
+            software,
+        )?;
+    }
+    Ok(all)
+}
+
+impl Emitters {
+    fn add(
+        &mut self,
+        emitter: Emitter,
+        mode: LightMode,
+        cone: Option<Cone>,
+        lighting: &Lighting,
+        space: &LightSpace,
+        software: bool,
+    ) -> Result<(), GpuError> {
+        let mut emitter = emitter;
+        if let Some(cone) = cone.filter(|_| mode != LightMode::Off) {
+            let table = ConeTable::of(&cone, space.sigma);
+            emitter.first = self.sections.len() as u32;
+            [emitter.ones, emitter.threes, emitter.sevens] = table.by_parts();
+            emitter.tangent = cone.half_angle.tan() as f32;
+            emitter.cosine = cone.half_angle.cos() as f32;
+            emitter.length = (cone.length / space.sigma) as f32;
+            self.sections.extend(table.sections.iter().map(|s| {
+                [s.distance, f64::from(s.level), s.amplitude, s.weight].map(|v| v as f32)
+            }));
+            match mode {
+                LightMode::Off => {}
+                LightMode::Image => self.work += cone_work(&emitter),
+                LightMode::Preilluminated => {
+                    emitter.volume = self.volumes.len() as u32;
+                    self.volumes.push(self.emitters.len());
+                }
+                LightMode::MonteCarlo => {
+                    let steps = cone.length / space.sigma / Lighting::REFERENCE_STEP;
+                    let work = steps * f64::from(lighting.rays);
+                    if software && work > MOST_RAY_WORK {
+                        return Err(GpuError::Device(format!(
+                            "lighting.rays: {} over cones of {steps:.0} steps are too many for an adapter in software; use at most {:.0}, or a smaller volume or length",
+                            lighting.rays,
+                            (MOST_RAY_WORK / steps).floor().max(1.0)
+                        )));
+                    }
+                    self.work += work as u32;
+                }
+            }
+        }
+        self.emitters.push(emitter);
+        Ok(())
+    }
+
+    /// The sections of an emitter.
+    fn of(&self, emitter: usize) -> &[[f32; 4]] {
+        let e = &self.emitters[emitter];
+        let first = e.first as usize;
+        &self.sections[first..first + (e.ones + e.threes + e.sevens) as usize]
+    }
+}
+
+/// Loop iterations of a cone, about.
+fn cone_work(emitter: &Emitter) -> u32 {
+    let counts = [emitter.ones, emitter.threes, emitter.sevens];
+    counts.iter().zip(SECTION_WORK).map(|(n, w)| n * w).sum()
+}
+
+impl Emitter {
+    fn at(source: &Source, color: DVec3, grid: &GpuGrid, view: &View, space: &LightSpace) -> Self {
+        let none: Self = bytemuck::Zeroable::zeroed();
+        let color = color.as_vec3().to_array();
+        match *source {
+            Source::Directional { toward } => Self {
+                kind: layout::EMITTER_DIRECTIONAL,
+                at: space.direction(view, toward).to_array(),
+                color,
+                ..none
+            },
+            Source::Point { position } => Self {
+                kind: layout::EMITTER_POINT,
+                at: space.point(grid, view, position).to_array(),
+                color,
+                ..none
+            },
+            Source::Spot {
+                position,
+                axis,
+                opening,
+            } => Self {
+                kind: layout::EMITTER_SPOT,
+                at: space.point(grid, view, position).to_array(),
+                axis: space.direction(view, axis).to_array(),
+                cos_outer: opening.cos() as f32,
+                cos_inner: (opening * (1.0 - SPOT_EDGE)).cos() as f32,
+                color,
+                ..none
+            },
+        }
+    }
+}
