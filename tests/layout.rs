@@ -3,8 +3,12 @@
 
 use std::mem::{offset_of, size_of};
 
-use strataray::gpu::layout::{self, BricksInfo, Found, Frame, GridInfo, Slab, Tile, VolumeInfo};
+use strataray::gpu::layout::{
+    self, BlurInfo, BricksInfo, Emitter, Found, Frame, GridInfo, LightingInfo, Slab, Tile,
+    VolumeInfo,
+};
 use strataray::gpu::shader;
+use strataray::scene::lighting;
 use wgpu::naga::{Expression, Literal, Module, TypeInner, front::wgsl};
 
 fn module() -> Module {
@@ -77,6 +81,51 @@ fn structs_agree() {
     );
     agrees!(
         m,
+        BlurInfo,
+        axis,
+        source_count,
+        made_count,
+        deviation,
+        box_low,
+        position_low,
+        spacing,
+        position_scale,
+        sigma,
+        ghost,
+        clip_count,
+        reserved,
+        clip_planes
+    );
+    agrees!(
+        m,
+        LightingInfo,
+        box_low,
+        sigma,
+        scale,
+        strength,
+        size,
+        ambient,
+        light_size,
+        volumes,
+        emitters,
+        levels,
+        position_low,
+        position_scale,
+        rays,
+        seed,
+        step,
+        gradient_scale,
+        work,
+        reserved0,
+        reserved1,
+        reserved2
+    );
+    agrees!(
+        m, Emitter, at, kind, axis, cos_outer, color, cos_inner, first, ones, threes, sevens,
+        tangent, cosine, length, volume
+    );
+    agrees!(
+        m,
         GridInfo,
         ni,
         nj,
@@ -144,6 +193,13 @@ fn constants_agree() {
         ("COUNT_RECOVERED", layout::COUNT_RECOVERED),
         ("COUNT_LOST", layout::COUNT_LOST),
         ("COUNT_PAUSED", layout::COUNT_PAUSED),
+        ("EMITTER_DIRECTIONAL", layout::EMITTER_DIRECTIONAL),
+        ("EMITTER_POINT", layout::EMITTER_POINT),
+        ("EMITTER_SPOT", layout::EMITTER_SPOT),
+        ("LIGHT_OFF", layout::LIGHT_OFF),
+        ("LIGHT_IMAGE", layout::LIGHT_IMAGE),
+        ("LIGHT_VOLUME", layout::LIGHT_VOLUME),
+        ("LIGHT_RAYS", layout::LIGHT_RAYS),
     ] {
         let (_, constant) = m
             .constants
@@ -154,6 +210,24 @@ fn constants_agree() {
             panic!("{name} is no u32")
         };
         assert_eq!(value, host, "{name}");
+    }
+}
+
+#[test]
+fn numbers_of_the_shading_agree() {
+    let m = module();
+    for (name, host) in [
+        ("GRADIENT_FADE_LOW", lighting::GRADIENT_FADE[0]),
+        ("GRADIENT_FADE_HIGH", lighting::GRADIENT_FADE[1]),
+        ("SPECULAR", lighting::SPECULAR),
+        ("SHININESS", lighting::SHININESS),
+    ] {
+        let named = |(_, c): &(_, &wgpu::naga::Constant)| c.name.as_deref() == Some(name);
+        let (_, constant) = m.constants.iter().find(named).unwrap();
+        let Expression::Literal(Literal::F32(value)) = m.global_expressions[constant.init] else {
+            panic!("{name} is no f32")
+        };
+        assert_eq!(value, host as f32, "{name}");
     }
 }
 

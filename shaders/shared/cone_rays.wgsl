@@ -1,15 +1,12 @@
-// Transmittance of a cone by many rays through the volume of values: slow, for comparison
+// Transmittance of a cone by many rays through the volume of opacities: slow, for comparison
 // (campagnolo-2021, 3.1.1).
 #import light
 #import random
 
-// Optical depth of a unit of length in the voxel around a point.
-fn voxel_depth(p: vec3f) -> f32 {
-    let size = vec3f(textureDimensions(field_volume));
-    let number = textureLoad(field_volume, vec3i(floor(p / lighting.size * size)), 0).x;
-    let at = lighting.position_low + lighting.position_scale * (number - 1.0);
-    let in_cell = select(transfer_at(at).w, lighting.ghost, number == GHOST_NUMBER);
-    return select(0.0, in_cell * lighting.sigma, number > 0.0);
+// Optical depth of a unit of length at a point.
+fn sharp_depth(p: vec3f) -> f32 {
+    let opacity = textureSampleLevel(opacities, smooth_sampler, p / lighting.size, 0.0).x;
+    return -log(1.0 - min(opacity, 0.999999));
 }
 
 // Mean of the transmittances of rays over a cone, weighted by the cosine of their angle to the axis. Their
@@ -18,7 +15,7 @@ fn voxel_depth(p: vec3f) -> f32 {
 fn rays_transmittance(emitter: Emitter, p: vec3f) -> f32 {
     let way = toward(emitter, p);
     let side = across(way.xyz);
-    let reach = min(emitter.length, way.w);
+    let range = vec2f(sections[emitter.first].x, min(emitter.length, way.w));
     let bits = bitcast<vec3u>(p);
     let seed = pcg(bits.x ^ pcg(bits.y ^ pcg(bits.z ^ pcg(lighting.seed))));
     var sum = 0.0;
@@ -31,23 +28,23 @@ fn rays_transmittance(emitter: Emitter, p: vec3f) -> f32 {
         // Golden angles spread the rings' directions; one random turn for all of them.
         let turn = 2.3999632 * f32(n) + 6.2831853 * unit3(seed).y;
         let direction = cosine * way.xyz + sine * (cos(turn) * side[0] + sin(turn) * side[1]);
-        sum += cosine * exp(-ray_depth(p, direction, reach, chance.z));
+        sum += cosine * exp(-ray_depth(p, direction, range, chance.z));
         weights += cosine;
     }
     return sum / weights;
 }
 
-// Optical depth of a ray up to where it leaves the box.
-fn ray_depth(p: vec3f, direction: vec3f, reach: f32, offset: f32) -> f32 {
+// Optical depth of a ray within a range of distances, up to where it leaves the box.
+fn ray_depth(p: vec3f, direction: vec3f, range: vec2f, offset: f32) -> f32 {
     let safe = select(direction, vec3f(1e-9), abs(direction) < vec3f(1e-9));
     let ends = max(-p / safe, (lighting.size - p) / safe);
-    let end = min(reach, min(ends.x, min(ends.y, ends.z)));
+    let end = min(range.y, min(ends.x, min(ends.y, ends.z)));
     let begins = min(-p / safe, (lighting.size - p) / safe);
-    let begin = max(lighting.gap, max(begins.x, max(begins.y, begins.z)));
+    let begin = max(range.x, max(begins.x, max(begins.y, begins.z)));
     var depth = 0.0;
     var t = begin + offset * lighting.step;
     while t < end && depth < 8.0 {
-        depth += lighting.step * voxel_depth(p + t * direction);
+        depth += lighting.step * sharp_depth(p + t * direction);
         t += lighting.step;
     }
     return depth;

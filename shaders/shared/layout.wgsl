@@ -157,18 +157,17 @@ struct LightingInfo {
     // Transfer-function position of a value: low + scale * part of the range.
     position_low: f32,
     position_scale: f32,
-    // Of the rays over a cone: number, seed, start and step.
+    // Of the rays over a cone: number, seed and step.
     rays: u32,
     seed: u32,
-    gap: f32,
     step: f32,
-    // Extinction of inactive cells.
-    ghost: f32,
-    // Reference lengths of the transfer function a unit.
+    // Units in a reference length of the transfer function.
     gradient_scale: f32,
     // Loop iterations that a sample costs, about.
     work: u32,
-    reserved: u32,
+    reserved0: u32,
+    reserved1: u32,
+    reserved2: u32,
 }
 
 // The viewer, or a light.
@@ -234,6 +233,12 @@ const LIGHT_OFF: u32 = 0u;
 const LIGHT_IMAGE: u32 = 1u;
 const LIGHT_VOLUME: u32 = 2u;
 const LIGHT_RAYS: u32 = 3u;
+// Changes of position over a reference length between which the gradient comes to count; brightness and
+// exponent of highlights.
+const GRADIENT_FADE_LOW: f32 = 0.01;
+const GRADIENT_FADE_HIGH: f32 = 0.1;
+const SPECULAR: f32 = 0.25;
+const SHININESS: f32 = 40.0;
 // Number of an inactive cell in a volume of single numbers; values are 1 to 2, and 0 is no cell.
 const GHOST_NUMBER: f32 = 3.0;
 // Counters, each of a low and a high word.

@@ -14,6 +14,8 @@
 // Change of the transfer function's position a unit, times presence; and presence.
 @group(2) @binding(8) var gradients: texture_3d<f32>;
 @group(2) @binding(9) var smooth_sampler: sampler;
+// Opacities of a unit of length that nothing has blurred.
+@group(2) @binding(10) var opacities: texture_3d<f32>;
 
 // A point of grid space relative to the origin, in lighting space.
 fn in_light(point: vec3f) -> vec3f {

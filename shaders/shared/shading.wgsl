@@ -14,12 +14,6 @@ override BLINN_PHONG: bool = false;
 // Only inactive cells are shaded.
 override EXACT_COLORS: bool = false;
 
-// Changes of position over a reference length between which the gradient comes to count.
-const GRADIENT_FADE_LOW: f32 = 0.01;
-const GRADIENT_FADE_HIGH: f32 = 0.1;
-const SPECULAR: f32 = 0.25;
-const SHININESS: f32 = 40.0;
-
 // Color of a sample at a point of grid space relative to the origin.
 fn shade(color: vec3f, point: vec3f, is_ghost: bool) -> vec3f {
     if !LIT || (EXACT_COLORS && !is_ghost) {

@@ -4,7 +4,7 @@
 use glam::DVec3;
 
 use super::device::{Gpu, GpuError};
-use super::layout::{BlurInfo, MAX_CLIP_PLANES, Slab};
+use super::layout::{BlurInfo, MAX_CLIP_PLANES};
 use super::pipeline::{Pipeline, flag};
 use super::slabs::Slabs;
 use super::volume::{Shape, Volume};
@@ -77,6 +77,25 @@ impl Pyramid {
         self.of == Of::new(source, transfer)
     }
 
+    fn new(
+        gpu: &Gpu,
+        shape: Shape,
+        source: &Source<'_>,
+        transfer: &TransferFunction,
+        before: Option<Self>,
+    ) -> Self {
+        let number = before.as_ref().map_or(0, |p| p.number) + 1;
+        let volume = match before.filter(|p| p.volume.shape == shape) {
+            Some(before) => before.volume,
+            None => Volume::new(gpu, shape),
+        };
+        Self {
+            volume,
+            number,
+            of: Of::new(source, transfer),
+        }
+    }
+
     /// Number of levels.
     pub fn levels(&self) -> u32 {
         self.volume.shape.levels
@@ -96,6 +115,15 @@ enum Reads {
     Values,
     Opacities,
     Depths,
+}
+
+/// Along which axis a pass blurs, how many voxels there are along it before and after, and how wide the
+/// Gaussian is, in voxels before.
+#[derive(Debug, Clone, Copy)]
+struct Line {
+    axis: u32,
+    counts: [u32; 2],
+    deviation: f64,
 }
 
 /// The shaders of the blur, compiled as they are asked for.
@@ -123,21 +151,42 @@ impl Blurs {
         before: Option<Pyramid>,
     ) -> Result<Option<Pyramid>, GpuError> {
         let shape = Shape::single(source.values.shape.size, MOST_LEVELS);
-        let number = before.as_ref().map_or(0, |p| p.number) + 1;
-        let volume = match before.filter(|p| p.volume.shape == shape) {
-            Some(before) => before.volume,
-            None => Volume::new(slabs.gpu, shape),
-        };
+        let made = Pyramid::new(slabs.gpu, shape, source, transfer, before);
         for level in 0..shape.levels {
-            if !self.level(slabs, source, group, &volume, level)? {
+            if !self.level(slabs, source, group, &made.volume, level)? {
                 return Ok(None);
             }
         }
-        Ok(Some(Pyramid {
-            volume,
-            number,
-            of: Of::new(source, transfer),
-        }))
+        Ok(Some(made))
+    }
+
+    /// Makes the opacities of a unit of length alone, without any blur; otherwise as [`Self::make`].
+    ///
+    /// # Errors
+    /// When the device reports an error.
+    pub fn make_sharp(
+        &mut self,
+        slabs: &mut Slabs<'_>,
+        source: &Source<'_>,
+        transfer: &TransferFunction,
+        group: &wgpu::BindGroup,
+        before: Option<Pyramid>,
+    ) -> Result<Option<Pyramid>, GpuError> {
+        let size = source.values.shape.size;
+        let made = Pyramid::new(slabs.gpu, Shape::single(size, 1), source, transfer, before);
+        let pass = Pass {
+            reads: Reads::Values,
+            writes_depths: false,
+            clips: source.clip_count > 0,
+        };
+        let line = Line {
+            axis: 0,
+            counts: [size[0]; 2],
+            deviation: 0.0,
+        };
+        let read = source.values.level(0);
+        let done = self.pass(slabs, source, group, pass, line, &read, (&made.volume, 0))?;
+        Ok(done.then_some(made))
     }
 
     /// Makes a level from the one below, or from the values: along x, y and depth in turn.
@@ -149,7 +198,6 @@ impl Blurs {
         pyramid: &Volume,
         level: u32,
     ) -> Result<bool, GpuError> {
-        let gpu = slabs.gpu;
         let made = pyramid.shape.at(level);
         let (below, deviation) = match level {
             0 => (made, source.sigma),
@@ -161,7 +209,7 @@ impl Blurs {
         };
         let partly =
             |axes: usize| std::array::from_fn(|a| if a < axes { made[a] } else { below[a] });
-        let between = [1, 2].map(|axes| Volume::new(gpu, Shape::single(partly(axes), 1)));
+        let between = [1, 2].map(|axes| Volume::new(slabs.gpu, Shape::single(partly(axes), 1)));
         for axis in 0..3 {
             let (reads, read) = match (axis, level) {
                 (0, 0) => (Reads::Values, source.values.level(0)),
@@ -174,36 +222,45 @@ impl Blurs {
                 clips: reads == Reads::Values && source.clip_count > 0,
             };
             let edge = source.extent[axis] / f64::from(below[axis]);
-            let info = BlurInfo {
+            let line = Line {
                 axis: axis as u32,
-                source_count: below[axis],
-                made_count: made[axis],
-                deviation: (deviation / edge) as f32,
-                ..source.info()
+                counts: [below[axis], made[axis]],
+                deviation: deviation / edge,
             };
-            let info = gpu.uniform("blur", &info);
-            let pipeline = self.pipeline(gpu, pass)?;
-            let (target, at) = match between.get(axis) {
-                Some(target) => (target, 0),
-                None => (pyramid, level),
-            };
-            let dispatch = |encoder: &mut _, slab: &Slab, voxels: &wgpu::Buffer| {
-                let slab_info = gpu.uniform("slab", slab);
-                let own = [
-                    info.as_entire_binding(),
-                    slab_info.as_entire_binding(),
-                    wgpu::BindingResource::TextureView(&read),
-                    voxels.as_entire_binding(),
-                ];
-                let groups = [(2, group), (3, &gpu.bind(&pipeline.own, &own))];
-                let [width, height, depth] = slab.size;
-                pipeline.dispatch(encoder, &groups, [width.div_ceil(2), height, depth]);
-            };
-            if !target.make_level(slabs, at, BLUR_WORK, &dispatch)? {
+            let target = between.get(axis).map_or((pyramid, level), |v| (v, 0));
+            if !self.pass(slabs, source, group, pass, line, &read, target)? {
                 return Ok(false);
             }
         }
         Ok(true)
+    }
+
+    #[allow(clippy::too_many_arguments, reason = "what one pass reads and writes")]
+    fn pass(
+        &mut self,
+        slabs: &mut Slabs<'_>,
+        source: &Source<'_>,
+        group: &wgpu::BindGroup,
+        pass: Pass,
+        line: Line,
+        read: &wgpu::TextureView,
+        (target, level): (&Volume, u32),
+    ) -> Result<bool, GpuError> {
+        let gpu = slabs.gpu;
+        let info = gpu.uniform("blur", &source.info(line));
+        let pipeline = self.pipeline(gpu, pass)?;
+        target.make_level(slabs, level, BLUR_WORK, &|encoder, slab, voxels| {
+            let slab_info = gpu.uniform("slab", slab);
+            let own = [
+                info.as_entire_binding(),
+                slab_info.as_entire_binding(),
+                wgpu::BindingResource::TextureView(read),
+                voxels.as_entire_binding(),
+            ];
+            let groups = [(2, group), (3, &gpu.bind(&pipeline.own, &own))];
+            let [width, height, depth] = slab.size;
+            pipeline.dispatch(encoder, &groups, [width.div_ceil(2), height, depth]);
+        })
     }
 
     fn pipeline(&mut self, gpu: &Gpu, pass: Pass) -> Result<&Pipeline, GpuError> {
@@ -225,15 +282,14 @@ impl Blurs {
 }
 
 impl Source<'_> {
-    /// What every pass knows.
-    fn info(&self) -> BlurInfo {
+    fn info(&self, line: Line) -> BlurInfo {
         let [low, high] = self.bounds;
         let size = DVec3::from_array(self.values.shape.size.map(f64::from));
         BlurInfo {
-            axis: 0,
-            source_count: 0,
-            made_count: 0,
-            deviation: 0.0,
+            axis: line.axis,
+            source_count: line.counts[0],
+            made_count: line.counts[1],
+            deviation: line.deviation as f32,
             box_low: low.as_vec3().to_array(),
             position_low: self.position[0],
             spacing: ((high - low) / size).as_vec3().to_array(),

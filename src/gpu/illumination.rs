@@ -61,6 +61,12 @@ impl Shading {
         [self.occlusion, self.shadows].contains(&layout::LIGHT_RAYS)
     }
 
+    /// True where cones are traced through the pyramid, at samples or before.
+    pub fn traces_cones(self) -> bool {
+        let modes = [self.occlusion, self.shadows];
+        modes.contains(&layout::LIGHT_IMAGE) || modes.contains(&layout::LIGHT_VOLUME)
+    }
+
     /// Names and values of the shaders' `override` constants.
     pub fn pairs(self) -> [(&'static str, f64); 6] {
         [
@@ -109,6 +115,8 @@ pub struct Illumination {
     sections: wgpu::Buffer,
     field: Option<Field>,
     pyramid: Option<Pyramid>,
+    /// Opacities without any blur, for rays over cones.
+    opacities: Option<Pyramid>,
     lights: Option<LightVolumes>,
     gradients: Option<Gradients>,
     /// What the last update took.
@@ -193,6 +201,7 @@ impl Illumination {
             sections: gpu.storage::<[f32; 4]>("cone sections", &[])?,
             field: None,
             pyramid: None,
+            opacities: None,
             lights: None,
             gradients: None,
             times: LightTimes::default(),
@@ -213,7 +222,7 @@ impl Illumination {
     ) -> Result<bool, GpuError> {
         self.times = LightTimes::default();
         if !Shading::of(&view.lighting).is_on() {
-            (self.field, self.pyramid, self.lights, self.gradients) = (None, None, None, None);
+            self.forget();
             return Ok(true);
         }
         let start = Instant::now();
@@ -297,24 +306,39 @@ impl Illumination {
             bounds: grid.bounds,
             extent: view.lighting.extent,
         };
-        if self
-            .pyramid
-            .as_ref()
-            .is_some_and(|p| p.is_of(&source, &view.transfer))
-        {
-            return Ok(true);
-        }
-        let before = self.pyramid.take();
+        let shading = Shading::of(&view.lighting);
+        let is_stale = |made: &Option<Pyramid>| {
+            !made
+                .as_ref()
+                .is_some_and(|p| p.is_of(&source, &view.transfer))
+        };
         let group = self.bind(gpu, tables);
         let mut slabs = Slabs {
             gpu,
             pace: &mut self.pace,
             progress,
         };
-        self.pyramid = self
-            .blurs
-            .make(&mut slabs, &source, &view.transfer, &group, before)?;
-        Ok(self.pyramid.is_some())
+        if !shading.casts_rays() {
+            self.opacities = None;
+        } else if is_stale(&self.opacities) {
+            let before = self.opacities.take();
+            self.opacities =
+                self.blurs
+                    .make_sharp(&mut slabs, &source, &view.transfer, &group, before)?;
+            if self.opacities.is_none() {
+                return Ok(false);
+            }
+        }
+        if !shading.traces_cones() {
+            self.pyramid = None;
+        } else if is_stale(&self.pyramid) {
+            let before = self.pyramid.take();
+            self.pyramid = self
+                .blurs
+                .make(&mut slabs, &source, &view.transfer, &group, before)?;
+            return Ok(self.pyramid.is_some());
+        }
+        Ok(true)
     }
 
     /// Uploads what shaders need to know.
@@ -345,12 +369,12 @@ impl Illumination {
             position_scale,
             rays: lighting.rays,
             seed: lighting.seed,
-            gap: Lighting::REFERENCE_GAP as f32,
             step: Lighting::REFERENCE_STEP as f32,
-            ghost: ghost(view),
             gradient_scale: (view.transfer.reference_length / space.sigma) as f32,
             work: emitters.work,
-            reserved: 0,
+            reserved0: 0,
+            reserved1: 0,
+            reserved2: 0,
         };
         self.info = gpu.uniform("lighting", &info);
         self.emitters = gpu.storage("emitters", &emitters.emitters)?;
@@ -490,6 +514,7 @@ impl Illumination {
         let pyramid = view(self.pyramid.as_ref().map_or(single, |p| &p.volume));
         let lights = view(self.lights.as_ref().map_or(single, |l| &l.volume));
         let field = view(self.field.as_ref().map_or(single, |f| &f.volume));
+        let opacities = view(self.opacities.as_ref().map_or(single, |o| &o.volume));
         let gradients = view(self.gradients.as_ref().map_or(quad, |g| &g.volume));
         let resources = [
             tables.table.as_entire_binding(),
@@ -502,8 +527,18 @@ impl Illumination {
             wgpu::BindingResource::TextureView(&field),
             wgpu::BindingResource::TextureView(&gradients),
             wgpu::BindingResource::Sampler(&self.sampler),
+            wgpu::BindingResource::TextureView(&opacities),
         ];
         gpu.bind(gpu.layouts.group(2), &resources)
+    }
+
+    /// Frees the volumes.
+    fn forget(&mut self) {
+        self.field = None;
+        self.pyramid = None;
+        self.opacities = None;
+        self.lights = None;
+        self.gradients = None;
     }
 
     /// Bytes of all volumes.
@@ -511,6 +546,7 @@ impl Illumination {
         let volumes = [
             self.field.as_ref().map(|f| &f.volume),
             self.pyramid.as_ref().map(|p| &p.volume),
+            self.opacities.as_ref().map(|o| &o.volume),
             self.lights.as_ref().map(|l| &l.volume),
             self.gradients.as_ref().map(|g| &g.volume),
         ];

@@ -147,12 +147,12 @@ pub struct LightingInfo {
     pub position_scale: f32,
     pub rays: u32,
     pub seed: u32,
-    pub gap: f32,
     pub step: f32,
-    pub ghost: f32,
     pub gradient_scale: f32,
     pub work: u32,
-    pub reserved: u32,
+    pub reserved0: u32,
+    pub reserved1: u32,
+    pub reserved2: u32,
 }
 
 /// The viewer, or a light.
@@ -239,8 +239,6 @@ pub const LIGHT_IMAGE: u32 = 1;
 pub const LIGHT_VOLUME: u32 = 2;
 /// Light found at every sample by rays over the cone.
 pub const LIGHT_RAYS: u32 = 3;
-/// Number of an inactive cell in a volume of single numbers.
-pub const GHOST_NUMBER: f32 = 3.0;
 /// Counters, each of a low and a high word.
 pub const COUNTERS: u32 = 12;
 /// Counter of the samples inside drawn cells.

@@ -423,10 +423,8 @@ impl Lighting {
         (self.extent / DVec3::from_array(voxels)).element_sum() / 3.0
     }
 
-    /// Distance at which the rays of the mode `MonteCarlo` start, in standard deviations of the finest
-    /// level (campagnolo-2021, 3.5: one voxel).
-    pub const REFERENCE_GAP: f64 = 1.0;
-    /// Distance of their samples, in the same unit.
+    /// Distance of the samples of the rays of the mode `MonteCarlo`, in standard deviations of the finest
+    /// level (campagnolo-2021, 3.5: half a voxel). They start where the cone does.
     pub const REFERENCE_STEP: f64 = 0.5;
 }
 
