@@ -7,6 +7,7 @@ use anyhow::Context;
 use serde_json::json;
 use strataray::case::Case;
 use strataray::gpu::Gpu;
+use strataray::gpu::illumination::LightTimes;
 use strataray::picture::{self, Image};
 use strataray::reference;
 use strataray::renderer::{Frame, Renderer};
@@ -54,6 +55,7 @@ struct Stages {
     upload: Duration,
     acceleration: Duration,
     first_frame: Duration,
+    light: LightTimes,
 }
 
 pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
@@ -109,6 +111,7 @@ fn on_gpu(
     let start = Instant::now();
     let first = frame()?;
     stages.first_frame = start.elapsed();
+    stages.light = first.light;
     reporter.detail(&format!(
         "{}: {:.1} ms for the rays, {:.1} ms to prepare, on {}",
         view.strategy.name(),
@@ -174,6 +177,9 @@ fn statistics(
             "model": ms(load.model),
             "upload": ms(stages.upload),
             "acceleration": ms(stages.acceleration),
+            "light_field": ms(stages.light.field),
+            "light_extinction": ms(stages.light.extinction),
+            "light_volumes": ms(stages.light.volumes),
             "first_frame": ms(stages.first_frame),
         },
     })

@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, Mutex};
 
-use super::pipeline::SharedLayouts;
+use super::pipeline::{Parameters, SharedLayouts};
 
 /// Why the GPU cannot be used.
 #[derive(Debug, thiserror::Error)]
@@ -99,7 +99,14 @@ impl Gpu {
             reason,
         };
         let offered = adapter.limits();
-        let needed = 17;
+        let parameters = match info.device_type {
+            wgpu::DeviceType::Cpu => Parameters::Storage,
+            _ => Parameters::Uniform,
+        };
+        let needed = match parameters {
+            Parameters::Uniform => 17,
+            Parameters::Storage => 23,
+        };
         if offered.max_storage_buffers_per_shader_stage < needed {
             return Err(unsuitable(format!(
                 "it offers {} storage buffers a shader and {needed} are needed",
@@ -108,7 +115,7 @@ impl Gpu {
         }
         let limits = wgpu::Limits {
             // Eight arrays of the grid, two transfer tables, emitters and their
-            // sections, counters, ray states, a strategy's own.
+            // sections, counters, ray states, a strategy's own; where they are storage, parameters.
             max_storage_buffers_per_shader_stage: needed,
             // Depth lists and values of large models are single arrays: take what there is.
             max_storage_buffer_binding_size: offered.max_storage_buffer_binding_size,
@@ -137,7 +144,7 @@ impl Gpu {
         }));
         let timestamp_period_ns = (!features.is_empty()).then(|| queue.get_timestamp_period());
         Ok(Self {
-            layouts: SharedLayouts::new(&device)?,
+            layouts: SharedLayouts::new(&device, parameters)?,
             device,
             queue,
             info,
@@ -212,14 +219,16 @@ impl Gpu {
         Ok(self.device.create_buffer_init(&descriptor))
     }
 
-    /// A uniform buffer with `content`.
+    /// A buffer of parameters: what shaders declare as a uniform.
     pub fn uniform<T: bytemuck::NoUninit>(&self, label: &str, content: &T) -> wgpu::Buffer {
         use wgpu::util::DeviceExt;
         self.device
             .create_buffer_init(&wgpu::util::BufferInitDescriptor {
                 label: Some(label),
                 contents: bytemuck::bytes_of(content),
-                usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+                usage: wgpu::BufferUsages::UNIFORM
+                    | wgpu::BufferUsages::STORAGE
+                    | wgpu::BufferUsages::COPY_DST,
             })
     }
 

@@ -97,7 +97,7 @@ pub struct LightTimes {
     /// Extinction pyramid.
     pub extinction: Duration,
     /// Light volumes, and gradients.
-    pub light: Duration,
+    pub volumes: Duration,
 }
 
 /// Makes light and keeps it up to date.
@@ -240,7 +240,7 @@ impl Illumination {
         self.upload(gpu, grid, view, &emitters)?;
         let done = self.illuminate(gpu, view, tables, &emitters, progress)?
             && self.slope(gpu, view, tables, progress)?;
-        self.times.light = start.elapsed();
+        self.times.volumes = start.elapsed();
         Ok(done)
     }
 

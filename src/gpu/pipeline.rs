@@ -9,22 +9,47 @@ const SHARED_GROUPS: usize = 3;
 /// Layouts of the shared bind groups, read from the shaders that declare them.
 ///
 /// So a bind group of the grid or the frame is made once and fits every pipeline.
-pub struct SharedLayouts(Vec<wgpu::BindGroupLayout>);
+pub struct SharedLayouts {
+    groups: Vec<wgpu::BindGroupLayout>,
+    parameters: Parameters,
+}
+
+/// How shaders read their parameters, which they declare as uniforms.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Parameters {
+    /// As declared: GPUs have caches for them.
+    Uniform,
+    /// As storage: llvmpipe compiles a compute shader anew at each dispatch, into memory that it keeps, where
+    /// a uniform decides a branch or bounds a loop. That took half of a frame's time.
+    Storage,
+}
+
+impl Parameters {
+    fn declared(self, text: String) -> String {
+        match self {
+            Self::Uniform => text,
+            Self::Storage => text.replace("var<uniform>", "var<storage, read>"),
+        }
+    }
+}
 
 impl SharedLayouts {
     /// Reads the layouts of the modules that declare the shared groups.
     ///
     /// # Errors
     /// When one of them is not valid, with the compiler's words.
-    pub fn new(device: &wgpu::Device) -> Result<Self, GpuError> {
-        let module = parse("groups", &compose("groups")?)?;
+    pub fn new(device: &wgpu::Device, parameters: Parameters) -> Result<Self, GpuError> {
+        let module = parse("groups", &parameters.declared(compose("groups")?))?;
         let groups = 0..SHARED_GROUPS as u32;
-        Ok(Self(groups.map(|g| layout(device, &module, g)).collect()))
+        Ok(Self {
+            groups: groups.map(|g| layout(device, &module, g)).collect(),
+            parameters,
+        })
     }
 
     /// The layout of a shared group.
     pub fn group(&self, group: usize) -> &wgpu::BindGroupLayout {
-        &self.0[group]
+        &self.groups[group]
     }
 }
 
@@ -152,7 +177,7 @@ struct Compiled {
 }
 
 fn compile(gpu: &Gpu, name: &str) -> Result<Compiled, GpuError> {
-    let text = compose(name)?;
+    let text = gpu.layouts.parameters.declared(compose(name)?);
     let module = parse(name, &text)?;
     let workgroup = module
         .entry_points

@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 use anyhow::Context;
 use serde::Serialize;
 use strataray::case::Case;
+use strataray::gpu::illumination::LightTimes;
 use strataray::gpu::{Gpu, GpuBytes};
 use strataray::renderer::{Frame, Renderer};
 use strataray::scene::{self, Scene, View};
@@ -33,6 +34,11 @@ pub struct CaseTimes {
     pub read_ms: f64,
     pub upload_ms: f64,
     pub acceleration_ms: f64,
+    /// For the light, where the scene has some: values by point location, extinction pyramid, and light
+    /// volumes, which the camera's motion makes anew.
+    pub light_field_ms: f64,
+    pub light_extinction_ms: f64,
+    pub light_volumes_ms: f64,
     /// Most memory of the process; with `peak_of_all` over all cases so far.
     pub peak_memory_bytes: Option<u64>,
     pub peak_of_all: bool,
@@ -80,12 +86,17 @@ pub fn case(
     let (renderer, upload) = timed(|| Renderer::new(gpu.clone(), &case.grid));
     let mut renderer = renderer?;
     let mut strategies = Vec::new();
+    let mut light = None;
     for scene in scenes {
         let view = scene::resolve(scene, &case)?;
         let times = strategy(&mut renderer, &case, &view, frames, reporter);
         let what = || format!("{} by {}", case.about.name, view.strategy.name());
-        strategies.push(times.with_context(what)?);
+        let (times, light_times) = times.with_context(what)?;
+        strategies.push(times);
+        // The strategies after the first one find it made.
+        light.get_or_insert(light_times);
     }
+    let light = light.unwrap_or_default();
     let dims = case.grid.dims();
     let acceleration = renderer.acceleration_time();
     Ok(CaseTimes {
@@ -100,6 +111,9 @@ pub fn case(
         read_ms: ms(read),
         upload_ms: ms(upload.saturating_sub(acceleration)),
         acceleration_ms: ms(acceleration),
+        light_field_ms: ms(light.field),
+        light_extinction_ms: ms(light.extinction),
+        light_volumes_ms: ms(light.volumes),
         peak_memory_bytes: peak_memory(),
         peak_of_all,
         strategies,
@@ -112,7 +126,7 @@ fn strategy(
     view: &View,
     frames: u32,
     reporter: &Reporter,
-) -> anyhow::Result<StrategyTimes> {
+) -> anyhow::Result<(StrategyTimes, LightTimes)> {
     let mut render = || -> anyhow::Result<Frame> {
         let cpu = cpu_time();
         let frame = reporter.bar("rendering", |progress| {
@@ -123,7 +137,7 @@ fn strategy(
         Ok(frame)
     };
     let (warm_up, first_frame) = timed(&mut render);
-    let prepare = warm_up?.prepare;
+    let warm_up = warm_up?;
     let mut times = Vec::new();
     for _ in 0..frames {
         times.push(render()?);
@@ -131,10 +145,10 @@ fn strategy(
     let median = Frame::median(times).context("no frame was timed")?;
     let stats = &median.stats;
     let samples = stats.samples as f64;
-    Ok(StrategyTimes {
+    let times = StrategyTimes {
         strategy: view.strategy.name(),
         first_frame_ms: ms(first_frame),
-        prepare_ms: ms(prepare),
+        prepare_ms: ms(warm_up.prepare),
         frame_ms: ms(stats.frame),
         frame_wall_ms: ms(stats.wall),
         frame_cpu_ms: ms(stats.cpu),
@@ -144,7 +158,8 @@ fn strategy(
         recovered_rays: stats.recovered_rays,
         lost_rays: stats.lost_rays,
         gpu_bytes: median.bytes,
-    })
+    };
+    Ok((times, warm_up.light))
 }
 
 fn timed<T>(work: impl FnOnce() -> T) -> (T, Duration) {

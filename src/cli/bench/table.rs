@@ -29,6 +29,9 @@ fn loading(bench: &Bench) -> Vec<Row> {
         "read ms",
         "upload ms",
         "acceleration ms",
+        "light field ms",
+        "extinction ms",
+        "light volumes ms",
         "peak MB",
     ])];
     for case in &bench.cases {
@@ -43,6 +46,9 @@ fn loading(bench: &Bench) -> Vec<Row> {
             case.read_ms,
             case.upload_ms,
             case.acceleration_ms,
+            case.light_field_ms,
+            case.light_extinction_ms,
+            case.light_volumes_ms,
         ];
         let mut cells = vec![
             case.case.clone(),
