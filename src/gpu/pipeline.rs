@@ -20,7 +20,7 @@ pub enum Parameters {
     /// As declared: GPUs have caches for them.
     Uniform,
     /// As storage: llvmpipe compiles a compute shader anew at each dispatch, into memory that it keeps, where
-    /// a uniform decides a branch or bounds a loop. That took half of a frame's time.
+    /// a uniform decides a branch or bounds a loop. At 250 x 250 pixels that took a third of a frame.
     Storage,
 }
 
