@@ -116,6 +116,12 @@ mod tests {
             drawn: Vec::new().into(),
             clip: Vec::new(),
             ghosts: None,
+            lighting: crate::scene::lighting::resolve(
+                &crate::scene::LightingSpec::default(),
+                DVec3::ONE,
+                1,
+            )
+            .unwrap(),
             libc: crate::scene::LibcSettings::default(),
             srg: crate::scene::SrgSettings::default(),
             show_box: true,

@@ -35,7 +35,7 @@ impl Ray {
     }
 
     /// Distances at which the ray enters and leaves a box, none behind its origin.
-    fn within(&self, [low, high]: [DVec3; 2]) -> Option<[f64; 2]> {
+    pub(super) fn within(&self, [low, high]: [DVec3; 2]) -> Option<[f64; 2]> {
         let (mut enter, mut leave) = (0.0f64, f64::INFINITY);
         for axis in 0..3 {
             let to = |plane: DVec3| (plane[axis] - self.origin[axis]) / self.direction[axis];
@@ -51,10 +51,19 @@ impl Ray {
 /// Integrates rays through one view of a grid.
 #[derive(Debug)]
 pub struct Integrator<'a> {
-    grid: &'a Grid,
-    view: &'a View,
+    pub(super) grid: &'a Grid,
+    pub(super) view: &'a View,
     locator: Locator,
-    vertices: Option<VertexField>,
+    pub(super) vertices: Option<VertexField>,
+}
+
+/// What is drawn at a point.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Sample {
+    /// Where it is in its cell.
+    pub located: Located,
+    /// The value there; inactive cells, shown as ghosts, have none.
+    pub value: Option<f64>,
 }
 
 impl<'a> Integrator<'a> {
@@ -86,10 +95,9 @@ impl<'a> Integrator<'a> {
         let mut number = (enter / step - 0.5).ceil().max(0.0);
         while (number + 0.5) * step <= leave && transmittance >= self.view.early_termination {
             let position = ray.origin + (number + 0.5) * step * ray.direction;
-            if self.is_kept(position)
-                && let Some((rgb, extinction)) = self.medium(position)
-            {
+            if let Some((sample, extinction)) = self.absorbing(position) {
                 let alpha = 1.0 - (-extinction * step).exp();
+                let rgb = self.lit(position, &sample);
                 for (sum, channel) in color.iter_mut().zip(rgb) {
                     *sum += transmittance * alpha * channel;
                 }
@@ -127,27 +135,45 @@ impl<'a> Integrator<'a> {
         if !plane.opaque || t > leave || !kept {
             return None;
         }
-        let located = self.drawn_at(position)?;
-        let value = self.value(&located)?;
-        let position = self.view.transfer.position(value);
-        Some(self.view.transfer.linear_rgb(position))
+        let sample = self.sample(position)?;
+        sample.value?;
+        Some(self.lit(position, &sample))
     }
 
-    /// Linear color and extinction at a point of world space; `None` where nothing is drawn.
-    fn medium(&self, position: DVec3) -> Option<([f64; 3], f64)> {
-        let located = self.drawn_at(position)?;
-        let transfer = &self.view.transfer;
-        match self.value(&located) {
-            Some(value) => {
-                let position = transfer.position(value);
-                Some((transfer.linear_rgb(position), transfer.extinction(position)))
-            }
-            None if self.view.ghosts.is_some() => Some((
-                ghosts::COLOR.map(linear_from_srgb),
-                transfer.extinction_of(ghosts::OPACITY),
-            )),
-            None => None,
+    /// What absorbs light at a point of world space, and its extinction there.
+    pub(super) fn absorbing(&self, position: DVec3) -> Option<(Sample, f64)> {
+        if !self.is_kept(position) {
+            return None;
         }
+        let sample = self.sample(position)?;
+        let transfer = &self.view.transfer;
+        let extinction = match sample.value {
+            Some(value) => transfer.extinction(transfer.position(value)),
+            None => transfer.extinction_of(ghosts::OPACITY),
+        };
+        (extinction > 0.0).then_some((sample, extinction))
+    }
+
+    /// Linear color of a sample without any light.
+    pub(super) fn unlit(&self, sample: &Sample) -> [f64; 3] {
+        let transfer = &self.view.transfer;
+        match sample.value {
+            Some(value) => transfer.linear_rgb(transfer.position(value)),
+            None => ghosts::COLOR.map(linear_from_srgb),
+        }
+    }
+
+    /// What is drawn at a point of world space, clip planes aside.
+    pub(super) fn sample(&self, position: DVec3) -> Option<Sample> {
+        let located = self.drawn_at(position)?;
+        let value = value_at(
+            self.grid,
+            &located,
+            &self.view.field,
+            self.vertices.as_ref(),
+        );
+        let shown = value.is_some() || self.view.ghosts.is_some();
+        shown.then_some(Sample { located, value })
     }
 
     /// The drawn cell at a point of world space.
@@ -157,11 +183,6 @@ impl<'a> Integrator<'a> {
         let cell = self.grid.dims().cell(located.ijk);
         let active = self.grid.active_index(cell)?;
         self.view.drawn[active.0 as usize].then_some(located)
-    }
-
-    /// The value at a place in a cell; `None` where it has none, as inactive cells.
-    fn value(&self, located: &Located) -> Option<f64> {
-        value_at(self.grid, located, &self.view.field, self.vertices.as_ref())
     }
 }
 

@@ -2,10 +2,12 @@
 //!
 //! Nothing here is shared with the device: cells are found by a tree of boxes and Newton's method,
 //! every sample of the lattice inside the model's box is located anew, and nothing is remembered
-//! from one sample to the next.
+//! from one sample to the next. Light is found by many rays over a cone from every sample.
 
 mod cell;
+mod cone;
 mod integrate;
+mod lighting;
 mod locate;
 mod render;
 #[cfg(test)]

@@ -1,11 +1,17 @@
 //! The reference against what can be computed by hand.
 
+mod cone;
+mod lights;
+mod shading;
+
 use glam::{DAffine3, DVec2, DVec3};
 
+use super::integrate::Sample;
 use super::{Integrator, Located, Locator, Ray, render, value_at};
 use crate::metrics::fraction_within;
 use crate::model::{CellField, Dims, Grid, GridInput, Ijk, MapAxes, Spaces, VertexField};
-use crate::scene::{Camera, Interpolation, View};
+use crate::scene::lighting::{self as scene_lighting, LightSpec, VolumeSpec};
+use crate::scene::{Camera, Interpolation, LightingSpec, View};
 use crate::strategies::StrategyKind;
 use crate::transfer::TransferFunction;
 
@@ -117,11 +123,34 @@ fn view(grid: &Grid, field: CellField, extinction: f64, sampling_step: f64) -> V
         drawn: vec![true; grid.active_cells().len()].into(),
         clip: Vec::new(),
         ghosts: None,
+        lighting: scene_lighting::resolve(&LightingSpec::default(), DVec3::ONE, 1).unwrap(),
         libc: crate::scene::LibcSettings::default(),
         srg: crate::scene::SrgSettings::default(),
         field: field.into(),
         show_box: false,
         show_legend: false,
+    }
+}
+
+/// Lights a view of a grid along the axes, with voxels of these edges.
+fn light(view: &mut View, spec: LightingSpec, voxel: DVec3) {
+    let extent = view.world_bounds[1] - view.world_bounds[0];
+    let size = (extent / voxel).to_array().map(|n| n.round() as u32);
+    let volume = VolumeSpec {
+        size: Some(size),
+        ..spec.volume
+    };
+    let spec = LightingSpec { volume, ..spec };
+    view.lighting = scene_lighting::resolve(&spec, extent, view.drawn.len()).unwrap();
+}
+
+/// A white light with sharp shadows that shines along `direction`.
+fn directional(direction: [f64; 3]) -> LightSpec {
+    LightSpec::Directional {
+        direction,
+        half_angle_degrees: 1.0,
+        intensity: Some(1.0),
+        color: "#ffffff".into(),
     }
 }
 

@@ -429,7 +429,7 @@ impl Lighting {
 }
 
 /// Checks a scene's lighting for a model whose box has these edges in world space.
-pub(super) fn resolve(
+pub(crate) fn resolve(
     spec: &LightingSpec,
     extent: DVec3,
     cells: usize,

@@ -1,0 +1,161 @@
+//! The color of a sample in a view's light, as [`crate::scene::Lighting`] defines it.
+
+use glam::DVec3;
+
+use super::integrate::{Integrator, Sample};
+use super::locate::Located;
+use crate::model::Hexahedron;
+use crate::scene::LightMode;
+use crate::scene::lighting::{GRADIENT_FADE, Light, SHININESS, SPECULAR, SPOT_EDGE, Source};
+
+/// What a light is from a point.
+struct Incident {
+    /// Unit vector to it.
+    direction: DVec3,
+    /// Distance to it.
+    reach: f64,
+    /// Part of its light that goes to the point.
+    part: f64,
+}
+
+/// The field's surface at a point.
+struct Surface {
+    /// Unit gradient, or null where there is none.
+    normal: DVec3,
+    /// How much there is a surface at all, 0 to 1.
+    weight: f64,
+}
+
+impl Integrator<'_> {
+    /// Linear color of a sample of a primary ray; what it is by itself where nothing shades it.
+    pub(super) fn lit(&self, point: DVec3, sample: &Sample) -> [f64; 3] {
+        let lighting = &self.view.lighting;
+        let color = self.unlit(sample);
+        if lighting.is_off() || (lighting.exact_colors && sample.value.is_some()) {
+            return color;
+        }
+        let mut random = random(lighting.seed, point);
+        let surface = self.surface(sample);
+        let viewer = (self.view.camera.eye - point).normalize_or_zero();
+        let mut diffuse = DVec3::splat(lighting.ambient * self.occlusion(point, &mut random));
+        let mut specular = DVec3::ZERO;
+        for light in &lighting.lights {
+            let incident = Incident::new(light.source, point);
+            let arriving = light.color * self.arriving(light, &incident, point, &mut random);
+            diffuse += arriving * surface.diffuse(incident.direction);
+            specular += arriving * surface.specular(incident.direction, viewer);
+        }
+        (DVec3::from_array(color) * diffuse + specular).to_array()
+    }
+
+    /// Part of the ambient light that occlusion leaves.
+    fn occlusion(&self, point: DVec3, random: &mut fastrand::Rng) -> f64 {
+        self.view.lighting.occlusion.map_or(1.0, |occlusion| {
+            let (axis, reach) = (self.view.camera.eye - point).normalize_and_length();
+            let seen = self.transmittance(point, axis, &occlusion.cone, reach, random);
+            1.0 - occlusion.strength * (1.0 - seen)
+        })
+    }
+
+    /// Part of a light that comes to a point.
+    fn arriving(
+        &self,
+        light: &Light,
+        incident: &Incident,
+        point: DVec3,
+        random: &mut fastrand::Rng,
+    ) -> f64 {
+        let Incident {
+            direction,
+            reach,
+            part,
+        } = *incident;
+        if part == 0.0 || self.view.lighting.shadows == LightMode::Off {
+            return part;
+        }
+        part * self.transmittance(point, direction, &light.cone, reach, random)
+    }
+
+    fn surface(&self, sample: &Sample) -> Surface {
+        let lighting = &self.view.lighting;
+        let shades = lighting.blinn_phong.then_some(sample);
+        let gradient = shades.and_then(|s| self.gradient(s)).unwrap_or_default();
+        let change = gradient.length() * self.view.transfer.reference_length;
+        Surface {
+            normal: gradient.normalize_or_zero(),
+            weight: smooth_step(GRADIENT_FADE, change),
+        }
+    }
+
+    /// Gradient in world space of the position in the range of values, as they are interpolated in a cell
+    /// and not clamped to the range; `None` where they are constant or the cell is flat.
+    pub(super) fn gradient(&self, sample: &Sample) -> Option<DVec3> {
+        sample.value?;
+        let Located { ijk, str } = sample.located;
+        let corners = self.vertices.as_ref()?.corners(self.grid, ijk);
+        // Values vary by the same map as places do: here as a place with three equal coordinates.
+        let values = Hexahedron(corners.map(DVec3::splat)).jacobian(str).row(0);
+        let [low, high] = self.view.transfer.range;
+        let world_from_grid = self.view.spaces.world_from_grid.matrix3;
+        let map = world_from_grid * self.grid.hexahedron(ijk).jacobian(str);
+        let gradient = map.transpose().inverse() * values / (high - low);
+        gradient.is_finite().then_some(gradient)
+    }
+}
+
+impl Incident {
+    fn new(source: Source, point: DVec3) -> Self {
+        match source {
+            Source::Directional { toward } => Self {
+                direction: toward,
+                reach: f64::INFINITY,
+                part: 1.0,
+            },
+            Source::Point { position } => Self::from_place(position, point),
+            Source::Spot {
+                position,
+                axis,
+                opening,
+            } => {
+                let incident = Self::from_place(position, point);
+                let edge = [opening, (1.0 - SPOT_EDGE) * opening].map(f64::cos);
+                let part = smooth_step(edge, -incident.direction.dot(axis));
+                Self { part, ..incident }
+            }
+        }
+    }
+
+    fn from_place(position: DVec3, point: DVec3) -> Self {
+        let (direction, reach) = (position - point).normalize_and_length();
+        Self {
+            direction,
+            reach,
+            part: 1.0,
+        }
+    }
+}
+
+impl Surface {
+    fn diffuse(&self, to_light: DVec3) -> f64 {
+        1.0 - self.weight + self.weight * self.normal.dot(to_light).abs()
+    }
+
+    /// Blinn's highlight.
+    fn specular(&self, to_light: DVec3, to_viewer: DVec3) -> f64 {
+        let halfway = (to_light + to_viewer).normalize_or_zero();
+        SPECULAR * self.weight * self.normal.dot(halfway).abs().powf(SHININESS)
+    }
+}
+
+/// 0 up to the first edge, 1 from the second on, smooth between them.
+fn smooth_step([low, high]: [f64; 2], x: f64) -> f64 {
+    let x = ((x - low) / (high - low)).clamp(0.0, 1.0);
+    x * x * (3.0 - 2.0 * x)
+}
+
+/// Random numbers of a point on a ray, and of no other: no thread's turn changes them.
+fn random(seed: u32, point: DVec3) -> fastrand::Rng {
+    let words = point.to_array().map(f64::to_bits);
+    let mix = |state: u64, word: u64| fastrand::Rng::with_seed(state ^ word).u64(..);
+    fastrand::Rng::with_seed(words.into_iter().fold(u64::from(seed), mix))
+}
