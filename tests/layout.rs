@@ -81,6 +81,53 @@ fn structs_agree() {
     );
     agrees!(
         m,
+        GridInfo,
+        ni,
+        nj,
+        nk,
+        bins_x,
+        bins_y,
+        reserved,
+        bin_origin,
+        bin_size,
+        depth_low,
+        depth_scale
+    );
+    agrees!(
+        m,
+        VolumeInfo,
+        box_low,
+        value_low,
+        box_extent,
+        value_scale,
+        size,
+        interpolation
+    );
+    agrees!(m, Slab, first, row, size, level);
+    agrees!(
+        m,
+        BricksInfo,
+        count,
+        levels,
+        position_low,
+        position_scale,
+        empty,
+        even,
+        thin,
+        averages,
+        reserved0,
+        reserved1
+    );
+    agrees!(
+        m, Found, column, layer, reserved0, reserved1, parameters, value
+    );
+}
+
+#[test]
+fn structs_of_light_agree() {
+    let m = &module();
+    agrees!(
+        m,
         BlurInfo,
         axis,
         source_count,
@@ -123,48 +170,6 @@ fn structs_agree() {
     agrees!(
         m, Emitter, at, kind, axis, cos_outer, color, cos_inner, first, ones, threes, sevens,
         tangent, cosine, length, volume
-    );
-    agrees!(
-        m,
-        GridInfo,
-        ni,
-        nj,
-        nk,
-        bins_x,
-        bins_y,
-        reserved,
-        bin_origin,
-        bin_size,
-        depth_low,
-        depth_scale
-    );
-    agrees!(
-        m,
-        VolumeInfo,
-        box_low,
-        value_low,
-        box_extent,
-        value_scale,
-        size,
-        interpolation
-    );
-    agrees!(m, Slab, first, row, size, level);
-    agrees!(
-        m,
-        BricksInfo,
-        count,
-        levels,
-        position_low,
-        position_scale,
-        empty,
-        even,
-        thin,
-        averages,
-        reserved0,
-        reserved1
-    );
-    agrees!(
-        m, Found, column, layer, reserved0, reserved1, parameters, value
     );
 }
 
