@@ -2,10 +2,10 @@
 // pyramid (campagnolo-2021, 3.2.1 and 3.5.3).
 //
 // One thread = two voxels along x, which share a word; dispatch covers a slab. Reads a volume of single
-// numbers: values, opacities of a unit of length, or optical depths of it. Writes opacities, or in the last
+// numbers, opacities of a unit of length or optical depths of it; or the packed values. Writes opacities, or in the last
 // of three passes depths, which is what the pyramid holds. Unit of length is the finest level's standard
 // deviation in world space. Nothing is outside the box.
-#import table
+#import light
 
 // What is read.
 override READS: u32 = 1u;
@@ -63,22 +63,21 @@ fn blurred(voxel: vec3u) -> f32 {
 
 // Opacity of a unit of length.
 fn opacity(at: vec3i) -> f32 {
-    let number = textureLoad(source, at, 0).x;
     if READS == READS_OPACITIES {
-        return number;
+        return textureLoad(source, at, 0).x;
     }
     if READS == READS_DEPTHS {
-        return 1.0 - exp(-number);
+        return 1.0 - exp(-textureLoad(source, at, 0).x);
     }
-    let position = blur.position_low + blur.position_scale * (number - 1.0);
-    let in_cell = select(transfer_at(position).w, blur.ghost, number == GHOST_NUMBER);
-    var is_there = number > 0.0;
+    let voxel = field_voxel(at);
+    let in_cell = transfer_at(blur.position_low + blur.position_scale * voxel.value).w;
+    var coverage = voxel.coverage;
     if CLIPS {
         let point = blur.box_low + (vec3f(at) + 0.5) * blur.spacing;
         for (var n = 0u; n < blur.clip_count; n++) {
             let plane = blur.clip_planes[n];
-            is_there = is_there && dot(plane.xyz, point) + plane.w >= 0.0;
+            coverage = select(0.0, coverage, dot(plane.xyz, point) + plane.w >= 0.0);
         }
     }
-    return select(0.0, 1.0 - exp(-in_cell * blur.sigma), is_there);
+    return coverage * (1.0 - exp(-select(in_cell, blur.ghost, voxel.is_ghost) * blur.sigma));
 }

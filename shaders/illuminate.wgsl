@@ -46,15 +46,15 @@ fn gradient(@builtin(global_invocation_id) id: vec3u) {
     for (var n = 0; n < 125; n++) {
         let at = nearest + vec3i(n % 5, n / 5 % 5, n / 25) - 2;
         let is_in = all(at >= vec3i(0)) && all(at < size);
-        let number = textureLoad(field_volume, clamp(at, vec3i(0), size - 1), 0).x;
-        if is_in && number > 0.0 && number != GHOST_NUMBER {
+        let voxel = field_voxel(clamp(at, vec3i(0), size - 1));
+        if is_in && voxel.coverage > 0.0 && !voxel.is_ghost {
             let d = vec3f(at) - place;
-            let weight = exp(-0.5 * dot(d, d));
+            let weight = voxel.coverage * exp(-0.5 * dot(d, d));
             weights += weight;
-            mean += weight * number;
+            mean += weight * voxel.value;
             off += weight * d;
             square += weight * d * d;
-            product += weight * number * d;
+            product += weight * voxel.value * d;
         }
     }
     let total = max(weights, 1e-6);

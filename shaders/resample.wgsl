@@ -5,12 +5,14 @@
 // where cells join; dispatch covers the columns of a slab one run deep. Reads the grid and its values; writes
 // half floats, two a voxel: the value as a part of the property's range times presence, and presence, which
 // is 1 in a drawn cell and 0 elsewhere. Where inactive cells are shown there are two more: 1 in a ghost, and
-// 0. Single numbers are 0 in no cell, 1 to 2 for the range of values, and 3 in a ghost. The slab is zero
-// before; the host copies it into the texture.
+// 0. Packed voxels hold how much of them cells cover, and the mean value there, both from PARTS samples down
+// the line. The slab is zero before; the host copies it into the texture.
 #import topology
 
-// Voxels of one half float.
-override SINGLE: bool = false;
+// Voxels of coverage and value.
+override PACKED: bool = false;
+// Samples of a packed voxel: without them the model's top would have steps that light shows.
+const PARTS: f32 = 4.0;
 
 @group(3) @binding(0) var<uniform> volume: VolumeInfo;
 @group(3) @binding(1) var<uniform> slab: Slab;
@@ -19,7 +21,7 @@ override SINGLE: bool = false;
 
 @compute @workgroup_size(8, 8)
 fn fill(@builtin(global_invocation_id) id: vec3u) {
-    let wide = select(1u, 2u, SINGLE);
+    let wide = select(1u, 2u, PACKED);
     for (var side = 0u; side < wide; side++) {
         let x = wide * id.x + side;
         if x < slab.size.x && id.y < slab.size.y {
@@ -30,12 +32,15 @@ fn fill(@builtin(global_invocation_id) id: vec3u) {
 
 fn fill_line(line: vec2u) {
     let spacing = volume.box_extent / vec3f(volume.size);
-    let top = volume.box_low + (vec3f(slab.first + vec3u(line, 0u)) + vec3f(0.5)) * spacing;
-    let advance = vec3f(0.0, 0.0, spacing.z);
-    let count = f32(slab.size.z);
+    let parts = select(1.0, PARTS, PACKED);
+    let middle = vec3f(0.5, 0.5, 0.5 / parts);
+    let top = volume.box_low + (vec3f(slab.first + vec3u(line, 0u)) + middle) * spacing;
+    let advance = vec3f(0.0, 0.0, spacing.z / parts);
+    let count = parts * f32(slab.size.z);
     let slice = slab.row * slab.size.y;
     let at = line.y * slab.row + line.x;
     var track: Track;
+    var packing: Packing;
     var n = 0.0;
     // Two phases, so that lines side by side locate together and march together.
     while n < count {
@@ -43,7 +48,14 @@ fn fill_line(line: vec2u) {
             n += find(&track, top + n * advance, advance, volume.interpolation);
         }
         while track.has_cell {
-            store(at + u32(n) * slice, track);
+            let voxel = at + u32(n / parts) * slice;
+            let stored = clamp((value_on(track) - volume.value_low) * volume.value_scale, 0.0, 1.0);
+            let is_ghost = is_ghost(track.cell.column, track.cell.layer);
+            if PACKED {
+                add_part(&packing, voxel, stored, is_ghost);
+            } else {
+                store(voxel, stored, is_ghost);
+            }
             n += 1.0;
             if n >= count {
                 break;
@@ -51,17 +63,13 @@ fn fill_line(line: vec2u) {
             follow(&track, top + n * advance, advance, volume.interpolation);
         }
     }
+    if PACKED {
+        pack(packing);
+    }
 }
 
 // Writes the voxel of a number in the slab.
-fn store(voxel: u32, track: Track) {
-    let stored = clamp((value_on(track) - volume.value_low) * volume.value_scale, 0.0, 1.0);
-    let is_ghost = is_ghost(track.cell.column, track.cell.layer);
-    if SINGLE {
-        let number = select(1.0 + stored, GHOST_NUMBER, is_ghost);
-        voxels[voxel / 2u] |= pack2x16float(vec2f(number, 0.0)) << (16u * (voxel & 1u));
-        return;
-    }
+fn store(voxel: u32, stored: f32, is_ghost: bool) {
     var word = voxel;
     var halves = vec2f(stored, 1.0);
     if GHOSTS {
@@ -69,4 +77,33 @@ fn store(voxel: u32, track: Track) {
         halves = select(halves, vec2f(1.0, 0.0), is_ghost);
     }
     voxels[word] = pack2x16float(halves);
+}
+
+// A voxel of which some parts have been met.
+struct Packing {
+    voxel: u32,
+    parts: f32,
+    ghosts: f32,
+    sum: f32,
+}
+
+// Adds a part of a voxel; the one before is written once another begins.
+fn add_part(packing: ptr<function, Packing>, voxel: u32, stored: f32, is_ghost: bool) {
+    if voxel != (*packing).voxel {
+        pack(*packing);
+        *packing = Packing(voxel, 0.0, 0.0, 0.0);
+    }
+    (*packing).parts += 1.0;
+    (*packing).ghosts += select(0.0, 1.0, is_ghost);
+    (*packing).sum += select(stored, 0.0, is_ghost);
+}
+
+fn pack(packing: Packing) {
+    if packing.parts == 0.0 {
+        return;
+    }
+    let mean = packing.sum / max(packing.parts - packing.ghosts, 1.0);
+    let value = select(u32(round(mean * f32(PACKED_VALUES))), PACKED_GHOST, 2.0 * packing.ghosts > packing.parts);
+    let coverage = u32(round(packing.parts / PARTS * f32(PACKED_COVERAGE)));
+    voxels[packing.voxel / 2u] |= (coverage << PACKED_SHIFT | value) << (16u * (packing.voxel & 1u));
 }

@@ -239,8 +239,11 @@ const GRADIENT_FADE_LOW: f32 = 0.01;
 const GRADIENT_FADE_HIGH: f32 = 0.1;
 const SPECULAR: f32 = 0.25;
 const SHININESS: f32 = 40.0;
-// Number of an inactive cell in a volume of single numbers; values are 1 to 2, and 0 is no cell.
-const GHOST_NUMBER: f32 = 3.0;
+// A packed voxel: coverage, and below it the value as a part of the range, or PACKED_GHOST.
+const PACKED_SHIFT: u32 = 11u;
+const PACKED_COVERAGE: u32 = 31u;
+const PACKED_VALUES: u32 = 2046u;
+const PACKED_GHOST: u32 = 2047u;
 // Counters, each of a low and a high word.
 const COUNTERS: u32 = 12u;
 const COUNT_SAMPLES: u32 = 0u;

@@ -9,13 +9,27 @@
 @group(2) @binding(5) var extinction: texture_3d<f32>;
 // Transmittances of cones, one volume an emitter, one above the other.
 @group(2) @binding(6) var light_volumes: texture_3d<f32>;
-// Values that the pyramid was made from: 0 in no cell, 1 to 2 for the range, GHOST_NUMBER in a ghost.
-@group(2) @binding(7) var field_volume: texture_3d<f32>;
+// What the pyramid was made from: packed voxels.
+@group(2) @binding(7) var field_volume: texture_3d<u32>;
 // Change of the transfer function's position a unit, times presence; and presence.
 @group(2) @binding(8) var gradients: texture_3d<f32>;
 @group(2) @binding(9) var smooth_sampler: sampler;
 // Opacities of a unit of length that nothing has blurred.
 @group(2) @binding(10) var opacities: texture_3d<f32>;
+
+// Coverage of a packed voxel, 0 to 1; its value, as a part of the range; and whether it is an inactive cell.
+struct FieldVoxel {
+    coverage: f32,
+    value: f32,
+    is_ghost: bool,
+}
+
+fn field_voxel(at: vec3i) -> FieldVoxel {
+    let packed = textureLoad(field_volume, at, 0).x;
+    let value = packed & PACKED_GHOST;
+    return FieldVoxel(f32(packed >> PACKED_SHIFT) / f32(PACKED_COVERAGE), f32(value) / f32(PACKED_VALUES),
+        value == PACKED_GHOST);
+}
 
 // A point of grid space relative to the origin, in lighting space.
 fn in_light(point: vec3f) -> vec3f {

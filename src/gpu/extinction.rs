@@ -13,7 +13,7 @@ use crate::transfer::TransferFunction;
 /// What a pyramid is made from.
 #[derive(Clone, Copy)]
 pub struct Source<'a> {
-    /// Values: 0 in no cell, 1 to 2 for the range, 3 in an inactive cell.
+    /// Values, in packed voxels; shaders find them in bind group 2.
     pub values: &'a Volume,
     /// Number of their filling.
     pub number: u64,
@@ -138,7 +138,7 @@ const MOST_LEVELS: u32 = 12;
 impl Blurs {
     /// Makes a pyramid in the place of an existing one; `None` where it was cancelled.
     ///
-    /// `group` is bind group 2 with the transfer function.
+    /// `group` is bind group 2 with transfer function and values.
     ///
     /// # Errors
     /// When the device reports an error.
@@ -184,7 +184,8 @@ impl Blurs {
             counts: [size[0]; 2],
             deviation: 0.0,
         };
-        let read = source.values.level(0);
+        // Values come from the bind group; this is only there to be bound.
+        let read = Volume::new(slabs.gpu, Shape::single([1; 3], 1)).level(0);
         let done = self.pass(slabs, source, group, pass, line, &read, (&made.volume, 0))?;
         Ok(done.then_some(made))
     }
@@ -212,7 +213,7 @@ impl Blurs {
         let between = [1, 2].map(|axes| Volume::new(slabs.gpu, Shape::single(partly(axes), 1)));
         for axis in 0..3 {
             let (reads, read) = match (axis, level) {
-                (0, 0) => (Reads::Values, source.values.level(0)),
+                (0, 0) => (Reads::Values, between[1].level(0)),
                 (0, _) => (Reads::Depths, pyramid.level(level - 1)),
                 _ => (Reads::Opacities, between[axis - 1].level(0)),
             };

@@ -109,7 +109,7 @@ pub struct Illumination {
     sampler: wgpu::Sampler,
     pace: Pace,
     /// What is bound where there is no volume.
-    nothing: [Volume; 2],
+    nothing: [Volume; 3],
     info: wgpu::Buffer,
     emitters: wgpu::Buffer,
     sections: wgpu::Buffer,
@@ -126,7 +126,7 @@ pub struct Illumination {
 /// The volume of values that extinction is made from.
 struct Field {
     versions: Versions,
-    /// Values that are stored as 1 and 2.
+    /// Values at both ends of the range that is stored.
     range: [f64; 2],
     volume: Volume,
     /// Counts up with each filling.
@@ -195,7 +195,7 @@ impl Illumination {
                 ..Default::default()
             }),
             pace: Pace::default(),
-            nothing: [Voxel::Single, Voxel::Quad].map(|v| Volume::new(gpu, one(v))),
+            nothing: [Voxel::Single, Voxel::Packed, Voxel::Quad].map(|v| Volume::new(gpu, one(v))),
             info: gpu.uniform("lighting", &none),
             emitters: gpu.storage::<Emitter>("emitters", &[bytemuck::Zeroable::zeroed()])?,
             sections: gpu.storage::<[f32; 4]>("cone sections", &[])?,
@@ -252,7 +252,10 @@ impl Illumination {
         view: &View,
         progress: &dyn Fn(f64) -> bool,
     ) -> Result<bool, GpuError> {
-        let shape = Shape::single(view.lighting.size(gpu.is_software()), 1);
+        let shape = Shape {
+            voxel: Voxel::Packed,
+            ..Shape::single(view.lighting.size(gpu.is_software()), 1)
+        };
         let before = self.field.take();
         let number = before.as_ref().map_or(0, |f| f.number) + 1;
         let before = before.filter(|f| f.volume.shape == shape);
@@ -509,11 +512,11 @@ impl Illumination {
 
     /// Bind group 2: transfer function and light.
     pub fn bind(&self, gpu: &Gpu, tables: &TransferTables) -> wgpu::BindGroup {
-        let [single, quad] = &self.nothing;
+        let [single, packed, quad] = &self.nothing;
         let view = |volume: &Volume| volume.texture.create_view(&Default::default());
         let pyramid = view(self.pyramid.as_ref().map_or(single, |p| &p.volume));
         let lights = view(self.lights.as_ref().map_or(single, |l| &l.volume));
-        let field = view(self.field.as_ref().map_or(single, |f| &f.volume));
+        let field = view(self.field.as_ref().map_or(packed, |f| &f.volume));
         let opacities = view(self.opacities.as_ref().map_or(single, |o| &o.volume));
         let gradients = view(self.gradients.as_ref().map_or(quad, |g| &g.volume));
         let resources = [

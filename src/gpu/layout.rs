@@ -239,6 +239,14 @@ pub const LIGHT_IMAGE: u32 = 1;
 pub const LIGHT_VOLUME: u32 = 2;
 /// Light found at every sample by rays over the cone.
 pub const LIGHT_RAYS: u32 = 3;
+/// Bits below the coverage of a packed voxel.
+pub const PACKED_SHIFT: u32 = 11;
+/// Coverage of a packed voxel that cells fill.
+pub const PACKED_COVERAGE: u32 = 31;
+/// Value of a packed voxel at the upper end of the range.
+pub const PACKED_VALUES: u32 = 2046;
+/// Value of a packed voxel in an inactive cell.
+pub const PACKED_GHOST: u32 = 2047;
 /// Counters, each of a low and a high word.
 pub const COUNTERS: u32 = 12;
 /// Counter of the samples inside drawn cells.

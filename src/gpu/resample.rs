@@ -10,33 +10,34 @@ use crate::scene::Interpolation;
 
 /// Loop iterations that a voxel costs, about: bins, column, Newton's method.
 const VOXEL_WORK: u64 = 8;
+/// The same for a packed voxel, of four samples.
+const PACKED_WORK: u64 = 20;
 
 /// Fills volumes by point location.
 pub struct Resampler {
     fill: Pipeline,
     /// Constants that it was compiled with.
     constants: Constants,
-    /// Volumes have one number a voxel.
-    single: bool,
+    /// Volumes have packed voxels.
+    packed: bool,
 }
 
 impl Resampler {
-    /// Compiles the shader for volumes of a field, or for those of single numbers.
+    /// Compiles the shader for volumes of a field, or for those of packed voxels.
     ///
     /// # Errors
     /// When the driver refuses it.
-    pub fn new(gpu: &Gpu, single: bool) -> Result<Self, GpuError> {
+    pub fn new(gpu: &Gpu, packed: bool) -> Result<Self, GpuError> {
         let constants = Constants::default();
         Ok(Self {
-            fill: compile(gpu, constants, single)?,
+            fill: compile(gpu, constants, packed)?,
             constants,
-            single,
+            packed,
         })
     }
 
     /// Fills the first level of a volume with the field that the grid shows; false where it was
-    /// cancelled, and the volume is worth nothing then. A single number is 0 in no cell, 1 to 2 for the
-    /// range of values, and 3 in an inactive cell that is shown.
+    /// cancelled, and the volume is worth nothing then. A packed voxel has coverage and mean value.
     ///
     /// `range` has the values that are stored as 0 and 1.
     ///
@@ -53,14 +54,15 @@ impl Resampler {
         let gpu = slabs.gpu;
         let constants = grid.constants();
         if constants != self.constants {
-            self.fill = compile(gpu, constants, self.single)?;
+            self.fill = compile(gpu, constants, self.packed)?;
             self.constants = constants;
         }
         let info = volume_info(grid, volume.shape.size, range, interpolation);
         gpu.queue
             .write_buffer(&volume.info, 0, bytemuck::bytes_of(&info));
         let grid = grid.bind(gpu);
-        volume.make_level(slabs, 0, VOXEL_WORK, &|encoder, slab, voxels| {
+        let work = if self.packed { PACKED_WORK } else { VOXEL_WORK };
+        volume.make_level(slabs, 0, work, &|encoder, slab, voxels| {
             let slab_info = gpu.uniform("slab", slab);
             let own = [
                 volume.info.as_entire_binding(),
@@ -69,15 +71,15 @@ impl Resampler {
             ];
             let groups = [(1, &grid), (3, &gpu.bind(&self.fill.own, &own))];
             let [width, height, _] = slab.size;
-            let wide = if self.single { 2 } else { 1 };
+            let wide = if self.packed { 2 } else { 1 };
             let size = [width.div_ceil(wide), height, 1];
             self.fill.dispatch(encoder, &groups, size);
         })
     }
 }
 
-fn compile(gpu: &Gpu, constants: Constants, single: bool) -> Result<Pipeline, GpuError> {
-    let own = [("SINGLE", flag(single))];
+fn compile(gpu: &Gpu, constants: Constants, packed: bool) -> Result<Pipeline, GpuError> {
+    let own = [("PACKED", flag(packed))];
     let constants: Vec<_> = own.into_iter().chain(constants.pairs()).collect();
     Pipeline::variant(gpu, "resample", "fill", &constants)
 }

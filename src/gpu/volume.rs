@@ -14,6 +14,8 @@ const SLAB_BYTES: u64 = 16 << 20;
 pub enum Voxel {
     /// One; two voxels along x share a word.
     Single,
+    /// None, but 16 bits of coverage and value; two voxels along x share a word.
+    Packed,
     /// Two. Of a resampled field: the value, as a part of the range that it was filled with, times presence;
     /// and presence, 1 in a drawn cell and 0 elsewhere.
     Pair,
@@ -66,6 +68,7 @@ impl Shape {
     fn format(&self) -> wgpu::TextureFormat {
         match self.voxel {
             Voxel::Single => wgpu::TextureFormat::R16Float,
+            Voxel::Packed => wgpu::TextureFormat::R16Uint,
             Voxel::Pair => wgpu::TextureFormat::Rg16Float,
             Voxel::Quad => wgpu::TextureFormat::Rgba16Float,
         }
@@ -74,7 +77,7 @@ impl Shape {
     /// Bytes of a voxel.
     fn voxel_bytes(&self) -> u32 {
         match self.voxel {
-            Voxel::Single => 2,
+            Voxel::Single | Voxel::Packed => 2,
             Voxel::Pair => 4,
             Voxel::Quad => 8,
         }
