@@ -22,3 +22,4 @@ pub mod save;
 pub mod scene;
 pub mod strategies;
 pub mod transfer;
+pub mod viewer;

@@ -3,7 +3,10 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use glam::DVec3;
+
 use crate::gpu::illumination::{Illumination, LightTimes};
+use crate::gpu::probe::{self, Located};
 use crate::gpu::transfer_tables::TransferTables;
 use crate::gpu::{FrameRenderer, FrameStats, Gpu, GpuBytes, GpuError, GpuGrid};
 use crate::model::{CellField, Grid};
@@ -22,6 +25,9 @@ pub struct Renderer {
     strategies: Vec<(StrategyKind, Box<dyn RenderStrategy>)>,
     shown: Option<Shown>,
 }
+
+/// Samples of the ray that picks a cell, at most.
+const MOST_PICK_SAMPLES: f64 = 20_000.0;
 
 /// The field and selection that are on the device.
 #[derive(Clone, PartialEq)]
@@ -144,6 +150,45 @@ impl Renderer {
     /// The light, as the last picture had it.
     pub fn light(&self) -> &Illumination {
         &self.light
+    }
+
+    /// Where a ray from the eye has gathered an opacity of `seen` or more, in world space, and the cell there.
+    ///
+    /// # Errors
+    /// When the device reports an error.
+    pub fn first_seen(
+        &mut self,
+        grid: &Grid,
+        view: &View,
+        direction: DVec3,
+        seen: f64,
+    ) -> Result<Option<(DVec3, Located)>, GpuError> {
+        let grid = shown_grid(grid, view.ghosts.as_ref());
+        self.show(grid, view)?;
+        let eye = view.camera.eye;
+        let distances = view.box_corners.iter().map(|c| (*c - eye).dot(direction));
+        let far = distances.fold(0.0, f64::max);
+        // On the lattice of the samples; of a long ray as many as a picture has rows of pixels, at most.
+        let step = view.sampling_step.max(far / MOST_PICK_SAMPLES);
+        let place = |n: usize| eye + (n as f64 + 0.5) * step * direction;
+        let kept = |p: &DVec3| {
+            let planes = &view.clip;
+            planes.iter().all(|c| (*p - c.point).dot(c.normal) >= 0.0)
+        };
+        let places: Vec<DVec3> = (0..(far / step) as usize).map(place).filter(kept).collect();
+        let to_grid = |p: &DVec3| view.spaces.grid_from_world.transform_point3(*p);
+        let points: Vec<DVec3> = places.iter().map(to_grid).collect();
+        let located = probe::locate(&self.gpu, &self.grid, grid, &points, view.interpolation)?;
+        let mut transmittance = 1.0;
+        for (place, located) in places.into_iter().zip(located) {
+            let Some(located) = located else { continue };
+            let position = view.transfer.position(located.value);
+            transmittance *= (-view.transfer.extinction(position) * step).exp();
+            if 1.0 - transmittance >= seen {
+                return Ok(Some((place, located)));
+            }
+        }
+        Ok(None)
     }
 
     /// Brings field and selection of a view to the device. Rendering does so by itself; done before,

@@ -76,13 +76,7 @@ pub fn run() -> ExitCode {
         Some(Command::Compare(a)) => compare::run(&a),
         Some(Command::Bench(a)) => bench::run(&a),
         Some(Command::Sample(a)) => sample::run(&a),
-        None => Err(anyhow::anyhow!(
-            "the viewer is not part of this version; use `strataray render {}` for a picture, or `strataray --help`",
-            arguments
-                .cases
-                .first()
-                .map_or("CASE".into(), |c| c.display().to_string())
-        )),
+        None => strataray::viewer::run(arguments.cases).map_err(anyhow::Error::msg),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -28,7 +28,7 @@ pub fn draw_box(pen: &mut Pen, image: &Image, view: &View) {
 }
 
 /// Edges, by their corners, of those sides of the box that the eye sees from within.
-fn far_edges(view: &View) -> Vec<(usize, usize)> {
+pub fn far_edges(view: &View) -> Vec<(usize, usize)> {
     let grid = |p: DVec3| view.spaces.grid_from_world.transform_point3(p);
     let [eye, low, high] = [view.camera.eye, view.box_corners[0], view.box_corners[7]].map(grid);
     let is_far = |axis: usize, corner: usize| {

@@ -15,10 +15,12 @@ mod sheet;
 mod ticks;
 
 pub use annotate::{Annotations, annotate, finished};
+pub use axes::far_edges;
 pub use difference::{difference_colors, difference_picture};
 pub use files::{Format, PictureError, write_exr, write_png};
 pub use plot::{Plot, Series};
 pub use sheet::{SheetError, Tile, contact_sheet};
+pub use ticks::labels as legend_labels;
 
 use canvas::Canvas;
 

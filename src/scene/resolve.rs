@@ -108,6 +108,19 @@ pub struct View {
 }
 
 impl View {
+    /// The same view from another camera, in another size; nothing is read.
+    ///
+    /// # Errors
+    /// When camera or size are not allowed.
+    pub fn seen_from(&self, camera_spec: &CameraSpec, size: [u32; 2]) -> Result<Self, SceneError> {
+        let camera = camera(camera_spec, checked_size(size)?, &self.box_corners)?;
+        Ok(Self {
+            size,
+            camera,
+            ..self.clone()
+        })
+    }
+
     /// Width over height.
     pub fn aspect(&self) -> f64 {
         f64::from(self.size[0]) / f64::from(self.size[1])
@@ -166,10 +179,7 @@ pub fn resolve(scene: &Scene, case: &Case) -> Result<View, SceneError> {
     if !(0.0..1.0).contains(&scene.early_termination) {
         return Err(wrong("early_termination", "must be at least 0 and below 1"));
     }
-    let size = scene.size;
-    if size.iter().any(|n| !(1..=16384).contains(n)) {
-        return Err(wrong("size", "must be 1 to 16384 pixels each way"));
-    }
+    let size = checked_size(scene.size)?;
     Ok(View {
         size,
         background: presets::parse_color(&scene.background)
@@ -200,6 +210,13 @@ pub fn resolve(scene: &Scene, case: &Case) -> Result<View, SceneError> {
         show_box: scene.show.r#box,
         show_legend: scene.show.legend,
     })
+}
+
+fn checked_size(size: [u32; 2]) -> Result<[u32; 2], SceneError> {
+    match size.iter().all(|n| (1..=16384).contains(n)) {
+        true => Ok(size),
+        false => Err(wrong("size", "must be 1 to 16384 pixels each way")),
+    }
 }
 
 fn sampling_step(scene: &Scene, edges: DVec3, bounds: [DVec3; 2]) -> Result<f64, SceneError> {

@@ -83,6 +83,15 @@ impl StrategyKind {
         }
     }
 
+    /// What it is in one sentence.
+    pub fn describe(self) -> &'static str {
+        match self {
+            Self::Libc => "Walks from cell to cell: close to exact, fast",
+            Self::Plts => "Locates every sample in its cell: exact, slow",
+            Self::Srg => "Samples a resampled volume: fastest, blurs faults and thin layers",
+        }
+    }
+
     /// Compiles the strategy for a device.
     ///
     /// # Errors

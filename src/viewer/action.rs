@@ -1,0 +1,97 @@
+//! What the interface does to a scene: every change has a name, so that it can be undone, tested and told.
+
+use serde::{Deserialize, Serialize};
+
+use crate::scene::{
+    CameraSpec, ClipSpec, Filter, Interpolation, LibcSettings, LightingSpec, Scene, Show,
+    SrgSettings, StepSpec, TransferSpec,
+};
+
+/// A change of a scene.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub enum Action {
+    /// Shows another property; its own range and curve.
+    Property(String),
+    /// Shows another step, by number.
+    Step(usize),
+    /// Values in a cell.
+    Interpolation(Interpolation),
+    /// Ends of the color map; `None` for the property's own.
+    Range(Option<[f64; 2]>),
+    /// Colors and opacities.
+    Transfer(TransferSpec),
+    /// Ray-casting strategy by name.
+    Strategy(String),
+    /// Settings of SRG.
+    Srg(SrgSettings),
+    /// Settings of LIBC.
+    Libc(LibcSettings),
+    /// Distance of samples; `None` for the default.
+    SamplingStep(Option<f64>),
+    /// Occlusion and lights.
+    Lighting(LightingSpec),
+    /// Which cells are drawn.
+    Filter(Filter),
+    /// Clip planes.
+    Clip(Vec<ClipSpec>),
+    /// Where to look from.
+    Camera(CameraSpec),
+    /// Vertical exaggeration; `None` for one that suits the model.
+    Exaggeration(Option<f64>),
+    /// What is drawn beside the volume.
+    Show(Show),
+    /// Background color.
+    Background(String),
+    /// A whole scene, as from a file.
+    Scene(Box<Scene>),
+}
+
+impl Action {
+    /// What it is called in the menu of undo.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Property(_) => "property",
+            Self::Step(_) => "time step",
+            Self::Interpolation(_) => "interpolation",
+            Self::Range(_) => "color range",
+            Self::Transfer(_) => "transfer function",
+            Self::Strategy(_) => "strategy",
+            Self::Srg(_) | Self::Libc(_) => "strategy settings",
+            Self::SamplingStep(_) => "sampling step",
+            Self::Lighting(_) => "lighting",
+            Self::Filter(_) => "filter",
+            Self::Clip(_) => "clip planes",
+            Self::Camera(_) => "camera",
+            Self::Exaggeration(_) => "vertical exaggeration",
+            Self::Show(_) => "what is shown",
+            Self::Background(_) => "background",
+            Self::Scene(_) => "scene",
+        }
+    }
+
+    /// Makes the change.
+    pub fn apply(self, scene: &mut Scene) {
+        match self {
+            Self::Property(name) => {
+                scene.property = Some(name);
+                scene.range = None;
+            }
+            Self::Step(step) => scene.step = StepSpec::Index(step),
+            Self::Interpolation(v) => scene.interpolation = v,
+            Self::Range(v) => scene.range = v,
+            Self::Transfer(v) => scene.transfer = v,
+            Self::Strategy(v) => scene.strategy = v,
+            Self::Srg(v) => scene.srg = v,
+            Self::Libc(v) => scene.libc = v,
+            Self::SamplingStep(v) => scene.sampling_step = v,
+            Self::Lighting(v) => scene.lighting = v,
+            Self::Filter(v) => scene.filter = v,
+            Self::Clip(v) => scene.clip = v,
+            Self::Camera(v) => scene.camera = v,
+            Self::Exaggeration(v) => scene.vertical_exaggeration = v,
+            Self::Show(v) => scene.show = v,
+            Self::Background(v) => scene.background = v,
+            Self::Scene(v) => *scene = *v,
+        }
+    }
+}

@@ -1,0 +1,100 @@
+//! Keyboard shortcuts: one table for what they do and for the sheet that lists them.
+
+use eframe::egui::{Context, Key, KeyboardShortcut, Modifiers};
+
+/// What a shortcut does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Command {
+    /// Opens a case.
+    Open,
+    /// Reads the case again.
+    Reload,
+    /// Saves the scene.
+    SaveScene,
+    /// Loads a scene.
+    LoadScene,
+    /// Saves the picture.
+    Screenshot,
+    /// Copies the command line that makes the picture.
+    CopyLine,
+    /// Takes the last change back.
+    Undo,
+    /// Makes it again.
+    Redo,
+    /// Plays or pauses.
+    Play,
+    /// Time steps forward or back.
+    Step(isize),
+    /// To the first step, or the last.
+    End(bool),
+    /// One of the standard views.
+    View(usize),
+    /// Frames the model from where the camera is.
+    FrameAll,
+    /// The next strategy.
+    NextStrategy,
+    /// Lighting off, or soft.
+    Light,
+    /// Dark or light.
+    Theme,
+    /// The sheet of shortcuts.
+    Help,
+}
+
+const CTRL: Modifiers = Modifiers::COMMAND;
+const CTRL_SHIFT: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
+const CTRL_ALT: Modifiers = Modifiers::COMMAND.plus(Modifiers::ALT);
+const NONE: Modifiers = Modifiers::NONE;
+
+/// Every shortcut, with what it says in the sheet.
+pub const SHORTCUTS: [(Modifiers, Key, Command, &str); 26] = [
+    (CTRL, Key::O, Command::Open, "Open a case"),
+    (NONE, Key::F5, Command::Reload, "Read the case again"),
+    (CTRL, Key::S, Command::SaveScene, "Save the scene"),
+    (CTRL, Key::L, Command::LoadScene, "Load a scene"),
+    (NONE, Key::F12, Command::Screenshot, "Save the picture"),
+    (CTRL_SHIFT, Key::C, Command::CopyLine, "Copy as command"),
+    (CTRL_SHIFT, Key::Z, Command::Redo, "Redo"),
+    (CTRL, Key::Z, Command::Undo, "Undo"),
+    (CTRL, Key::Y, Command::Redo, "Redo"),
+    (NONE, Key::Space, Command::Play, "Play or pause"),
+    (NONE, Key::ArrowRight, Command::Step(1), "Step forward"),
+    (NONE, Key::ArrowLeft, Command::Step(-1), "Step back"),
+    (NONE, Key::Home, Command::End(false), "First step"),
+    (NONE, Key::End, Command::End(true), "Last step"),
+    (CTRL_ALT, Key::N, Command::View(0), "Look north"),
+    (CTRL_ALT, Key::S, Command::View(1), "Look south"),
+    (CTRL_ALT, Key::E, Command::View(2), "Look east"),
+    (CTRL_ALT, Key::W, Command::View(3), "Look west"),
+    (CTRL_ALT, Key::T, Command::View(4), "Look down"),
+    (CTRL_ALT, Key::I, Command::View(5), "Look from a corner"),
+    (NONE, Key::F, Command::FrameAll, "Frame all"),
+    (NONE, Key::S, Command::NextStrategy, "Next strategy"),
+    (NONE, Key::Q, Command::Light, "Occlusion on or off"),
+    (CTRL, Key::D, Command::Theme, "Dark or light"),
+    (NONE, Key::F1, Command::Help, "This sheet"),
+    (
+        Modifiers::SHIFT,
+        Key::Questionmark,
+        Command::Help,
+        "This sheet",
+    ),
+];
+
+/// What was pressed in this frame; nothing while text is being typed.
+pub fn pressed(ctx: &Context) -> Vec<Command> {
+    if ctx.egui_wants_keyboard_input() {
+        return Vec::new();
+    }
+    let taken = |(modifiers, key, command, _): &(Modifiers, Key, Command, &str)| {
+        let shortcut = KeyboardShortcut::new(*modifiers, *key);
+        ctx.input_mut(|i| i.consume_shortcut(&shortcut))
+            .then_some(*command)
+    };
+    SHORTCUTS.iter().filter_map(taken).collect()
+}
+
+/// How a shortcut is written.
+pub fn text(ctx: &Context, modifiers: Modifiers, key: Key) -> String {
+    ctx.format_shortcut(&KeyboardShortcut::new(modifiers, key))
+}

@@ -1,0 +1,73 @@
+//! Which strategy casts the rays, and its settings.
+
+use eframe::egui::{self, Ui};
+
+use super::About;
+use crate::scene::Integration;
+use crate::strategies::StrategyKind;
+use crate::viewer::action::Action;
+
+pub fn show(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
+    ui.horizontal(|ui| {
+        for kind in StrategyKind::ALL {
+            let is_on = about.scene.strategy == kind.name();
+            let label = ui.selectable_label(is_on, kind.name().to_uppercase());
+            if label.on_hover_text(kind.describe()).clicked() {
+                actions.push(Action::Strategy(kind.name().into()));
+            }
+        }
+    });
+    match StrategyKind::from_name(&about.scene.strategy) {
+        Some(StrategyKind::Libc) => libc(ui, about, actions),
+        Some(StrategyKind::Srg) => srg(ui, about, actions),
+        _ => {}
+    }
+    if let Some(picture) = about.picture {
+        let mut step = picture.view.sampling_step;
+        let speed = 0.01 * step;
+        ui.horizontal(|ui| {
+            ui.label("Sampling step");
+            let drag = egui::DragValue::new(&mut step)
+                .speed(speed)
+                .range(0.001..=1e6);
+            if ui
+                .add(drag)
+                .on_hover_text("In the grid's length unit")
+                .changed()
+            {
+                actions.push(Action::SamplingStep(Some(step)));
+            }
+            if ui.button("Default").clicked() {
+                actions.push(Action::SamplingStep(None));
+            }
+        });
+    }
+}
+
+fn libc(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
+    let mut settings = about.scene.libc;
+    let mut segments = settings.integration == Integration::Segments;
+    ui.checkbox(&mut segments, "Whole segments")
+        .on_hover_text("Integrates each segment in a cell as a whole instead of samples");
+    settings.integration = match segments {
+        true => Integration::Segments,
+        false => Integration::Samples,
+    };
+    ui.checkbox(&mut settings.cross_faults, "Walk across faults");
+    if settings != about.scene.libc {
+        actions.push(Action::Libc(settings));
+    }
+}
+
+fn srg(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
+    let mut settings = about.scene.srg;
+    let mut budget = settings.budget_mb.unwrap_or(32);
+    let slider = egui::Slider::new(&mut budget, 1..=4096).logarithmic(true);
+    if ui.add(slider.text("Budget MB")).changed() {
+        settings.budget_mb = Some(budget);
+    }
+    ui.checkbox(&mut settings.skip_empty, "Skip what is empty");
+    if settings != about.scene.srg {
+        actions.push(Action::Srg(settings));
+    }
+}

@@ -1,0 +1,72 @@
+//! What is remembered from session to session, in one file of the user's configuration folder.
+
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+/// Cases that are remembered, at most.
+const MOST_RECENT: usize = 12;
+
+/// What the user has chosen once.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Settings {
+    /// Cases opened last, the newest first.
+    pub recent: Vec<PathBuf>,
+    /// Light letters on dark ground.
+    pub dark: bool,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            recent: Vec::new(),
+            dark: true,
+        }
+    }
+}
+
+impl Settings {
+    /// Those of the last session; the default ones where there are none.
+    pub fn load() -> Self {
+        let read = |path: PathBuf| std::fs::read_to_string(path).ok();
+        let text = file().and_then(read).unwrap_or_default();
+        serde_json::from_str(&text).unwrap_or_default()
+    }
+
+    /// Keeps them.
+    ///
+    /// # Errors
+    /// When they cannot be written; the sentence is for people.
+    pub fn save(&self) -> Result<(), String> {
+        let Some(path) = file() else {
+            return Ok(());
+        };
+        let write = || -> std::io::Result<()> {
+            if let Some(folder) = path.parent() {
+                std::fs::create_dir_all(folder)?;
+            }
+            std::fs::write(&path, serde_json::to_string_pretty(self)?)
+        };
+        write().map_err(|e| format!("{} cannot be written: {e}", path.display()))
+    }
+
+    /// Puts a case in front of the recent ones.
+    pub fn remember(&mut self, path: &Path) {
+        let path = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+        self.recent.retain(|p| *p != path);
+        self.recent.insert(0, path);
+        self.recent.truncate(MOST_RECENT);
+    }
+}
+
+/// Where they are kept; `None` where the system has no such place.
+fn file() -> Option<PathBuf> {
+    let set = |name: &str| std::env::var_os(name).filter(|v| !v.is_empty());
+    let folder = set("STRATARAY_CONFIG")
+        .or_else(|| set("XDG_CONFIG_HOME"))
+        .or_else(|| set("APPDATA"))
+        .map(PathBuf::from)
+        .or_else(|| Some(PathBuf::from(set("HOME")?).join(".config")))?;
+    Some(folder.join("strataray").join("settings.json"))
+}
