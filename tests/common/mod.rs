@@ -8,6 +8,7 @@
     reason = "tests"
 )]
 
+pub mod light;
 pub mod shape;
 
 use std::path::{Path, PathBuf};

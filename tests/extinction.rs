@@ -1,0 +1,234 @@
+//! The extinction pyramid against sums over all voxels in f64.
+#![allow(missing_docs, clippy::unwrap_used, clippy::panic, reason = "tests")]
+
+mod common;
+
+use common::light::{Block, Space, lighting, render, scene};
+use common::shape::Shape;
+use glam::DVec3;
+use serde_json::json;
+
+use strataray::renderer::Renderer;
+use strataray::scene::{ClipSpec, CutFace, Inactive, Scene, View};
+
+/// Opacities a length of 10: nothing, a ramp, nearly opaque.
+const OPACITY: [[f64; 2]; 4] = [[0.0, 0.0], [0.3, 0.0], [0.5, 0.35], [1.0, 0.97]];
+/// What an inactive cell has as its value.
+const GHOST: f64 = 3.0;
+/// Differences of opacity that half floats make, in the volumes between three passes and in the pyramid.
+const HALVES: f64 = 1.0 / 1024.0;
+/// What a Gaussian has beyond three standard deviations and half a voxel, along three axes.
+const TAIL: f64 = 0.003;
+/// A Gaussian's reach that is as good as endless.
+const ENDLESS: f64 = 9.0;
+
+/// A model of cells of 10 x 10 x 10, and what of its values is in the light.
+struct Found {
+    view: View,
+    space: Space,
+    /// The volume of values.
+    field: Block,
+    pyramid: Vec<Block>,
+}
+
+impl Found {
+    fn new(shape: &Shape, scene: &Scene) -> Option<Self> {
+        let gpu = common::gpu()?;
+        let case = shape.case();
+        let mut renderer = Renderer::new(gpu.clone(), &case.grid).unwrap();
+        let (view, _) = render(&mut renderer, &case, scene);
+        let light = renderer.light();
+        let pyramid = Block::levels(&gpu, light.pyramid().unwrap());
+        Some(Self {
+            field: Block::read(&gpu, light.field().unwrap(), 0),
+            space: Space::new(&view, pyramid[0].size),
+            view,
+            pyramid,
+        })
+    }
+
+    /// Opacities of a unit of length before any blur.
+    fn opacities(&self) -> Block {
+        let statistics = self.view.field.statistics().unwrap();
+        let transfer = &self.view.transfer;
+        let mut block = self.field.clone();
+        for (voxel, number) in self.field.voxels().zip(&mut block.values) {
+            let value = statistics.min + (*number - 1.0) * (statistics.max - statistics.min);
+            let extinction = match *number {
+                0.0 => 0.0,
+                GHOST => transfer.extinction_of(0.012),
+                _ => transfer.extinction(transfer.position(value)),
+            };
+            let at = self.space.world(self.field.middle(voxel));
+            let mut planes = self.view.clip.iter();
+            let is_kept = planes.all(|c| c.normal.dot(at - c.point) >= 0.0);
+            *number = f64::from(u8::from(is_kept)) * -(-extinction * self.space.sigma).exp_m1();
+        }
+        block
+    }
+
+    /// Standard deviation of the finest level in voxels of a level.
+    fn deviation(&self, level: usize) -> DVec3 {
+        let voxels = DVec3::from_array(self.pyramid[level].size.map(|n| n as f64));
+        voxels / self.space.size()
+    }
+
+    /// Compares each level with the Gaussian of the one below, and with that of the opacities for which
+    /// cones take it.
+    fn check(&self, name: &str) {
+        println!(
+            "| model | level | voxels | error | of endless | if wider | direct, inside | direct | kept |"
+        );
+        let sharp = self.opacities();
+        let mut below = sharp.clone();
+        for (level, found) in self.pyramid.iter().enumerate() {
+            let found = found.opacities();
+            let size = sharp.size.map(|n| (n >> level).max(1));
+            assert_eq!(found.size, size);
+            let sigma = f64::from(level as u32).exp2();
+            let deviation = match level {
+                0 => self.deviation(0),
+                _ => 0.5 * 3f64.sqrt() * sigma * self.deviation(level - 1),
+            };
+            let apart = |wider, reach| found.apart(&below.blurred(size, wider * deviation, reach));
+            let [error, endless, twin] =
+                [(1.0, 3.0), (1.0, ENDLESS), (1.15, 3.0)].map(|(w, r)| apart(w, r));
+            let direct = |wider| sharp.blurred(size, wider * sigma * self.deviation(0), ENDLESS);
+            let [direct, direct_twin] = [1.0, 1.15].map(direct);
+            let most = found.apart(&direct);
+            let kept = found.sum() / direct.sum();
+            // What is blurred out of the box is lost to the levels above.
+            let inner = |other: &Block| {
+                let voxels = found
+                    .voxels()
+                    .filter(|v| self.is_inner(level, found.middle(*v)));
+                voxels
+                    .map(|v| (found.at(v) - other.at(v)).abs())
+                    .reduce(f64::max)
+            };
+            let (inside, inside_twin) = (inner(&direct), inner(&direct_twin));
+            println!(
+                "| {name} | {level} | {} | {error:.5} | {endless:.5} | {twin:.4} | {} | {most:.4} | {kept:.3} |",
+                size.map(|n| n.to_string()).join(" x "),
+                inside.map_or("-".into(), |d| format!("{d:.5}")),
+            );
+            assert!(error < HALVES && endless < HALVES + TAIL, "{name} {level}");
+            assert!(
+                twin > 4.0 * error && (level > 2 || twin > 2.0 * HALVES),
+                "{name} {level}"
+            );
+            assert!(most < 0.1, "{name} {level}");
+            if let (Some(inside), Some(twin)) = (inside, inside_twin) {
+                assert!(
+                    inside < HALVES + TAIL && twin > 4.0 * inside,
+                    "{name} {level}: {twin}"
+                );
+            }
+            below = found;
+        }
+    }
+
+    /// True where a level's Gaussian ends within the box, all but.
+    fn is_inner(&self, level: usize, part: DVec3) -> bool {
+        let from_border = part.min(DVec3::ONE - part) * self.space.size();
+        from_border.min_element() > 2.5 * f64::from(level as u32).exp2()
+    }
+}
+
+/// A number from 0 to 1 by a cell's place.
+fn hash(ijk: [usize; 3]) -> f64 {
+    let seed = ijk[0] + 101 * ijk[1] + 10_007 * ijk[2];
+    fastrand::Rng::with_seed(seed as u64).f64()
+}
+
+fn shape<'a>(dims: [usize; 3], value: &'a dyn Fn([usize; 3]) -> f64) -> Shape<'a> {
+    Shape {
+        dims,
+        pillar: &|i, j| [900.0, 1500.0].map(|d| [10.0 * i as f64, 10.0 * j as f64, d]),
+        depth: &|[_, _, k], [_, _, dk]| 1000.0 + 10.0 * (k + dk) as f64,
+        value,
+        ..Shape::default()
+    }
+}
+
+/// A scene whose extinction volume has `size` voxels.
+fn of_size(size: [usize; 3]) -> Scene {
+    let spec = json!({"occlusion": {}, "volume": {"size": size, "light_size": [2, 2, 2]}});
+    scene(&OPACITY, 10.0, lighting(spec))
+}
+
+#[test]
+fn values_by_chance_are_blurred_in_cubes() {
+    for dims in [[24, 24, 24], [23, 17, 9], [27, 22, 3]] {
+        let Some(found) = Found::new(&shape(dims, &hash), &of_size(dims)) else {
+            return;
+        };
+        // One cell a voxel: the volume has their values.
+        let statistics = found.view.field.statistics().unwrap();
+        let expected = found.field.voxels().map(|ijk| {
+            let value = hash(ijk);
+            1.0 + (value - statistics.min) / (statistics.max - statistics.min)
+        });
+        let expected = Block {
+            size: dims,
+            values: expected.collect(),
+        };
+        let error = found.field.apart(&expected);
+        assert!(error < HALVES, "{error}");
+        found.check(&format!("chance, {} deep", dims[2]));
+    }
+}
+
+#[test]
+fn values_by_chance_are_blurred_in_voxels_that_are_no_cubes() {
+    let mut scene = of_size([26, 9, 15]);
+    scene.vertical_exaggeration = Some(1.7);
+    let Some(found) = Found::new(&shape([16, 12, 8], &hash), &scene) else {
+        return;
+    };
+    let deviation = found.deviation(0);
+    assert!(deviation.max_element() > 1.5 * deviation.min_element());
+    found.check("oblong");
+}
+
+#[test]
+fn an_opaque_half_is_blurred() {
+    let half = |ijk: [usize; 3]| f64::from(u8::from(ijk[0] + ijk[2] > 14));
+    let dims = [17, 10, 13];
+    let Some(found) = Found::new(&shape(dims, &half), &of_size(dims)) else {
+        return;
+    };
+    found.check("half");
+}
+
+#[test]
+fn clip_planes_and_inactive_cells_reach_the_pyramid() {
+    let dims = [15, 14, 11];
+    let holes = Shape {
+        active: &|[i, j, _]| i + j > 9,
+        ..shape(dims, &hash)
+    };
+    let mut scene = of_size(dims);
+    let Some(hidden) = Found::new(&holes, &scene) else {
+        return;
+    };
+    hidden.check("hidden");
+    scene.show.inactive = Inactive::Ghost;
+    let ghosts = Found::new(&holes, &scene).unwrap();
+    ghosts.check("ghosts");
+    let count = |found: &Found, number| found.field.values.iter().filter(|n| **n == number).count();
+    assert!(count(&ghosts, GHOST) > 300 && count(&hidden, GHOST) == 0);
+    assert_eq!(count(&ghosts, GHOST), count(&hidden, 0.0));
+    scene.clip = vec![ClipSpec {
+        point: [70.0, 75.0, -1050.0],
+        normal: [1.0, -0.4, 0.7],
+        face: CutFace::Open,
+    }];
+    let clipped = Found::new(&holes, &scene).unwrap();
+    clipped.check("clipped");
+    // The twins: what one of the three has is not what another has.
+    for (a, b) in [(&hidden, &ghosts), (&ghosts, &clipped)] {
+        let most = a.pyramid[0].opacities().apart(&b.pyramid[0].opacities());
+        assert!(most > 4.0 * HALVES, "{most}");
+    }
+}
