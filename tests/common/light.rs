@@ -84,6 +84,23 @@ impl Block {
         }))
     }
 
+    /// Linear between the middles of voxels, at a part of the box; the border goes on outside.
+    pub fn linear(&self, part: DVec3) -> f64 {
+        let size = DVec3::from_array(self.size.map(|n| n as f64));
+        let at = (part * size - 0.5).clamp(DVec3::ZERO, size - 1.0);
+        let low = at.floor();
+        let corner = |n: usize| {
+            let off = [n & 1, n >> 1 & 1, n >> 2];
+            let voxel = std::array::from_fn(|a| (low[a] as usize + off[a]).min(self.size[a] - 1));
+            let weights = off.iter().enumerate().map(|(a, &o)| match o {
+                0 => 1.0 - (at[a] - low[a]),
+                _ => at[a] - low[a],
+            });
+            weights.product::<f64>() * self.at(voxel)
+        };
+        (0..8).map(corner).sum()
+    }
+
     #[must_use]
     pub fn map(&self, f: impl Fn(f64) -> f64) -> Self {
         Self {

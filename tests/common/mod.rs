@@ -8,6 +8,7 @@
     reason = "tests"
 )]
 
+pub mod cone;
 pub mod light;
 pub mod shape;
 
