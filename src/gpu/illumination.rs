@@ -428,8 +428,13 @@ impl Illumination {
             let emitter = emitters.emitters[at];
             let lit = Lit {
                 pyramid: self.made.pyramids,
+                // Color and a spot's cone are applied to samples.
                 emitter: Emitter {
                     first: 0,
+                    color: [0.0; 3],
+                    axis: [0.0; 3],
+                    cos_outer: 0.0,
+                    cos_inner: 0.0,
                     ..emitter
                 },
                 sections: emitters.of(at).to_vec(),
