@@ -3,9 +3,10 @@
 
 mod common;
 
-use common::light::{Block, Space, lighting, render, scene};
+use common::light::{Block, Space, bits, lighting, render, scene};
 use common::shape::Shape;
 use glam::DVec3;
+use half::f16;
 use serde_json::json;
 
 use strataray::renderer::Renderer;
@@ -13,8 +14,6 @@ use strataray::scene::{ClipSpec, CutFace, Inactive, Scene, View};
 
 /// Opacities a length of 10: nothing, a ramp, nearly opaque.
 const OPACITY: [[f64; 2]; 4] = [[0.0, 0.0], [0.3, 0.0], [0.5, 0.35], [1.0, 0.97]];
-/// What an inactive cell has as its value.
-const GHOST: f64 = 3.0;
 /// Differences of opacity that half floats make, in the volumes between three passes and in the pyramid.
 const HALVES: f64 = 1.0 / 1024.0;
 /// What a Gaussian has beyond three standard deviations and half a voxel, along three axes.
@@ -22,12 +21,31 @@ const TAIL: f64 = 0.003;
 /// A Gaussian's reach that is as good as endless.
 const ENDLESS: f64 = 9.0;
 
+/// What a voxel of the volume of values holds: how much of it cells cover, the value as a part of the range,
+/// and whether they are inactive.
+struct Held {
+    coverage: f64,
+    value: f64,
+    is_ghost: bool,
+}
+
+impl Held {
+    /// From 16 bits: a half float that is 0 in no cell, 1 to 2 for the range, and 3 in an inactive cell.
+    fn new(bits: u16) -> Self {
+        let number = f64::from(f16::from_bits(bits));
+        Self {
+            coverage: f64::from(u8::from(number > 0.0)),
+            value: number - 1.0,
+            is_ghost: number == 3.0,
+        }
+    }
+}
+
 /// A model of cells of 10 x 10 x 10, and what of its values is in the light.
 struct Found {
     view: View,
     space: Space,
-    /// The volume of values.
-    field: Block,
+    field: Vec<Held>,
     pyramid: Vec<Block>,
 }
 
@@ -40,7 +58,10 @@ impl Found {
         let light = renderer.light();
         let pyramid = Block::levels(&gpu, light.pyramid().unwrap());
         Some(Self {
-            field: Block::read(&gpu, light.field().unwrap(), 0),
+            field: bits(&gpu, light.field().unwrap(), 0)
+                .into_iter()
+                .map(Held::new)
+                .collect(),
             space: Space::new(&view, pyramid[0].size),
             view,
             pyramid,
@@ -51,18 +72,19 @@ impl Found {
     fn opacities(&self) -> Block {
         let statistics = self.view.field.statistics().unwrap();
         let transfer = &self.view.transfer;
-        let mut block = self.field.clone();
-        for (voxel, number) in self.field.voxels().zip(&mut block.values) {
-            let value = statistics.min + (*number - 1.0) * (statistics.max - statistics.min);
-            let extinction = match *number {
-                0.0 => 0.0,
-                GHOST => transfer.extinction_of(0.012),
-                _ => transfer.extinction(transfer.position(value)),
+        let [low, high] = [statistics.min, statistics.max];
+        let mut block = self.pyramid[0].clone();
+        for (at, held) in self.pyramid[0].voxels().zip(&self.field) {
+            let value = low + held.value * (high - low);
+            let extinction = match held.is_ghost {
+                true => transfer.extinction_of(0.012),
+                false => transfer.extinction(transfer.position(value)),
             };
-            let at = self.space.world(self.field.middle(voxel));
+            let point = self.space.world(block.middle(at));
             let mut planes = self.view.clip.iter();
-            let is_kept = planes.all(|c| c.normal.dot(at - c.point) >= 0.0);
-            *number = f64::from(u8::from(is_kept)) * -(-extinction * self.space.sigma).exp_m1();
+            let is_kept = planes.all(|c| c.normal.dot(point - c.point) >= 0.0);
+            let kept = f64::from(u8::from(is_kept)) * held.coverage;
+            *block.at_mut(at) = kept * -(-extinction * self.space.sigma).exp_m1();
         }
         block
     }
@@ -165,16 +187,11 @@ fn values_by_chance_are_blurred_in_cubes() {
         };
         // One cell a voxel: the volume has their values.
         let statistics = found.view.field.statistics().unwrap();
-        let expected = found.field.voxels().map(|ijk| {
-            let value = hash(ijk);
-            1.0 + (value - statistics.min) / (statistics.max - statistics.min)
-        });
-        let expected = Block {
-            size: dims,
-            values: expected.collect(),
-        };
-        let error = found.field.apart(&expected);
-        assert!(error < HALVES, "{error}");
+        let part = |v: f64| (v - statistics.min) / (statistics.max - statistics.min);
+        for (at, held) in found.pyramid[0].voxels().zip(&found.field) {
+            let error = (held.value - part(hash(at))).abs();
+            assert!(held.coverage == 1.0 && error < HALVES, "{at:?}: {error}");
+        }
         found.check(&format!("chance, {} deep", dims[2]));
     }
 }
@@ -216,9 +233,10 @@ fn clip_planes_and_inactive_cells_reach_the_pyramid() {
     scene.show.inactive = Inactive::Ghost;
     let ghosts = Found::new(&holes, &scene).unwrap();
     ghosts.check("ghosts");
-    let count = |found: &Found, number| found.field.values.iter().filter(|n| **n == number).count();
-    assert!(count(&ghosts, GHOST) > 300 && count(&hidden, GHOST) == 0);
-    assert_eq!(count(&ghosts, GHOST), count(&hidden, 0.0));
+    let count = |found: &Found, what: fn(&&Held) -> bool| found.field.iter().filter(what).count();
+    let number = count(&ghosts, |h| h.is_ghost);
+    assert!(number > 300 && count(&hidden, |h| h.is_ghost) == 0);
+    assert_eq!(number, count(&hidden, |h| h.coverage == 0.0));
     scene.clip = vec![ClipSpec {
         point: [70.0, 75.0, -1050.0],
         normal: [1.0, -0.4, 0.7],

@@ -37,6 +37,20 @@ pub fn render(renderer: &mut Renderer, case: &Case, scene: &Scene) -> (View, Fra
     (view, frame.unwrap())
 }
 
+/// A level of a volume of 16 bits a voxel.
+pub fn bits(gpu: &Gpu, volume: &Volume, level: u32) -> Vec<u16> {
+    let size = volume.shape.at(level).map(|n| n as usize);
+    let words = volume.read(gpu, level).unwrap();
+    let rows = words.chunks(size[0].div_ceil(2));
+    let of = |row: &[u32]| -> Vec<u16> {
+        let halves = row.iter().flat_map(|w| [*w as u16, (*w >> 16) as u16]);
+        halves.take(size[0]).collect()
+    };
+    let bits: Vec<u16> = rows.flat_map(of).collect();
+    assert_eq!(bits.len(), size.iter().product::<usize>());
+    bits
+}
+
 /// Numbers at the middles of voxels, x fastest, then y, then depth.
 #[derive(Clone)]
 pub struct Block {
@@ -45,20 +59,15 @@ pub struct Block {
 }
 
 impl Block {
-    /// A level of a volume of single numbers.
+    /// A level of a volume of single half floats.
     pub fn read(gpu: &Gpu, volume: &Volume, level: u32) -> Self {
-        let size = volume.shape.at(level).map(|n| n as usize);
-        let words = volume.read(gpu, level).unwrap();
-        let halves = |row: &[u32]| -> Vec<f64> {
-            let both = row.iter().flat_map(|w| [*w as u16, (*w >> 16) as u16]);
-            both.take(size[0])
-                .map(|bits| f64::from(f16::from_bits(bits)))
-                .collect()
-        };
-        let values: Vec<f64> = words.chunks(size[0].div_ceil(2)).flat_map(halves).collect();
-        assert_eq!(values.len(), size.iter().product::<usize>());
+        let halves = bits(gpu, volume, level).into_iter().map(f16::from_bits);
+        let values: Vec<f64> = halves.map(f64::from).collect();
         assert!(values.iter().all(|v| v.is_finite()));
-        Self { size, values }
+        Self {
+            size: volume.shape.at(level).map(|n| n as usize),
+            values,
+        }
     }
 
     /// All levels of a volume.
@@ -69,6 +78,10 @@ impl Block {
 
     pub fn at(&self, [x, y, z]: [usize; 3]) -> f64 {
         self.values[x + self.size[0] * (y + self.size[1] * z)]
+    }
+
+    pub fn at_mut(&mut self, [x, y, z]: [usize; 3]) -> &mut f64 {
+        &mut self.values[x + self.size[0] * (y + self.size[1] * z)]
     }
 
     /// The voxels in order.
