@@ -25,7 +25,7 @@ fn both(
         let occlusion = json!({
             "half_angle_degrees": degrees, "splits": splits, "even_media": even_media,
         });
-        model.light(occlusion, length, eye, light_size)
+        model.light(&occlusion, length, eye, light_size)
     })
 }
 

@@ -79,7 +79,7 @@ fn the_device_adds_sections_as_defined() {
         for eye in [[9e3, 4e3, 7e3], [-40.0, 20.0, 11.0], [16.0, 13.0, -9.0]] {
             let occlusion =
                 json!({"half_angle_degrees": degrees, "splits": splits, "even_media": even});
-            let light = model.light(occlusion, length, DVec3::from_array(eye), [7, 6, 5]);
+            let light = model.light(&occlusion, length, DVec3::from_array(eye), [7, 6, 5]);
             let error = |turned: bool| {
                 let traced = Traced {
                     levels: &light.pyramid,

@@ -18,170 +18,114 @@ fn resolved(case: &Case, lighting: &Value) -> Result<Lighting, String> {
     Ok(view.lighting)
 }
 
-fn occlusion(field: &str, value: impl Into<Value>) -> Value {
-    json!({"occlusion": {field: value.into()}})
+/// Lighting with one field of its own.
+type Part = fn(&str, &Value) -> Value;
+
+fn occlusion(field: &str, value: &Value) -> Value {
+    json!({"occlusion": {field: value}})
 }
 
-fn shadows(field: &str, value: impl Into<Value>) -> Value {
-    json!({"shadows": {field: value.into()}})
+fn unused_occlusion(field: &str, value: &Value) -> Value {
+    json!({"occlusion": {"mode": "off", field: value}})
 }
 
-/// A directional light, and a spot.
-fn light(field: &str, value: impl Into<Value>) -> Value {
+fn shadows(field: &str, value: &Value) -> Value {
+    json!({"shadows": {field: value}})
+}
+
+/// A directional light.
+fn lights(field: &str, value: &Value) -> Value {
     let mut light = json!({"kind": "directional", "direction": [0, 0, -1]});
-    light[field] = value.into();
+    light[field] = value.clone();
     json!({"lights": [light]})
 }
 
-fn spot(field: &str, value: impl Into<Value>) -> Value {
+fn spot(field: &str, value: &Value) -> Value {
     let mut light = json!({"kind": "spot", "direction": [0, 0, -1], "position": [0, 0, 0]});
-    light[field] = value.into();
+    light[field] = value.clone();
     json!({"lights": [light]})
 }
 
-fn volume(field: &str, value: impl Into<Value>) -> Value {
-    json!({"volume": {field: value.into()}})
+fn volume(field: &str, value: &Value) -> Value {
+    json!({"volume": {field: value}})
+}
+
+fn top(field: &str, value: &Value) -> Value {
+    json!({field: value})
 }
 
 #[test]
 fn err_values_out_of_range_name_their_field() {
-    let case = Shape::default().case();
-    // What is refused, what the error names, and what is as far as one may go.
-    let cases = [
+    // What is refused, and what is as far as one may go.
+    let cases: [(Part, &str, Value, Value); 25] = [
         (
-            occlusion("half_angle_degrees", 0.9),
-            "lighting.occlusion.half_angle_degrees",
-            occlusion("half_angle_degrees", 1),
+            occlusion,
+            "occlusion.half_angle_degrees",
+            json!(0.9),
+            json!(1),
         ),
         (
-            occlusion("half_angle_degrees", 45.1),
-            "lighting.occlusion.half_angle_degrees",
-            occlusion("half_angle_degrees", 45),
+            occlusion,
+            "occlusion.half_angle_degrees",
+            json!(45.1),
+            json!(45),
+        ),
+        (occlusion, "occlusion.splits", json!(2), json!(3)),
+        (occlusion, "occlusion.attenuation", json!(-0.1), json!(0)),
+        (occlusion, "occlusion.attenuation", json!(4.1), json!(4)),
+        (occlusion, "occlusion.strength", json!(1.1), json!(1)),
+        (occlusion, "occlusion.gap", json!(21), json!(0)),
+        (occlusion, "occlusion.length", json!(0), json!(0.01)),
+        (unused_occlusion, "occlusion.splits", json!(5), json!(1)),
+        (shadows, "shadows.splits", json!(2), json!(7)),
+        (shadows, "shadows.attenuation", json!(5), json!(4)),
+        (shadows, "shadows.gap", json!(-1), json!(20)),
+        (shadows, "shadows.length", json!(1.1), json!(1)),
+        (
+            lights,
+            "lights.half_angle_degrees",
+            json!(0.01),
+            json!(0.05),
+        ),
+        (lights, "lights.half_angle_degrees", json!(11), json!(10)),
+        (
+            lights,
+            "lights.direction",
+            json!([0, 0, 0]),
+            json!([0, 0, 1]),
+        ),
+        (lights, "lights.color", json!("white"), json!("#fff0e0")),
+        (lights, "lights.intensity", json!(-1), json!(0)),
+        (spot, "lights.opening_degrees", json!(90), json!(89)),
+        (top, "ambient", json!(1.5), json!(1)),
+        (top, "rays", json!(0), json!(1)),
+        (top, "rays", json!(1025), json!(1024)),
+        (
+            volume,
+            "volume.size",
+            json!([64, 1, 64]),
+            json!([64, 2, 64]),
         ),
         (
-            occlusion("splits", 2),
-            "lighting.occlusion.splits",
-            occlusion("splits", 3),
+            volume,
+            "volume.light_size",
+            json!([8, 8, 2049]),
+            json!([8, 8, 2048]),
         ),
-        (
-            occlusion("attenuation", -0.1),
-            "lighting.occlusion.attenuation",
-            occlusion("attenuation", 0),
-        ),
-        (
-            occlusion("attenuation", 4.1),
-            "lighting.occlusion.attenuation",
-            occlusion("attenuation", 4),
-        ),
-        (
-            occlusion("strength", 1.1),
-            "lighting.occlusion.strength",
-            occlusion("strength", 1),
-        ),
-        (
-            occlusion("gap", 21),
-            "lighting.occlusion.gap",
-            occlusion("gap", 0),
-        ),
-        (
-            occlusion("length", 0.0),
-            "lighting.occlusion.length",
-            occlusion("length", 0.01),
-        ),
-        (
-            json!({"occlusion": {"mode": "off", "splits": 5}}),
-            "lighting.occlusion.splits",
-            json!({"occlusion": {"mode": "off", "splits": 1}}),
-        ),
-        (
-            shadows("splits", 2),
-            "lighting.shadows.splits",
-            shadows("splits", 7),
-        ),
-        (
-            shadows("attenuation", 5),
-            "lighting.shadows.attenuation",
-            shadows("attenuation", 4),
-        ),
-        (
-            shadows("gap", -1),
-            "lighting.shadows.gap",
-            shadows("gap", 20),
-        ),
-        (
-            shadows("length", 1.1),
-            "lighting.shadows.length",
-            shadows("length", 1),
-        ),
-        (
-            light("half_angle_degrees", 0.01),
-            "lighting.lights.half_angle_degrees",
-            light("half_angle_degrees", 0.05),
-        ),
-        (
-            light("half_angle_degrees", 11),
-            "lighting.lights.half_angle_degrees",
-            light("half_angle_degrees", 10),
-        ),
-        (
-            light("direction", vec![0, 0, 0]),
-            "lighting.lights.direction",
-            light("direction", vec![0, 0, 1]),
-        ),
-        (
-            light("color", "white"),
-            "lighting.lights.color",
-            light("color", "#fff0e0"),
-        ),
-        (
-            light("intensity", -1),
-            "lighting.lights.intensity",
-            light("intensity", 0),
-        ),
-        (
-            spot("opening_degrees", 90),
-            "lighting.lights.opening_degrees",
-            spot("opening_degrees", 89),
-        ),
-        (
-            json!({"ambient": 1.5}),
-            "lighting.ambient",
-            json!({"ambient": 1}),
-        ),
-        (json!({"rays": 0}), "lighting.rays", json!({"rays": 1})),
-        (
-            json!({"rays": 1025}),
-            "lighting.rays",
-            json!({"rays": 1024}),
-        ),
-        (
-            volume("size", vec![64, 1, 64]),
-            "lighting.volume.size",
-            volume("size", vec![64, 2, 64]),
-        ),
-        (
-            volume("light_size", vec![8, 8, 2049]),
-            "lighting.volume.light_size",
-            volume("light_size", vec![8, 8, 2048]),
-        ),
-        (
-            volume("budget_mb", 0),
-            "lighting.volume.budget_mb",
-            volume("budget_mb", 1),
-        ),
+        (volume, "volume.budget_mb", json!(0), json!(1)),
     ];
-    for (wrong, field, right) in cases {
-        let error = resolved(&case, &wrong).unwrap_err();
-        assert!(
-            error.starts_with(&format!("scene: {field}: ")),
-            "{wrong}: {error}"
-        );
+    let case = Shape::default().case();
+    for (part, place, wrong, right) in cases {
+        let field = place.rsplit('.').next().unwrap();
+        let error = resolved(&case, &part(field, &wrong)).unwrap_err();
+        let start = format!("scene: lighting.{place}: ");
+        assert!(error.starts_with(&start), "{place}: {error}");
         assert!(
             error.contains("must be") || error.contains("must have"),
             "{error}"
         );
-        let found = resolved(&case, &right);
-        assert!(found.is_ok(), "{right}: {found:?}");
+        let found = resolved(&case, &part(field, &right));
+        assert!(found.is_ok(), "{place}: {found:?}");
     }
 }
 
@@ -190,11 +134,11 @@ fn err_fields_that_are_unknown_or_missing_are_named() {
     let case = Shape::default().case();
     for (wrong, name) in [
         (json!({"oclusion": {}}), "oclusion"),
-        (occlusion("half_angle", 20), "half_angle"),
-        (occlusion("mode", "fast"), "fast"),
-        (shadows("strength", 1), "strength"),
-        (light("opening_degrees", 20), "opening_degrees"),
-        (light("kind", "lamp"), "lamp"),
+        (occlusion("half_angle", &json!(20)), "half_angle"),
+        (occlusion("mode", &json!("fast")), "fast"),
+        (shadows("strength", &json!(1)), "strength"),
+        (lights("opening_degrees", &json!(20)), "opening_degrees"),
+        (lights("kind", &json!("lamp")), "lamp"),
         (json!({"lights": [{"direction": [0, 0, -1]}]}), "kind"),
         (json!({"lights": [{"kind": "directional"}]}), "direction"),
         (json!({"lights": [{"kind": "point"}]}), "position"),
@@ -202,7 +146,7 @@ fn err_fields_that_are_unknown_or_missing_are_named() {
             json!({"lights": [{"kind": "spot", "position": [0, 0, 0]}]}),
             "direction",
         ),
-        (volume("size", vec![64, 64]), "length 2"),
+        (volume("size", &json!([64, 64])), "length 2"),
     ] {
         let error = resolved(&case, &wrong).unwrap_err();
         assert!(error.contains(name), "{wrong}: {error}");
@@ -312,7 +256,7 @@ fn volumes_have_cubes_and_fit_their_budget() {
         assert_eq!(lighting.light_size(true), size.map(|n| n.div_ceil(2)));
     }
     // A small model has no more voxels than its cells need, whatever the budget; at least a few.
-    let small = resolved(&Shape::default().case(), &volume("budget_mb", 500)).unwrap();
+    let small = resolved(&Shape::default().case(), &volume("budget_mb", &json!(500))).unwrap();
     let voxels: u32 = small.size(false).iter().product();
     assert!(voxels > 1000 && voxels <= 3000, "{voxels}");
 }

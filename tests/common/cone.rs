@@ -51,7 +51,7 @@ impl Model {
     /// Occlusion toward an eye in a light volume of `light_size` voxels, of cones of a length in voxels.
     pub fn light(
         &mut self,
-        occlusion: Value,
+        occlusion: &Value,
         length: f64,
         eye: DVec3,
         light_size: [u32; 3],
