@@ -6,7 +6,6 @@ mod common;
 use common::light::{Block, Space, bits, lighting, render, scene};
 use common::shape::Shape;
 use glam::DVec3;
-use half::f16;
 use serde_json::json;
 
 use strataray::renderer::Renderer;
@@ -30,13 +29,13 @@ struct Held {
 }
 
 impl Held {
-    /// From 16 bits: a half float that is 0 in no cell, 1 to 2 for the range, and 3 in an inactive cell.
+    /// From 16 bits, of which the upper 5 are coverage and the lower 11 the value, or all set in a ghost.
     fn new(bits: u16) -> Self {
-        let number = f64::from(f16::from_bits(bits));
+        let value = bits & 0x7ff;
         Self {
-            coverage: f64::from(u8::from(number > 0.0)),
-            value: number - 1.0,
-            is_ghost: number == 3.0,
+            coverage: f64::from(bits >> 11) / 31.0,
+            value: f64::from(value) / 2046.0,
+            is_ghost: value == 0x7ff,
         }
     }
 }
@@ -249,4 +248,33 @@ fn clip_planes_and_inactive_cells_reach_the_pyramid() {
         let most = a.pyramid[0].opacities().apart(&b.pyramid[0].opacities());
         assert!(most > 4.0 * HALVES, "{most}");
     }
+}
+
+#[test]
+fn voxels_that_cells_cover_in_part_count_in_part() {
+    let dims = [15, 8, 6];
+    let top = |x: f64| 0.6 * x;
+    let dipping = Shape {
+        depth: &|[i, _, k], [di, _, dk]| match k + dk {
+            0 => 1000.0 + top((i + di) as f64),
+            n => 1000.0 + 10.0 * n as f64,
+        },
+        ..shape(dims, &hash)
+    };
+    let Some(found) = Found::new(&dipping, &of_size(dims)) else {
+        return;
+    };
+    found.check("dipping");
+    // Four samples down the voxel, or one in its middle, which is the twin.
+    let wrong = |samples: u32| {
+        let covered = |[x, _, z]: [usize; 3]| {
+            let depth = |n: u32| 10.0 * (z as f64 + (f64::from(n) + 0.5) / f64::from(samples));
+            let inside = (0..samples).filter(|n| depth(*n) > top(x as f64 + 0.5));
+            inside.count() as f64 / f64::from(samples)
+        };
+        let voxels = found.pyramid[0].voxels().zip(&found.field);
+        let wrong = voxels.filter(|(at, held)| (held.coverage - covered(*at)).abs() > 0.02);
+        wrong.count()
+    };
+    assert!(wrong(4) == 0 && wrong(1) > 50, "{} {}", wrong(4), wrong(1));
 }
