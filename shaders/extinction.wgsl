@@ -19,7 +19,7 @@ override CLIPS: bool = false;
 
 // Opacities are kept below one, as in the transfer function.
 const MOST_OPACITY: f32 = 0.999999;
-// Standard deviations after which a Gaussian ends.
+// Standard deviations after which a Gaussian ends; voxels that lie there in part count.
 const REACH: f32 = 3.0;
 
 @group(3) @binding(0) var<uniform> blur: BlurInfo;
@@ -40,7 +40,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
 fn blurred(voxel: vec3u) -> f32 {
     let ratio = f32(blur.source_count) / f32(blur.made_count);
     let center = (f32(voxel[blur.axis]) + 0.5) * ratio - 0.5;
-    let reach = max(REACH * blur.deviation, 0.5);
+    let reach = REACH * blur.deviation + 0.5;
     let count = i32(blur.source_count);
     var sum = 0.0;
     var weights = 0.0;

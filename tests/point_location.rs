@@ -135,6 +135,7 @@ fn closed_form_of_vertical_pillars_finds_the_same_cells() {
             2000.0 + throw + 4.0 * x - 3.0 * y + z * (1.0 + 0.9 * x + 0.3 * y)
         },
         value: &|[i, j, k]| (i * j + 3 * k) as f64,
+        ..Shape::default()
     }
     .case();
     assert!(GpuGrid::new(&gpu, &case.grid).unwrap().vertical);

@@ -37,8 +37,6 @@ pub struct Source<'a> {
 pub struct Pyramid {
     /// Optical depth of a length of one standard deviation of the finest level, level by level.
     pub volume: Volume,
-    /// Counts up with each making.
-    pub number: u64,
     of: Of,
 }
 
@@ -84,14 +82,12 @@ impl Pyramid {
         transfer: &TransferFunction,
         before: Option<Self>,
     ) -> Self {
-        let number = before.as_ref().map_or(0, |p| p.number) + 1;
         let volume = match before.filter(|p| p.volume.shape == shape) {
             Some(before) => before.volume,
             None => Volume::new(gpu, shape),
         };
         Self {
             volume,
-            number,
             of: Of::new(source, transfer),
         }
     }

@@ -100,6 +100,18 @@ pub struct LightTimes {
     pub volumes: Duration,
 }
 
+/// How often each part has been made. The numbers never fall, so that what was made from a part that a
+/// cancelled update has dropped is stale for good.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Made {
+    /// Fillings of the volume of values.
+    pub fields: u64,
+    /// Extinction pyramids.
+    pub pyramids: u64,
+    /// Light volumes, each emitter's counted by itself.
+    pub light_volumes: u64,
+}
+
 /// Makes light and keeps it up to date.
 pub struct Illumination {
     resampler: Resampler,
@@ -121,6 +133,8 @@ pub struct Illumination {
     gradients: Option<Gradients>,
     /// What the last update took.
     pub times: LightTimes,
+    /// What all updates have made.
+    pub made: Made,
 }
 
 /// The volume of values that extinction is made from.
@@ -129,8 +143,6 @@ struct Field {
     /// Values at both ends of the range that is stored.
     range: [f64; 2],
     volume: Volume,
-    /// Counts up with each filling.
-    number: u64,
 }
 
 /// One volume for each emitter whose light is found before the rays, one above the other.
@@ -205,6 +217,7 @@ impl Illumination {
             lights: None,
             gradients: None,
             times: LightTimes::default(),
+            made: Made::default(),
         })
     }
 
@@ -257,7 +270,6 @@ impl Illumination {
             ..Shape::single(view.lighting.size(gpu.is_software()), 1)
         };
         let before = self.field.take();
-        let number = before.as_ref().map_or(0, |f| f.number) + 1;
         let before = before.filter(|f| f.volume.shape == shape);
         if before.as_ref().is_some_and(|f| f.versions == grid.versions) {
             self.field = before;
@@ -277,11 +289,11 @@ impl Illumination {
         let done = self
             .resampler
             .fill(&mut slabs, grid, &volume, range, view.interpolation)?;
+        self.made.fields += u64::from(done);
         self.field = done.then_some(Field {
             versions: grid.versions,
             range,
             volume,
-            number,
         });
         Ok(done)
     }
@@ -300,7 +312,7 @@ impl Illumination {
         };
         let source = super::extinction::Source {
             values: &field.volume,
-            number: field.number,
+            number: self.made.fields,
             position: position(view, field.range),
             sigma: view.lighting.sigma(gpu.is_software()),
             ghost: ghost(view),
@@ -339,6 +351,7 @@ impl Illumination {
             self.pyramid = self
                 .blurs
                 .make(&mut slabs, &source, &view.transfer, &group, before)?;
+            self.made.pyramids += u64::from(self.pyramid.is_some());
             return Ok(self.pyramid.is_some());
         }
         Ok(true)
@@ -410,14 +423,18 @@ impl Illumination {
                 made: vec![None; count as usize],
             },
         };
-        let pyramid = self.pyramid.as_ref().map_or(0, |p| p.number);
         let group = self.bind(gpu, tables);
         for (n, &at) in emitters.volumes.iter().enumerate() {
             let emitter = emitters.emitters[at];
             let lit = Lit {
-                pyramid,
+                pyramid: self.made.pyramids,
+                // Color and a spot's cone are applied to samples.
                 emitter: Emitter {
                     first: 0,
+                    color: [0.0; 3],
+                    axis: [0.0; 3],
+                    cos_outer: 0.0,
+                    cos_inner: 0.0,
                     ..emitter
                 },
                 sections: emitters.of(at).to_vec(),
@@ -449,6 +466,7 @@ impl Illumination {
                 return Ok(false);
             }
             lights.made[n] = Some(lit);
+            self.made.light_volumes += 1;
         }
         lights.size = size;
         self.lights = Some(lights);
@@ -480,14 +498,13 @@ impl Illumination {
         let [_, position_scale] = position(view, field.range);
         let is_known = self.gradients.as_ref().is_some_and(|g| {
             g.volume.shape == shape
-                && g.field == field.number
+                && g.field == self.made.fields
                 && g.scale == scale
                 && g.position_scale == position_scale
         });
         if is_known {
             return Ok(true);
         }
-        let number = field.number;
         self.gradients = None;
         let volume = Volume::new(gpu, shape);
         let group = self.bind(gpu, tables);
@@ -503,7 +520,7 @@ impl Illumination {
         })?;
         self.gradients = done.then_some(Gradients {
             volume,
-            field: number,
+            field: self.made.fields,
             scale,
             position_scale,
         });

@@ -436,26 +436,10 @@ pub(crate) fn resolve(
 ) -> Result<Lighting, SceneError> {
     let extent = extent.max(DVec3::splat(1e-6));
     let diagonal = extent.length();
-    let occlusion = match spec.occlusion.filter(|o| o.mode != LightMode::Off) {
-        None => None,
-        Some(o) => Some(Occlusion {
-            mode: o.mode,
-            cone: Cone {
-                half_angle: within(
-                    "lighting.occlusion.half_angle_degrees",
-                    o.half_angle_degrees,
-                    [1.0, 45.0],
-                )?
-                .to_radians(),
-                splits: splits("lighting.occlusion.splits", o.splits)?,
-                attenuation: within("lighting.occlusion.attenuation", o.attenuation, [0.0, 4.0])?,
-                gap: within("lighting.occlusion.gap", o.gap, [0.0, 20.0])?,
-                length: diagonal * within("lighting.occlusion.length", o.length, [0.01, 1.0])?,
-                even_media: o.even_media,
-            },
-            strength: within("lighting.occlusion.strength", o.strength, [0.0, 1.0])?,
-        }),
-    };
+    let occlusion = spec
+        .occlusion
+        .map(|o| occlusion(&o, diagonal))
+        .transpose()?;
     let s = spec.shadows;
     let cone = |half_angle_degrees| -> Result<Cone, SceneError> {
         Ok(Cone {
@@ -472,6 +456,8 @@ pub(crate) fn resolve(
             even_media: s.even_media,
         })
     };
+    // Checked even where no light has one.
+    cone(shadow_half_angle())?;
     let ambient = spec
         .ambient
         .unwrap_or(if spec.lights.is_empty() { 1.0 } else { 0.4 });
@@ -495,7 +481,7 @@ pub(crate) fn resolve(
     }
     volume(&spec.volume)?;
     Ok(Lighting {
-        occlusion,
+        occlusion: occlusion.filter(|o| o.mode != LightMode::Off),
         lights: spec.lights.iter().map(checked).collect::<Result<_, _>>()?,
         shadows: s.mode,
         ambient,
@@ -506,6 +492,26 @@ pub(crate) fn resolve(
         extent,
         cells,
         volume: spec.volume,
+    })
+}
+
+fn occlusion(o: &OcclusionSpec, diagonal: f64) -> Result<Occlusion, SceneError> {
+    Ok(Occlusion {
+        mode: o.mode,
+        cone: Cone {
+            half_angle: within(
+                "lighting.occlusion.half_angle_degrees",
+                o.half_angle_degrees,
+                [1.0, 45.0],
+            )?
+            .to_radians(),
+            splits: splits("lighting.occlusion.splits", o.splits)?,
+            attenuation: within("lighting.occlusion.attenuation", o.attenuation, [0.0, 4.0])?,
+            gap: within("lighting.occlusion.gap", o.gap, [0.0, 20.0])?,
+            length: diagonal * within("lighting.occlusion.length", o.length, [0.01, 1.0])?,
+            even_media: o.even_media,
+        },
+        strength: within("lighting.occlusion.strength", o.strength, [0.0, 1.0])?,
     })
 }
 

@@ -8,6 +8,8 @@
     reason = "tests"
 )]
 
+pub mod cone;
+pub mod light;
 pub mod shape;
 
 use std::path::{Path, PathBuf};

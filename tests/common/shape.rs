@@ -14,6 +14,8 @@ pub struct Shape<'a> {
     pub depth: &'a dyn Fn([usize; 3], [usize; 3]) -> f64,
     /// Value of a cell.
     pub value: &'a dyn Fn([usize; 3]) -> f64,
+    /// True for an active cell.
+    pub active: &'a dyn Fn([usize; 3]) -> bool,
 }
 
 impl Default for Shape<'_> {
@@ -27,6 +29,7 @@ impl Default for Shape<'_> {
             },
             depth: &|[_, _, k], [_, _, dk]| 1000.0 + 20.0 * (k + dk) as f64,
             value: &|_| 0.5,
+            active: &|_| true,
         }
     }
 }
@@ -50,9 +53,13 @@ impl Shape<'_> {
             let depth = (self.depth)([x / 2, y / 2, z / 2], [x % 2, y % 2, z % 2]);
             write!(text, "{depth} ").unwrap();
         }
+        let cells = || (0..ni * nj * nk).map(|c| [c % ni, c / ni % nj, c / ni / nj]);
+        text += "/\nACTNUM\n";
+        for ijk in cells() {
+            write!(text, "{} ", u8::from((self.active)(ijk))).unwrap();
+        }
         text += "/\nVALUE\n";
-        for cell in 0..ni * nj * nk {
-            let ijk = [cell % ni, cell / ni % nj, cell / ni / nj];
+        for ijk in cells() {
             write!(text, "{} ", (self.value)(ijk)).unwrap();
         }
         text += "/\n";
@@ -61,6 +68,18 @@ impl Shape<'_> {
         std::fs::write(&path, text).unwrap();
         load::open(&path).unwrap()
     }
+}
+
+/// Boxes between planes, the first depth at the top; values by cell.
+pub fn boxes(x: &[f64], y: &[f64], depth: &[f64], value: &dyn Fn([usize; 3]) -> f64) -> Case {
+    Shape {
+        dims: [x, y, depth].map(|planes| planes.len() - 1),
+        pillar: &|i, j| [depth[0], depth[depth.len() - 1]].map(|d| [x[i], y[j], d]),
+        depth: &|[_, _, k], [_, _, dk]| depth[k + dk],
+        value,
+        ..Shape::default()
+    }
+    .case()
 }
 
 /// Equal parallelepipeds, 6 x 5 x 4: leaning pillars, dipping layers. There the mean of the cells around
@@ -89,6 +108,7 @@ pub mod parallelepipeds {
             pillar: &|i, j| [corner(i, j, 0), corner(i, j, 4)].map(|p| p.to_array()),
             depth: &|[i, j, k], [di, dj, dk]| corner(i + di, j + dj, k + dk).z,
             value: &|ijk| value(center(ijk), square),
+            ..Shape::default()
         }
         .case()
     }

@@ -1,0 +1,262 @@
+//! Lighting in scene files: what is refused and how, presets, defaults, sizes of volumes.
+#![allow(missing_docs, clippy::unwrap_used, clippy::panic, reason = "tests")]
+
+mod common;
+
+use common::shape::Shape;
+use serde_json::{Value, json};
+use strataray::case::Case;
+use strataray::load;
+use strataray::scene::lighting::PRESETS;
+use strataray::scene::{self, Lighting, LightingSpec, Scene};
+
+/// A scene's lighting for a case, or what is wrong with it.
+fn resolved(case: &Case, lighting: &Value) -> Result<Lighting, String> {
+    let scene = json!({"property": "VALUE", "lighting": lighting});
+    let scene: Scene = serde_json::from_value(scene).map_err(|e| e.to_string())?;
+    let view = scene::resolve(&scene, case).map_err(|e| e.to_string())?;
+    Ok(view.lighting)
+}
+
+/// Lighting with one field of its own.
+type Part = fn(&str, &Value) -> Value;
+
+fn occlusion(field: &str, value: &Value) -> Value {
+    json!({"occlusion": {field: value}})
+}
+
+fn unused_occlusion(field: &str, value: &Value) -> Value {
+    json!({"occlusion": {"mode": "off", field: value}})
+}
+
+fn shadows(field: &str, value: &Value) -> Value {
+    json!({"shadows": {field: value}})
+}
+
+/// A directional light.
+fn lights(field: &str, value: &Value) -> Value {
+    let mut light = json!({"kind": "directional", "direction": [0, 0, -1]});
+    light[field] = value.clone();
+    json!({"lights": [light]})
+}
+
+fn spot(field: &str, value: &Value) -> Value {
+    let mut light = json!({"kind": "spot", "direction": [0, 0, -1], "position": [0, 0, 0]});
+    light[field] = value.clone();
+    json!({"lights": [light]})
+}
+
+fn volume(field: &str, value: &Value) -> Value {
+    json!({"volume": {field: value}})
+}
+
+fn top(field: &str, value: &Value) -> Value {
+    json!({field: value})
+}
+
+#[test]
+fn err_values_out_of_range_name_their_field() {
+    // What is refused, and what is as far as one may go.
+    let cases: [(Part, &str, Value, Value); 25] = [
+        (
+            occlusion,
+            "occlusion.half_angle_degrees",
+            json!(0.9),
+            json!(1),
+        ),
+        (
+            occlusion,
+            "occlusion.half_angle_degrees",
+            json!(45.1),
+            json!(45),
+        ),
+        (occlusion, "occlusion.splits", json!(2), json!(3)),
+        (occlusion, "occlusion.attenuation", json!(-0.1), json!(0)),
+        (occlusion, "occlusion.attenuation", json!(4.1), json!(4)),
+        (occlusion, "occlusion.strength", json!(1.1), json!(1)),
+        (occlusion, "occlusion.gap", json!(21), json!(0)),
+        (occlusion, "occlusion.length", json!(0), json!(0.01)),
+        (unused_occlusion, "occlusion.splits", json!(5), json!(1)),
+        (shadows, "shadows.splits", json!(2), json!(7)),
+        (shadows, "shadows.attenuation", json!(5), json!(4)),
+        (shadows, "shadows.gap", json!(-1), json!(20)),
+        (shadows, "shadows.length", json!(1.1), json!(1)),
+        (
+            lights,
+            "lights.half_angle_degrees",
+            json!(0.01),
+            json!(0.05),
+        ),
+        (lights, "lights.half_angle_degrees", json!(11), json!(10)),
+        (
+            lights,
+            "lights.direction",
+            json!([0, 0, 0]),
+            json!([0, 0, 1]),
+        ),
+        (lights, "lights.color", json!("white"), json!("#fff0e0")),
+        (lights, "lights.intensity", json!(-1), json!(0)),
+        (spot, "lights.opening_degrees", json!(90), json!(89)),
+        (top, "ambient", json!(1.5), json!(1)),
+        (top, "rays", json!(0), json!(1)),
+        (top, "rays", json!(1025), json!(1024)),
+        (
+            volume,
+            "volume.size",
+            json!([64, 1, 64]),
+            json!([64, 2, 64]),
+        ),
+        (
+            volume,
+            "volume.light_size",
+            json!([8, 8, 2049]),
+            json!([8, 8, 2048]),
+        ),
+        (volume, "volume.budget_mb", json!(0), json!(1)),
+    ];
+    let case = Shape::default().case();
+    for (part, place, wrong, right) in cases {
+        let field = place.rsplit('.').next().unwrap();
+        let error = resolved(&case, &part(field, &wrong)).unwrap_err();
+        let start = format!("scene: lighting.{place}: ");
+        assert!(error.starts_with(&start), "{place}: {error}");
+        assert!(
+            error.contains("must be") || error.contains("must have"),
+            "{error}"
+        );
+        let found = resolved(&case, &part(field, &right));
+        assert!(found.is_ok(), "{place}: {found:?}");
+    }
+}
+
+#[test]
+fn err_fields_that_are_unknown_or_missing_are_named() {
+    let case = Shape::default().case();
+    for (wrong, name) in [
+        (json!({"oclusion": {}}), "oclusion"),
+        (occlusion("half_angle", &json!(20)), "half_angle"),
+        (occlusion("mode", &json!("fast")), "fast"),
+        (shadows("strength", &json!(1)), "strength"),
+        (lights("opening_degrees", &json!(20)), "opening_degrees"),
+        (lights("kind", &json!("lamp")), "lamp"),
+        (json!({"lights": [{"direction": [0, 0, -1]}]}), "kind"),
+        (json!({"lights": [{"kind": "directional"}]}), "direction"),
+        (json!({"lights": [{"kind": "point"}]}), "position"),
+        (
+            json!({"lights": [{"kind": "spot", "position": [0, 0, 0]}]}),
+            "direction",
+        ),
+        (volume("size", &json!([64, 64])), "length 2"),
+    ] {
+        let error = resolved(&case, &wrong).unwrap_err();
+        assert!(error.contains(name), "{wrong}: {error}");
+        println!("{error}");
+    }
+}
+
+#[test]
+fn presets_resolve_and_differ() {
+    let case = Shape::default().case();
+    let mut seen = Vec::new();
+    for (name, _) in PRESETS {
+        let spec = LightingSpec::preset(name).unwrap();
+        let lighting = resolved(&case, &serde_json::to_value(&spec).unwrap()).unwrap();
+        assert_eq!(lighting.is_off(), name == "off");
+        assert!(!seen.contains(&spec), "{name}");
+        seen.push(spec);
+    }
+    assert_eq!(seen[0], LightingSpec::default());
+    assert!(LightingSpec::preset("sunny").is_none());
+}
+
+#[test]
+fn nothing_said_is_no_light_and_all_said_comes_back() {
+    let empty: Scene = serde_json::from_value(json!({"lighting": {}})).unwrap();
+    assert_eq!(empty, Scene::default());
+    let all = json!({
+        "occlusion": {
+            "mode": "image", "half_angle_degrees": 12.5, "splits": 3, "attenuation": 0.5, "strength": 0.9,
+            "gap": 2.5, "length": 0.4, "even_media": true,
+        },
+        "lights": [
+            {"kind": "directional", "direction": [1, 2, -3], "half_angle_degrees": 2.5, "intensity": 0.3, "color": "#ffeedd"},
+            {"kind": "point", "position": [1, 2, 3], "half_angle_degrees": 0.5, "intensity": 0.2, "color": "#112233"},
+            {"kind": "spot", "position": [4, 5, 6], "direction": [0, 1, -1], "opening_degrees": 25, "half_angle_degrees": 1.5, "intensity": 0.1, "color": "#445566"},
+        ],
+        "shadows": {
+            "mode": "monte_carlo", "splits": 3, "attenuation": 0.9, "gap": 1.5, "length": 0.6, "even_media": true,
+        },
+        "ambient": 0.2, "blinn_phong": true, "exact_colors": true,
+        "volume": {"budget_mb": 7, "size": [10, 11, 12], "light_size": [5, 6, 7]},
+        "rays": 32, "seed": 5,
+    });
+    let spec: LightingSpec = serde_json::from_value(all.clone()).unwrap();
+    let written = serde_json::to_value(&spec).unwrap();
+    // Every field is written, and none is a default.
+    let default = serde_json::to_value(LightingSpec::default()).unwrap();
+    let fields = |of: &Value| of.as_object().unwrap().keys().cloned().collect::<Vec<_>>();
+    assert_eq!(fields(&written), fields(&all));
+    assert!(fields(&all).iter().all(|f| written[f] != default[f]));
+    assert_eq!(
+        serde_json::from_value::<LightingSpec>(written.clone()).unwrap(),
+        spec
+    );
+    for (a, b) in written["lights"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .zip(all["lights"].as_array().unwrap())
+    {
+        assert_eq!(fields(a), fields(b));
+    }
+}
+
+#[test]
+fn light_adds_up_to_what_there_is_without() {
+    let case = Shape::default().case();
+    let sun = json!({"kind": "directional", "direction": [0, 0, -1]});
+    for (lights, ambient, each) in [
+        (json!([]), 1.0, 0.0),
+        (json!([sun]), 0.4, 0.6),
+        (json!([sun, sun, sun]), 0.4, 0.2),
+    ] {
+        let lighting = resolved(&case, &json!({"lights": lights})).unwrap();
+        assert!((lighting.ambient - ambient).abs() < 1e-12);
+        assert!(
+            lighting
+                .lights
+                .iter()
+                .all(|l| (l.color - each).abs().max_element() < 1e-12)
+        );
+    }
+}
+
+#[test]
+fn volumes_have_cubes_and_fit_their_budget() {
+    let case = load::open(&common::sample()).unwrap();
+    for (exaggeration, budget_mb) in [(1.0, 1), (10.0, 1), (10.0, 3)] {
+        let mut scene = Scene {
+            vertical_exaggeration: Some(exaggeration),
+            ..Scene::default()
+        };
+        scene.lighting.volume.budget_mb = Some(budget_mb);
+        let lighting = scene::resolve(&scene, &case).unwrap().lighting;
+        let size = lighting.size(true);
+        let voxels: f64 = size.iter().map(|n| f64::from(*n)).product();
+        // Values, extinction and pyramid in half floats.
+        let megabytes = 2.0 * (2.0 + 1.0 / 7.0) * voxels / f64::from(1 << 20);
+        println!("{exaggeration}, {budget_mb} MB: {size:?} voxels, {megabytes:.3} MB");
+        assert!(
+            (megabytes / f64::from(budget_mb) - 1.0).abs() < 0.06,
+            "{megabytes}"
+        );
+        let edges = lighting.extent / glam::DVec3::from_array(size.map(f64::from));
+        assert!(edges.max_element() < 1.1 * edges.min_element(), "{edges}");
+        assert!((lighting.sigma(true) - edges.element_sum() / 3.0).abs() < 1e-9);
+        assert_eq!(lighting.light_size(true), size.map(|n| n.div_ceil(2)));
+    }
+    // A small model has no more voxels than its cells need, whatever the budget; at least a few.
+    let small = resolved(&Shape::default().case(), &volume("budget_mb", &json!(500))).unwrap();
+    let voxels: u32 = small.size(false).iter().product();
+    assert!(voxels > 1000 && voxels <= 3000, "{voxels}");
+}
