@@ -1,17 +1,17 @@
-// Representative extinction: a Gaussian blur of opacities along one axis; three of them make a level of the
-// pyramid (campagnolo-2021, 3.2.1 and 3.5.3).
+// Representative extinction: opacities of the values, their means in larger voxels, and Gaussians of these
+// along one axis; three of them make a level of the pyramid (campagnolo-2021, 3.2.1 and 3.5.3).
 //
-// One thread = two voxels along x, which share a word; dispatch covers a slab. Reads a volume of single
-// numbers, opacities of a unit of length or optical depths of it; or the packed values. Writes opacities, or in the last
-// of three passes depths, which is what the pyramid holds. Unit of length is the finest level's standard
-// deviation in world space. Nothing is outside the box.
+// One thread = two voxels along x, which share a word; dispatch covers a slab. Reads packed values, or
+// opacities of a unit of length. Writes opacities, or in the last of three passes optical depths, which is
+// what the pyramid holds. Unit of length is the finest level's standard deviation in world space. Nothing is
+// outside the box.
 #import light
 
-// What is read.
-override READS: u32 = 1u;
-const READS_VALUES: u32 = 0u;
-const READS_OPACITIES: u32 = 1u;
-const READS_DEPTHS: u32 = 2u;
+// What is done.
+override WORK: u32 = 1u;
+const WORK_VALUES: u32 = 0u;
+const WORK_GAUSSIAN: u32 = 1u;
+const WORK_MEAN: u32 = 2u;
 // Depths are written.
 override WRITES_DEPTHS: bool = false;
 // Clip planes cut values away.
@@ -38,20 +38,28 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
 }
 
 fn blurred(voxel: vec3u) -> f32 {
+    if WORK == WORK_VALUES {
+        return opacity_of_values(vec3i(voxel));
+    }
     let ratio = f32(blur.source_count) / f32(blur.made_count);
     let center = (f32(voxel[blur.axis]) + 0.5) * ratio - 0.5;
-    let reach = REACH * blur.deviation + 0.5;
+    var reach = REACH * blur.deviation + 0.5;
+    if WORK == WORK_MEAN {
+        reach = 0.5 * ratio + 0.5;
+    }
     let count = i32(blur.source_count);
     var sum = 0.0;
     var weights = 0.0;
     for (var n = i32(ceil(center - reach)); n <= i32(floor(center + reach)); n++) {
-        let off = (f32(n) - center) / max(blur.deviation, 1e-3);
-        let weight = exp(-0.5 * off * off);
+        let off = f32(n) - center;
+        let relative = off / max(blur.deviation, 1e-3);
+        // A Gaussian, or the part of a voxel that lies within the larger one.
+        let weight = select(exp(-0.5 * relative * relative), clamp(reach - abs(off), 0.0, 1.0), WORK == WORK_MEAN);
         weights += weight;
         if n >= 0 && n < count {
             var at = vec3i(voxel);
             at[blur.axis] = n;
-            sum += weight * opacity(at);
+            sum += weight * textureLoad(source, at, 0).x;
         }
     }
     let opacity = sum / max(weights, 1e-30);
@@ -62,13 +70,7 @@ fn blurred(voxel: vec3u) -> f32 {
 }
 
 // Opacity of a unit of length.
-fn opacity(at: vec3i) -> f32 {
-    if READS == READS_OPACITIES {
-        return textureLoad(source, at, 0).x;
-    }
-    if READS == READS_DEPTHS {
-        return 1.0 - exp(-textureLoad(source, at, 0).x);
-    }
+fn opacity_of_values(at: vec3i) -> f32 {
     let voxel = field_voxel(at);
     let in_cell = transfer_at(blur.position_low + blur.position_scale * voxel.value).w;
     var coverage = voxel.coverage;

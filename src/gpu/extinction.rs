@@ -1,5 +1,8 @@
 //! The pyramid of representative extinction: opacities blurred by Gaussians, each level twice as wide as the
 //! one below (campagnolo-2021, 3.2.1 and 3.2.3).
+//!
+//! The paper blurs each level from the one below. Here it is blurred from means of the opacities: what a
+//! blur spreads beyond the box is kept nowhere, so that a thin model would all but vanish from upper levels.
 
 use glam::DVec3;
 
@@ -98,19 +101,31 @@ impl Pyramid {
     }
 }
 
-/// What a pass of the blur reads and writes; its constants.
+/// What a pass does and writes; its constants.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Pass {
-    reads: Reads,
+    work: Work,
     writes_depths: bool,
     clips: bool,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Reads {
+enum Work {
+    /// Opacities from values.
     Values,
-    Opacities,
-    Depths,
+    /// A Gaussian of opacities.
+    Gaussian,
+    /// Means of opacities.
+    Mean,
+}
+
+/// How opacities are filtered along all axes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Filter {
+    /// Their means in larger voxels.
+    Mean,
+    /// By the Gaussian of a level.
+    Gaussian(u32),
 }
 
 /// Along which axis a pass blurs, how many voxels there are along it before and after, and how wide the
@@ -146,10 +161,27 @@ impl Blurs {
         group: &wgpu::BindGroup,
         before: Option<Pyramid>,
     ) -> Result<Option<Pyramid>, GpuError> {
-        let shape = Shape::single(source.values.shape.size, MOST_LEVELS);
+        let size = source.values.shape.size;
+        let shape = Shape::single(size, MOST_LEVELS);
         let made = Pyramid::new(slabs.gpu, shape, source, transfer, before);
+        let mut below = Volume::new(slabs.gpu, Shape::single(size, 1));
+        if !self.opacities(slabs, source, group, &below)? {
+            return Ok(None);
+        }
         for level in 0..shape.levels {
-            if !self.level(slabs, source, group, &made.volume, level)? {
+            if level > 1 {
+                // Blurred from means of what nothing has blurred: what a level loses beyond the box is not
+                // lost to those above.
+                let means = Volume::new(slabs.gpu, Shape::single(shape.at(level - 1), 1));
+                let filter = Filter::Mean;
+                if !self.filtered(slabs, source, group, filter, &below, (&means, 0))? {
+                    return Ok(None);
+                }
+                below = means;
+            }
+            let filter = Filter::Gaussian(level);
+            let target = (&made.volume, level);
+            if !self.filtered(slabs, source, group, filter, &below, target)? {
                 return Ok(None);
             }
         }
@@ -168,64 +200,73 @@ impl Blurs {
         group: &wgpu::BindGroup,
         before: Option<Pyramid>,
     ) -> Result<Option<Pyramid>, GpuError> {
-        let size = source.values.shape.size;
-        let made = Pyramid::new(slabs.gpu, Shape::single(size, 1), source, transfer, before);
+        let shape = Shape::single(source.values.shape.size, 1);
+        let made = Pyramid::new(slabs.gpu, shape, source, transfer, before);
+        let done = self.opacities(slabs, source, group, &made.volume)?;
+        Ok(done.then_some(made))
+    }
+
+    /// Opacities of a unit of length from the values.
+    fn opacities(
+        &mut self,
+        slabs: &mut Slabs<'_>,
+        source: &Source<'_>,
+        group: &wgpu::BindGroup,
+        target: &Volume,
+    ) -> Result<bool, GpuError> {
         let pass = Pass {
-            reads: Reads::Values,
+            work: Work::Values,
             writes_depths: false,
             clips: source.clip_count > 0,
         };
         let line = Line {
             axis: 0,
-            counts: [size[0]; 2],
+            counts: [target.shape.size[0]; 2],
             deviation: 0.0,
         };
         // Values come from the bind group; this is only there to be bound.
         let read = Volume::new(slabs.gpu, Shape::single([1; 3], 1)).level(0);
-        let done = self.pass(slabs, source, group, pass, line, &read, (&made.volume, 0))?;
-        Ok(done.then_some(made))
+        self.pass(slabs, source, group, pass, line, &read, (target, 0))
     }
 
-    /// Makes a level from the one below, or from the values: along x, y and depth in turn.
-    fn level(
+    /// Filters opacities along x, y and depth in turn: into a level of the pyramid, or into their means.
+    fn filtered(
         &mut self,
         slabs: &mut Slabs<'_>,
         source: &Source<'_>,
         group: &wgpu::BindGroup,
-        pyramid: &Volume,
-        level: u32,
+        filter: Filter,
+        below: &Volume,
+        (target, level): (&Volume, u32),
     ) -> Result<bool, GpuError> {
-        let made = pyramid.shape.at(level);
-        let (below, deviation) = match level {
-            0 => (made, source.sigma),
-            // Variances add up: what is below has a quarter of what is to be.
-            _ => (
-                pyramid.shape.at(level - 1),
-                3f64.sqrt() * source.sigma * f64::from(level - 1).exp2(),
-            ),
-        };
+        let before = below.shape.size;
+        let after = target.shape.at(level);
         let partly =
-            |axes: usize| std::array::from_fn(|a| if a < axes { made[a] } else { below[a] });
+            |axes: usize| std::array::from_fn(|a| if a < axes { after[a] } else { before[a] });
         let between = [1, 2].map(|axes| Volume::new(slabs.gpu, Shape::single(partly(axes), 1)));
         for axis in 0..3 {
-            let (reads, read) = match (axis, level) {
-                (0, 0) => (Reads::Values, between[1].level(0)),
-                (0, _) => (Reads::Depths, pyramid.level(level - 1)),
-                _ => (Reads::Opacities, between[axis - 1].level(0)),
+            let read = match axis {
+                0 => below.level(0),
+                _ => between[axis - 1].level(0),
+            };
+            let (work, deviation) = match filter {
+                Filter::Mean => (Work::Mean, 0.0),
+                Filter::Gaussian(level) => {
+                    (Work::Gaussian, source.deviation(axis, before[axis], level))
+                }
             };
             let pass = Pass {
-                reads,
-                writes_depths: axis == 2,
-                clips: reads == Reads::Values && source.clip_count > 0,
+                work,
+                writes_depths: axis == 2 && work == Work::Gaussian,
+                clips: false,
             };
-            let edge = source.extent[axis] / f64::from(below[axis]);
             let line = Line {
                 axis: axis as u32,
-                counts: [below[axis], made[axis]],
-                deviation: deviation / edge,
+                counts: [before[axis], after[axis]],
+                deviation,
             };
-            let target = between.get(axis).map_or((pyramid, level), |v| (v, 0));
-            if !self.pass(slabs, source, group, pass, line, &read, target)? {
+            let to = between.get(axis).map_or((target, level), |v| (v, 0));
+            if !self.pass(slabs, source, group, pass, line, &read, to)? {
                 return Ok(false);
             }
         }
@@ -265,7 +306,7 @@ impl Blurs {
             Some(at) => at,
             None => {
                 let constants = [
-                    ("READS", f64::from(pass.reads as u32)),
+                    ("WORK", f64::from(pass.work as u32)),
                     ("WRITES_DEPTHS", flag(pass.writes_depths)),
                     ("CLIPS", flag(pass.clips)),
                 ];
@@ -279,6 +320,17 @@ impl Blurs {
 }
 
 impl Source<'_> {
+    /// Width of the Gaussian along an axis that makes a level from means over all of the volume's voxels in
+    /// `count` parts, in these parts: variances add up, and a mean has one already.
+    fn deviation(&self, axis: usize, count: u32, level: u32) -> f64 {
+        let voxels = f64::from(self.values.shape.size[axis]);
+        let edge = self.extent[axis] / voxels;
+        let in_a_part = voxels / f64::from(count);
+        let wanted = (self.sigma * f64::from(level).exp2()).powi(2);
+        let had = (in_a_part.powi(2) - 1.0) / 12.0 * edge.powi(2);
+        (wanted - had).max(0.0).sqrt() / (in_a_part * edge)
+    }
+
     fn info(&self, line: Line) -> BlurInfo {
         let [low, high] = self.bounds;
         let size = DVec3::from_array(self.values.shape.size.map(f64::from));

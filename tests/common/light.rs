@@ -146,6 +146,11 @@ impl Block {
     pub fn blurred(&self, size: [usize; 3], deviation: DVec3, reach: f64) -> Self {
         let weights: [Vec<Vec<f64>>; 3] =
             std::array::from_fn(|a| gaussians(self.size[a], size[a], deviation[a], reach));
+        self.by(size, &weights)
+    }
+
+    /// Sums of all voxels, with weights along each axis for each voxel made.
+    fn by(&self, size: [usize; 3], weights: &[Vec<Vec<f64>>; 3]) -> Self {
         let mut made = Self {
             size,
             values: Vec::new(),
@@ -158,6 +163,13 @@ impl Block {
             }
         }
         made
+    }
+
+    /// The means in `size` voxels of what lies within each.
+    #[must_use]
+    pub fn means(&self, size: [usize; 3]) -> Self {
+        let weights: [Vec<Vec<f64>>; 3] = std::array::from_fn(|a| overlaps(self.size[a], size[a]));
+        self.by(size, &weights)
     }
 
     fn weighted(&self, [x, y, z]: [&Vec<f64>; 3]) -> f64 {
@@ -174,6 +186,19 @@ impl Block {
         }
         sum
     }
+}
+
+/// How much of each voxel lies within each of `made` larger ones, as a part of the larger one.
+fn overlaps(source: usize, made: usize) -> Vec<Vec<f64>> {
+    let ratio = source as f64 / made as f64;
+    let part = |n: usize, m: usize| {
+        let from = (m as f64 * ratio).max(n as f64);
+        let to = ((m + 1) as f64 * ratio).min((n + 1) as f64);
+        (to - from).max(0.0) / ratio
+    };
+    (0..made)
+        .map(|m| (0..source).map(|n| part(n, m)).collect())
+        .collect()
 }
 
 /// Weights of `count` voxels around the middle of each of `made` over the same length.
