@@ -9,7 +9,7 @@
 
 mod common;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use serde_json::{Value, json};
@@ -64,7 +64,7 @@ struct Subject {
 }
 
 impl Subject {
-    fn new(gpu: &Arc<Gpu>, path: &PathBuf, camera: [f64; 4]) -> Self {
+    fn new(gpu: &Arc<Gpu>, path: &Path, camera: [f64; 4]) -> Self {
         let case = load::open(path).unwrap();
         Self {
             name: case.about.name.clone(),
