@@ -83,7 +83,7 @@ pub const SHORTCUTS: [(Modifiers, Key, Command, &str); 26] = [
 
 /// What was pressed in this frame; nothing while text is being typed.
 pub fn pressed(ctx: &Context) -> Vec<Command> {
-    if ctx.egui_wants_keyboard_input() {
+    if ctx.text_edit_focused() {
         return Vec::new();
     }
     let taken = |(modifiers, key, command, _): &(Modifiers, Key, Command, &str)| {

@@ -29,6 +29,11 @@ pub use window::Window;
 /// # Errors
 /// When there is no display or no graphics driver; the sentence says what to do.
 pub fn run(cases: Vec<PathBuf>) -> Result<(), String> {
+    let names = ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"];
+    let is_set = |name: &str| std::env::var_os(name).is_some_and(|v| !v.is_empty());
+    if cfg!(target_os = "linux") && !names.into_iter().any(is_set) {
+        return Err("there is no display for a window; `strataray render CASE -o picture.png` makes a picture without one".into());
+    }
     let viewport = eframe::egui::ViewportBuilder::default()
         .with_title("StrataRay")
         .with_inner_size([1280.0, 800.0])
@@ -41,9 +46,6 @@ pub fn run(cases: Vec<PathBuf>) -> Result<(), String> {
     let create = |cc: &eframe::CreationContext<'_>| -> Result<Box<dyn eframe::App>, _> {
         Ok(Box::new(Window::new(&cc.egui_ctx, cases)))
     };
-    eframe::run_native("strataray", options, Box::new(create)).map_err(|e| {
-        format!(
-            "the window cannot be opened: {e}; on a machine without a display use `strataray render CASE -o picture.png`"
-        )
-    })
+    eframe::run_native("strataray", options, Box::new(create))
+        .map_err(|e| format!("the window cannot be opened: {e}"))
 }

@@ -69,6 +69,8 @@ enum Chosen {
 
 /// Milliseconds that a draft may take: 30 pictures a second.
 const DRAFT_MS: f64 = 30.0;
+/// The same where time plays: a step stands for longer.
+const PLAY_MS: f64 = 250.0;
 /// A final picture is made where nothing has changed for so long.
 const REST: Duration = Duration::from_millis(150);
 /// Time steps a second.
@@ -111,7 +113,14 @@ impl Window {
         let scene = self.first_scene();
         let loading = load(ctx, path.clone());
         self.documents.push(Document::new(path, loading, scene));
-        self.current = self.documents.len() - 1;
+        self.show_tab(self.documents.len() - 1);
+    }
+
+    /// Brings a document to the front.
+    fn show_tab(&mut self, tab: usize) {
+        self.current = tab;
+        self.finished = None;
+        self.drafted = None;
     }
 
     /// The document in front.
@@ -234,6 +243,8 @@ impl Window {
         if flight.is_draft {
             self.draft_ms = 0.5 * self.draft_ms + 0.5 * ms / pixels;
             self.drafted = Some(flight.wanted);
+            // What is shown is no longer what was finished before.
+            self.finished = None;
         } else {
             self.drafted = Some(flight.wanted.clone());
             self.finished = Some(flight.wanted);
@@ -282,11 +293,14 @@ impl Window {
             }
             return;
         }
+        let plays = self.document().is_some_and(|d| d.playing.is_some());
+        let draft_ms = if plays { PLAY_MS } else { DRAFT_MS };
+        let is_busy = is_busy || plays;
         let pixels = f64::from(wanted.size[0]) * f64::from(wanted.size[1]);
         let full_ms = self.draft_ms * pixels;
         let is_draft = if self.finished.as_ref() == Some(&wanted) {
             return;
-        } else if full_ms <= DRAFT_MS {
+        } else if full_ms <= draft_ms {
             false
         } else if self.drafted.as_ref() != Some(&wanted) {
             true
@@ -297,7 +311,7 @@ impl Window {
             false
         };
         let part = match is_draft {
-            true => (DRAFT_MS / full_ms).sqrt().clamp(COARSEST, 1.0),
+            true => (draft_ms / full_ms).sqrt().clamp(COARSEST, 1.0),
             false => 1.0,
         };
         let Some(scene) = self.wanted(ctx, part) else {
@@ -596,25 +610,27 @@ impl Window {
     }
 
     fn tabs(&mut self, ui: &mut Ui) {
-        let mut closes = None;
+        let (mut closes, mut chosen) = (None, None);
         ui.horizontal(|ui| {
             for (n, document) in self.documents.iter().enumerate() {
                 if ui
                     .selectable_label(n == self.current, document.title())
                     .clicked()
                 {
-                    self.current = n;
+                    chosen = Some(n);
                 }
                 if ui.small_button("×").on_hover_text("Close").clicked() {
                     closes = Some(n);
                 }
             }
         });
+        if let Some(n) = chosen {
+            self.show_tab(n);
+        }
         if let Some(n) = closes {
             self.documents.remove(n);
-            self.current = self.current.saturating_sub(usize::from(n <= self.current));
-            self.finished = None;
-            self.drafted = None;
+            let before = usize::from(n <= self.current);
+            self.show_tab(self.current.saturating_sub(before));
         }
     }
 
