@@ -1,7 +1,7 @@
 //! Tables of sections: where along a cone the extinction pyramid is asked, and what each answer counts
 //! (campagnolo-2021, 3.2 and appendix A).
 
-use std::f64::consts::PI;
+use std::f64::consts::{PI, SQRT_2};
 
 use crate::scene::lighting::Cone;
 
@@ -10,6 +10,9 @@ use crate::scene::lighting::Cone;
 const SPACING: f64 = 2.5;
 /// Radius, in standard deviations, at which a section is split, or taken from the next level.
 const WIDEST: f64 = 2.0;
+/// The same for even media: a disk's own standard deviation along an axis is half its radius, and this keeps
+/// those of the levels, which double, about it.
+const WIDEST_EVEN: f64 = 2.0 * SQRT_2;
 /// Radius of each part, as a part of the cone's, by its number of parts: circles packed in a circle.
 fn part_radius(parts: u32) -> f64 {
     match parts {
@@ -54,12 +57,16 @@ impl ConeTable {
     /// The table of a cone of `half_angle` (radians), up to `splits` parts, from `gap` to before `length`,
     /// both in standard deviations of the finest level.
     pub fn new(half_angle: f64, splits: u32, gap: f64, length: f64) -> Self {
+        Self::with_widest(WIDEST, half_angle, splits, gap, length)
+    }
+
+    fn with_widest(widest: f64, half_angle: f64, splits: u32, gap: f64, length: f64) -> Self {
         let tangent = half_angle.tan();
         let mut sections = Vec::new();
         let (mut distance, mut level, mut parts) = (gap, 0, 1);
         let mut before: Option<f64> = None;
         while distance < length && sections.len() < MOST_SECTIONS {
-            (level, parts) = resolution(distance * tangent, level, parts, splits);
+            (level, parts) = resolution(distance * tangent / widest, level, parts, splits);
             let sigma = f64::from(level).exp2();
             let radius = distance * tangent * part_radius(parts);
             sections.push(Section {
@@ -76,7 +83,7 @@ impl ConeTable {
             });
             before = Some(sigma);
             // The next section's level is judged as far ahead as if it were on this one's.
-            let ahead = (distance + SPACING * sigma) * tangent;
+            let ahead = (distance + SPACING * sigma) * tangent / widest;
             let (next, _) = resolution(ahead, level, parts, splits);
             distance += 0.5 * SPACING * (sigma + f64::from(next).exp2());
         }
@@ -86,33 +93,37 @@ impl ConeTable {
     /// The table of a checked cone, given the finest level's standard deviation in world space. The
     /// attenuation is in the amplitudes.
     pub fn of(cone: &Cone, sigma: f64) -> Self {
-        let mut table = Self::new(cone.half_angle, cone.splits, cone.gap, cone.length / sigma);
-        if cone.even_media {
-            table.fit_even_media(cone.gap, cone.length / sigma);
-        }
+        let length = cone.length / sigma;
+        let mut table = match cone.even_media {
+            true => Self::of_even_media(cone.half_angle, cone.splits, cone.gap, length),
+            false => Self::new(cone.half_angle, cone.splits, cone.gap, length),
+        };
         for section in &mut table.sections {
             section.amplitude *= cone.attenuation;
         }
         table
     }
 
-    /// Makes every section count as if the medium in it were even: the mean over its area is then what the
-    /// pyramid holds, and the weights add up to the cone's length.
+    /// As [`Self::new`] for media that are even within a section: the mean over its area is what the pyramid
+    /// holds, and the sections stand for the cone from its gap to its end, no more and no less.
     ///
     /// The paper's amplitude takes what the pyramid holds as the peak of a Gaussian, which an even medium
     /// has not: at a radius of two standard deviations it counts half of it.
-    fn fit_even_media(&mut self, gap: f64, length: f64) {
-        let weights: f64 = self.even_weights().sum();
-        let scale = (length - gap) / weights.max(1e-9);
-        for section in &mut self.sections {
-            section.amplitude = scale;
+    pub fn of_even_media(half_angle: f64, splits: u32, gap: f64, length: f64) -> Self {
+        let mut table = Self::with_widest(WIDEST_EVEN, half_angle, splits, gap, length);
+        for section in &mut table.sections {
+            section.amplitude = 1.0;
         }
-    }
-
-    /// What each section counts where all amplitudes are one.
-    fn even_weights(&self) -> impl Iterator<Item = f64> {
-        let next = |n: usize| self.sections.get(n + 1).map_or(0.0, |s| s.weight);
-        (0..self.sections.len()).map(move |n| self.sections[n].weight + next(n))
+        match table.sections.as_mut_slice() {
+            [] => {}
+            [only] => only.weight = length - gap,
+            [first, .., last] => {
+                // Nothing lies before the first one, and the last one reaches to the end.
+                first.weight = 0.0;
+                last.weight += 0.5 * (length - last.distance);
+            }
+        }
+        table
     }
 
     /// Number of sections of one part, of three and of seven.
@@ -124,10 +135,10 @@ impl ConeTable {
     }
 }
 
-/// Level and parts with which a section of the cone's `radius` is fine enough: it splits first and takes a
-/// coarser level once no split is left.
+/// Level and parts with which a section is fine enough: it splits first and takes a coarser level once no
+/// split is left. `radius` is the cone's, as a part of the widest that the finest level allows.
 fn resolution(radius: f64, mut level: u32, mut parts: u32, splits: u32) -> (u32, u32) {
-    while radius * part_radius(parts) >= WIDEST * f64::from(level).exp2() {
+    while radius * part_radius(parts) >= f64::from(level).exp2() {
         match parts {
             1 if splits > 1 => parts = 3,
             3 if splits > 3 => parts = 7,
@@ -184,23 +195,29 @@ mod tests {
         }
     }
 
+    /// Optical depth of a table in an even medium of one a unit of length.
+    fn depth(table: &ConeTable) -> f64 {
+        let (mut depth, mut before) = (0.0, 0.0);
+        for section in &table.sections {
+            depth += section.weight * (before + section.amplitude);
+            before = section.amplitude;
+        }
+        depth
+    }
+
     #[test]
     fn an_even_medium_counts_its_length() {
-        let length_of = |even_media| {
-            let cone = Cone {
-                half_angle: 0.35,
-                splits: 7,
-                attenuation: 1.0,
-                gap: 3.0,
-                length: 400.0,
-                even_media,
-            };
-            let table = ConeTable::of(&cone, 4.0);
-            let each = table.even_weights().zip(&table.sections);
-            each.map(|(w, s)| w * s.amplitude).sum::<f64>()
-        };
-        assert!((length_of(true) - 97.0).abs() < 1e-9);
+        for degrees in [0.5, 3.0, 10.0, 20.0, 30.0f64] {
+            for (splits, length) in [(1, 100.0), (3, 66.0), (7, 50.0), (7, 4.0)] {
+                let angle = degrees.to_radians();
+                let even = ConeTable::of_even_media(angle, splits, 3.0, length);
+                assert!((depth(&even) - (length - 3.0)).abs() < 1e-9, "{degrees}");
+                let narrow = |s: &Section| s.radius < 2.0 * SQRT_2 * s.sigma;
+                assert!(even.sections.iter().all(narrow));
+            }
+        }
         // What the paper admits: too light.
-        assert!(length_of(false) < 0.8 * 97.0, "{}", length_of(false));
+        let paper = ConeTable::new(0.35, 7, 3.0, 100.0);
+        assert!(depth(&paper) < 0.8 * 97.0, "{}", depth(&paper));
     }
 }
