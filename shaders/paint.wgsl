@@ -1,5 +1,6 @@
 // Colors of a layer of surface points: one thread = one pixel of some rows of a part of the picture. Reads the
-// points that were rasterized, the grid, transfer function and light; writes distance and color.
+// points that were rasterized, the grid, transfer function and light; writes
+// distance and color, and counts the work.
 #import edges
 #import facing
 #import projection
@@ -35,6 +36,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     }
     let color = color_of(point.x - 1u, bitcast<f32>(point.y), ray_direction(tile.origin + in_part));
     ray_states[place] = vec4u(point.y, bitcast<vec3u>(color));
+    count(COUNT_WORK, PAINT_WORK + lighting.work);
 }
 
 fn color_of(face: u32, distance: f32, direction: vec3f) -> vec3f {

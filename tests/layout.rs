@@ -198,6 +198,7 @@ fn constants_agree() {
         ("BRICK", layout::BRICK),
         ("RUN", layout::RUN),
         ("SHEET_LAYERS", layout::SHEET_LAYERS),
+        ("PAINT_WORK", layout::PAINT_WORK),
         ("FAULT_COLORS", layout::FAULT_COLORS as u32),
         ("COUNTERS", layout::COUNTERS),
         ("COUNT_SAMPLES", layout::COUNT_SAMPLES),

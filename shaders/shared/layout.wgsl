@@ -263,10 +263,12 @@ const PACKED_VALUES: u32 = 2046u;
 const PACKED_GHOST: u32 = 2047u;
 // Points of sheets that a ray meets, at most.
 const SHEET_LAYERS: u32 = 4u;
+// Loop iterations that a point of a surface costs beside its light, about.
+const PAINT_WORK: u32 = 2u;
 const SHEET_OPACITY: f32 = 0.5;
 // Lines along edges: width in pixels, darkness, and pixels from edge to edge between which they come to be seen.
-const EDGE_WIDTH: f32 = 1.0;
-const EDGE_DARKNESS: f32 = 0.9;
+const EDGE_WIDTH: f32 = 1.5;
+const EDGE_DARKNESS: f32 = 0.85;
 const EDGE_FADE_LOW: f32 = 2.0;
 const EDGE_FADE_HIGH: f32 = 6.0;
 // Counters, each of a low and a high word.

@@ -3,9 +3,9 @@
 use rayon::prelude::*;
 
 use super::device::{Gpu, GpuError};
-use super::frame::{Place, Round};
 use super::grid_upload::GpuGrid;
 use super::pipeline::RasterPipeline;
+use super::round::{Place, Round};
 use crate::model::topology::Face;
 use crate::model::{Dims, Grid, Ijk};
 

@@ -8,7 +8,7 @@ use glam::DVec3;
 use super::device::{Gpu, GpuError};
 use super::grid_upload::GpuGrid;
 use super::layout::{self, Frame, MAX_CLIP_PLANES, Tile};
-use super::pipeline::Pipeline;
+use super::round::Round;
 use super::surfaces::SurfacePainter;
 use super::target;
 use super::tiles::{self, Pace, Rect};
@@ -44,7 +44,7 @@ pub struct FrameStats {
     pub recovered_rays: u64,
     /// Rays that could not be set right.
     pub lost_rays: u64,
-    /// Loop iterations of all rays, about.
+    /// Loop iterations of all rays and surface points, about.
     pub work: u64,
     /// Times that a ray paused within what it was doing.
     pub pauses: u64,
@@ -68,14 +68,16 @@ pub struct Drawing<'a> {
 #[derive(Default)]
 pub struct FrameRenderer {
     pace: Pace,
+    /// How much of surfaces' colors fits into a submission.
+    painting: Pace,
 }
 
 /// Loop iterations after which a ray pauses at the latest: on software adapters within what llvmpipe
 /// allows a group of eight rays.
 const WORK_LIMIT: [u32; 2] = [6_000, 100_000];
-/// Loop iterations that finding the surfaces costs a pixel, about: parts of the picture in which it is done
-/// at once are so large that a submission has room for them.
-const PART_WORK: u64 = 8;
+/// Loop iterations that rasterizing the surfaces costs a pixel, about; it is done at once for a part of the
+/// picture that a submission has room for.
+const PART_WORK: u64 = 2;
 /// Bytes of the shader's counters: low and high words.
 const COUNTERS: u64 = 8 * layout::COUNTERS as u64;
 /// Bytes of a surface point: distance and color.
@@ -91,134 +93,6 @@ struct Bound<'a> {
     counters: wgpu::Buffer,
     staging: wgpu::Buffer,
     queries: Option<(wgpu::QuerySet, wgpu::Buffer)>,
-}
-
-/// One round of a tile, as a strategy records it: one submission that takes every ray further.
-pub struct Round<'a> {
-    /// The device.
-    pub gpu: &'a Gpu,
-    /// Pixels of the tile.
-    pub size: [u32; 2],
-    /// True in the tile's first round, before which its rays have no state.
-    pub starts: bool,
-    /// Rays of the tile that have not ended.
-    pub rays_left: u32,
-    /// Rays that paused within what they were doing in the round before.
-    pub paused: u64,
-    /// Of these, rays that lost their way.
-    pub strayed: u64,
-    groups: &'a [wgpu::BindGroup; 3],
-    queries: Option<&'a wgpu::QuerySet>,
-}
-
-/// Where a pass stands in its round; the first and the last one take the time.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Place {
-    /// The round's only pass.
-    Only,
-    /// The first of several.
-    First,
-    /// Neither first nor last.
-    Between,
-    /// The last of several.
-    Last,
-}
-
-impl Place {
-    /// The place of pass `n` of so many.
-    pub fn of(n: usize, passes: usize) -> Self {
-        match (n == 0, n + 1 == passes) {
-            (true, true) => Self::Only,
-            (true, false) => Self::First,
-            (false, true) => Self::Last,
-            (false, false) => Self::Between,
-        }
-    }
-}
-
-impl Round<'_> {
-    /// Query set with the indices that a pass writes its begin and end to.
-    fn times(&self, place: Place) -> Option<(&wgpu::QuerySet, Option<u32>, Option<u32>)> {
-        let begin = matches!(place, Place::Only | Place::First).then_some(0);
-        let end = matches!(place, Place::Only | Place::Last).then_some(1);
-        let set = self.queries.filter(|_| begin.is_some() || end.is_some())?;
-        Some((set, begin, end))
-    }
-
-    /// Records a dispatch that covers `size` invocations; `own` is bind group 3.
-    pub fn compute(
-        &self,
-        encoder: &mut wgpu::CommandEncoder,
-        pipeline: &Pipeline,
-        own: Option<&wgpu::BindGroup>,
-        size: [u32; 2],
-        place: Place,
-    ) {
-        let times = self.times(place);
-        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
-            label: Some("rays"),
-            timestamp_writes: times.map(|(query_set, begin, end)| {
-                wgpu::ComputePassTimestampWrites {
-                    query_set,
-                    beginning_of_pass_write_index: begin,
-                    end_of_pass_write_index: end,
-                }
-            }),
-        });
-        pass.set_pipeline(&pipeline.pipeline);
-        for (n, group) in (0..).zip(self.groups.iter().chain(own)) {
-            pass.set_bind_group(n, group, &[]);
-        }
-        let [x, y, _] = pipeline.groups_for([size[0], size[1], 1]);
-        pass.dispatch_workgroups(x, y, 1);
-    }
-
-    /// Begins a render pass over the tile, its bind groups set; the caller sets the pipeline.
-    pub fn raster<'e>(
-        &self,
-        encoder: &'e mut wgpu::CommandEncoder,
-        color: &wgpu::TextureView,
-        depth: &wgpu::TextureView,
-        place: Place,
-    ) -> wgpu::RenderPass<'e> {
-        let times = self.times(place);
-        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("faces"),
-            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: color,
-                depth_slice: None,
-                resolve_target: None,
-                ops: wgpu::Operations {
-                    load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
-                    store: wgpu::StoreOp::Store,
-                },
-            })],
-            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-                view: depth,
-                depth_ops: Some(wgpu::Operations {
-                    load: wgpu::LoadOp::Clear(1.0),
-                    store: wgpu::StoreOp::Discard,
-                }),
-                stencil_ops: None,
-            }),
-            timestamp_writes: times.map(|(query_set, begin, end)| {
-                wgpu::RenderPassTimestampWrites {
-                    query_set,
-                    beginning_of_pass_write_index: begin,
-                    end_of_pass_write_index: end,
-                }
-            }),
-            occlusion_query_set: None,
-            multiview_mask: None,
-        });
-        let [width, height] = self.size.map(|n| n as f32);
-        pass.set_viewport(0.0, 0.0, width, height, 0.0, 1.0);
-        pass.set_scissor_rect(0, 0, self.size[0], self.size[1]);
-        for (n, group) in (0..).zip(self.groups) {
-            pass.set_bind_group(n, group, &[]);
-        }
-        pass
-    }
 }
 
 impl FrameRenderer {
@@ -252,9 +126,7 @@ impl FrameRenderer {
         let pixels = u64::from(view.size[0]) * u64::from(view.size[1]);
         let most = pixels.min(tiles::MAX_AREA);
         let state_bytes = strategy.ray_state_bytes() * most;
-        let layers = surfaces
-            .as_ref()
-            .map_or(0, |_| SurfacePainter::layers(view.surfaces));
+        let layers = surfaces.as_ref().map_or(0, |s| s.layers());
         let layer_bytes = LAYER_BYTES * u64::from(layers) * most;
         let states = gpu.scratch("ray states", state_bytes + layer_bytes);
         let frame = gpu.uniform("frame", &frame_uniform(grid, view));
@@ -285,13 +157,13 @@ impl FrameRenderer {
         };
         let least_work = strategy.least_work();
         let mut done = 0;
-        for part in bound.parts(view.size, surfaces.is_some(), &self.pace) {
+        for part in bound.parts(view.size, surfaces.is_some(), &self.painting) {
             let part = Part {
                 rect: part,
                 layers: (state_bytes / LAYER_BYTES) as u32,
             };
             if let Some(surfaces) = &mut surfaces {
-                bound.find_surfaces(surfaces, part, &self.pace, &mut stats)?;
+                bound.find_surfaces(surfaces, part, &mut self.painting, &mut stats)?;
             }
             let draw = |rect, pace: &mut Pace| {
                 bound.draw(&mut *strategy, part.tile(rect), pace, &mut stats)
@@ -351,19 +223,30 @@ impl Bound<'_> {
         }
     }
 
-    /// Finds the surface points of a part, and their colors.
+    /// Finds the surface points of a part, and then their colors in as many submissions as these need.
     fn find_surfaces(
         &self,
         surfaces: &mut SurfacePainter,
         part: Part,
-        pace: &Pace,
+        pace: &mut Pace,
         stats: &mut FrameStats,
     ) -> Result<(), GpuError> {
         let uniform = part.tile(part.rect);
-        for step in surfaces.steps(part.rect.size, |each| pace.pieces(each)) {
-            let round = self.round(&uniform, 0);
-            let record = |encoder: &mut _| surfaces.encode(&step, &round, encoder);
-            self.submit(&uniform, record, stats)?;
+        let round = self.round(&uniform, 0);
+        self.submit(&uniform, |encoder| surfaces.peel(&round, encoder), stats)?;
+        let [width, height] = part.rect.size;
+        let row = u64::from(width) * surfaces.work();
+        for layer in 0..surfaces.layers() {
+            let mut next = 0;
+            while next < height {
+                let count = pace.pieces(row).clamp(1, u64::from(height - next)) as u32;
+                let rows = next..next + count;
+                let record = |encoder: &mut _| surfaces.paint(layer, &rows, &round, encoder);
+                let before = stats.work;
+                let took = self.submit(&uniform, record, stats)?;
+                pace.learn(took, stats.work - before);
+                next += count;
+            }
         }
         Ok(())
     }

@@ -263,6 +263,8 @@ pub const PACKED_VALUES: u32 = 2046;
 pub const PACKED_GHOST: u32 = 2047;
 /// Points of sheets that a ray meets, at most.
 pub const SHEET_LAYERS: u32 = 4;
+/// Loop iterations that a point of a surface costs beside its light, about.
+pub const PAINT_WORK: u32 = 2;
 /// Counters, each of a low and a high word.
 pub const COUNTERS: u32 = 12;
 /// Counter of the samples inside drawn cells.

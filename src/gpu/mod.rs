@@ -13,6 +13,7 @@ pub mod pipeline;
 pub mod probe;
 pub mod pyramids;
 pub mod resample;
+pub mod round;
 pub mod shader;
 pub mod slabs;
 pub mod surfaces;
@@ -22,6 +23,7 @@ pub mod transfer_tables;
 pub mod volume;
 
 pub use device::{Gpu, GpuError};
-pub use frame::{Drawing, FrameRenderer, FrameStats, Place, Round};
+pub use frame::{Drawing, FrameRenderer, FrameStats};
 pub use grid_upload::{GpuBytes, GpuGrid, Versions};
 pub use pipeline::{Pipeline, RasterPipeline, flag};
+pub use round::{Place, Round};

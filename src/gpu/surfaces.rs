@@ -8,11 +8,11 @@ use std::ops::Range;
 
 use super::device::{Gpu, GpuError};
 use super::faces::{self, FORMAT, FaceList, FaceTarget};
-use super::frame::{Place, Round};
 use super::grid_upload::GpuGrid;
 use super::illumination::Shading;
 use super::layout::{self, PaintInfo};
 use super::pipeline::{Pipeline, RasterPipeline, flag};
+use super::round::{Place, Round};
 use crate::model::Grid;
 use crate::scene::surfaces::{PALETTE, UNNAMED};
 use crate::scene::{Surfaces, View};
@@ -27,9 +27,6 @@ pub fn constants(surfaces: Surfaces) -> [(&'static str, f64); 3] {
     ]
 }
 
-/// Loop iterations that a pixel of a layer costs beside its light, about.
-const PAINT_WORK: u32 = 32;
-
 /// Finds surface points and gives them colors.
 pub struct SurfacePainter {
     peel: RasterPipeline,
@@ -37,6 +34,8 @@ pub struct SurfacePainter {
     /// Constants that it was compiled with.
     look: (Surfaces, Shading),
     shown: Option<Shown>,
+    gap: f32,
+    work: u64,
     targets: Vec<Option<FaceTarget>>,
     /// What is bound in place of a layer before the first one.
     nothing: wgpu::TextureView,
@@ -46,26 +45,9 @@ pub struct SurfacePainter {
 struct Shown {
     surfaces: Surfaces,
     faces: FaceList,
-    gap: f32,
     fault_faces: wgpu::Buffer,
     fault_colors: wgpu::Buffer,
     faults: u32,
-    /// Loop iterations that a pixel of a layer costs, about.
-    work: u64,
-}
-
-/// What one submission does for a part of the picture.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Step {
-    /// Finds the points of all layers.
-    Peel,
-    /// Gives some rows of a layer their colors.
-    Paint {
-        /// The layer.
-        layer: u32,
-        /// Its rows.
-        rows: Range<u32>,
-    },
 }
 
 impl SurfacePainter {
@@ -79,6 +61,8 @@ impl SurfacePainter {
             paint: Pipeline::new(gpu, "paint")?,
             look: <(Surfaces, Shading)>::default(),
             shown: None,
+            gap: 0.0,
+            work: 0,
             targets: Vec::new(),
             nothing: faces::texture(gpu, [1; 2], FORMAT),
         })
@@ -119,65 +103,39 @@ impl SurfacePainter {
             Some(known) => known,
             None => Shown::new(gpu, model, grid, view, boundary)?,
         };
-        self.shown = Some(Shown {
-            gap: view.fault_gap() as f32,
-            work: u64::from(PAINT_WORK + work),
-            ..shown
-        });
+        self.shown = Some(shown);
+        self.gap = view.fault_gap() as f32;
+        self.work = u64::from(layout::PAINT_WORK + work);
         Ok(())
     }
 
     /// Layers that a ray can have.
-    pub fn layers(surfaces: Surfaces) -> u32 {
-        match surfaces {
+    pub fn layers(&self) -> u32 {
+        match self.look.0 {
             Surfaces { hull: true, .. } => 1,
             Surfaces { faults: true, .. } => layout::SHEET_LAYERS,
             _ => 0,
         }
     }
 
-    /// What is to be done for a part of the picture, in order. A submission has room for so many loop
-    /// iterations as `pieces` of a number of them says.
-    pub fn steps(&self, size: [u32; 2], pieces: impl Fn(u64) -> u64) -> Vec<Step> {
-        let Some(shown) = &self.shown else {
-            return Vec::new();
-        };
-        let [width, height] = size;
-        let rows = pieces(u64::from(width) * shown.work).clamp(1, u64::from(height)) as u32;
-        let paint = |layer: u32| {
-            (0..height)
-                .step_by(rows as usize)
-                .map(move |first| Step::Paint {
-                    layer,
-                    rows: first..(first + rows).min(height),
-                })
-        };
-        let layers = 0..Self::layers(shown.surfaces);
-        std::iter::once(Step::Peel)
-            .chain(layers.flat_map(paint))
-            .collect()
+    /// Loop iterations that a pixel of a layer costs, about.
+    pub fn work(&self) -> u64 {
+        self.work
     }
 
-    /// Records a step.
-    pub fn encode(&mut self, step: &Step, round: &Round<'_>, encoder: &mut wgpu::CommandEncoder) {
-        match step {
-            Step::Peel => self.peel(round, encoder),
-            Step::Paint { layer, rows } => self.paint(*layer, rows, round, encoder),
-        }
-    }
-
-    fn peel(&mut self, round: &Round<'_>, encoder: &mut wgpu::CommandEncoder) {
+    /// Records the passes that find the points of all layers.
+    pub fn peel(&mut self, round: &Round<'_>, encoder: &mut wgpu::CommandEncoder) {
         let Some(shown) = &self.shown else {
             return;
         };
-        let layers = Self::layers(shown.surfaces) as usize;
+        let layers = self.layers() as usize;
         self.targets.resize_with(layers, || None);
         let mut before = self.nothing.clone();
         for (n, slot) in self.targets.iter_mut().enumerate() {
             let target = FaceTarget::fitting(slot.take(), round.gpu, round.size);
             // Only of the hull both sides of a fault are there to choose from.
-            let behind = if shown.surfaces.hull { shown.gap } else { 0.0 };
-            let info = [n as u32, shown.gap.to_bits(), behind.to_bits(), 0];
+            let behind = if shown.surfaces.hull { self.gap } else { 0.0 };
+            let info = [n as u32, self.gap.to_bits(), behind.to_bits(), 0];
             let info = round.gpu.uniform("peel info", &info);
             let own = [
                 info.as_entire_binding(),
@@ -196,7 +154,8 @@ impl SurfacePainter {
         }
     }
 
-    fn paint(
+    /// Records the pass that gives some rows of a layer their colors.
+    pub fn paint(
         &self,
         layer: u32,
         rows: &Range<u32>,
@@ -260,11 +219,9 @@ impl Shown {
         Ok(Self {
             surfaces,
             faces,
-            gap: 0.0,
             fault_faces: gpu.storage("fault faces", &numbers)?,
             fault_colors: gpu.storage("fault colors", &colors)?,
             faults: numbers.len() as u32,
-            work: 0,
         })
     }
 }

@@ -243,22 +243,24 @@ impl Integrator<'_> {
     ) -> Layer {
         let position = ray.origin + hit.distance * ray.direction;
         let lit = DVec3::from_array(self.shaded(position, color.to_array(), valued));
-        let change = |[a, b]: [Ray; 2]| Some(hit.parameters(b)? - hit.parameters(a)?);
-        let [right, down] = self.neighbors(ray).map(change);
-        let lines = match (self.view.surfaces.cell_edges, hit.parameters(ray)) {
-            (true, Some(at)) => {
-                let [right, down] = [right, down].map(Option::unwrap_or_default);
-                (0..2)
-                    .map(|axis| line(at[axis], right[axis], down[axis]))
-                    .fold(0.0, f64::max)
-            }
-            _ => 0.0,
+        let lines = match self.view.surfaces.cell_edges {
+            true => self.lines_on(hit, ray).unwrap_or(0.0),
+            false => 0.0,
         };
         Layer {
             distance: hit.distance,
             color: lit * (1.0 - EDGE_DARKNESS * lines),
             alpha,
         }
+    }
+
+    /// Part of a ray's pixel that the edges of the face cover; `None` where a ray runs along it.
+    fn lines_on(&self, hit: &Hit<'_>, ray: Ray) -> Option<f64> {
+        let at = hit.parameters(ray)?;
+        let change = |[a, b]: [Ray; 2]| Some(hit.parameters(b)? - hit.parameters(a)?);
+        let [right, down] = self.neighbors(ray).map(change);
+        let (right, down) = (right?, down?);
+        Some(line(at.x, right.x, down.x).max(line(at.y, right.y, down.y)))
     }
 
     /// The color of an opaque section with the edges of cells on it, where they are shown.

@@ -78,9 +78,9 @@ pub const PALETTE: [[f64; 3]; 7] = [
 ];
 
 /// Width of the lines along edges, in pixels.
-pub const EDGE_WIDTH: f64 = 1.0;
+pub const EDGE_WIDTH: f64 = 1.5;
 /// How much darker they are than what they are on.
-pub const EDGE_DARKNESS: f64 = 0.9;
+pub const EDGE_DARKNESS: f64 = 0.85;
 /// Pixels from edge to edge between which lines come to be seen.
 pub const EDGE_FADE: [f64; 2] = [2.0, 6.0];
 
