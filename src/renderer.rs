@@ -107,8 +107,8 @@ impl Renderer {
         progress: &dyn Fn(f64) -> bool,
     ) -> Result<Option<Frame>, GpuError> {
         let start = Instant::now();
-        let (of_case, grid) = (grid, shown_grid(grid, view.ghosts.as_ref()));
         self.show(grid, view)?;
+        let (of_case, grid) = (grid, shown_grid(grid, view.ghosts.as_ref()));
         let Self {
             gpu,
             grid: on_device,
@@ -215,12 +215,14 @@ impl Renderer {
         Ok(None)
     }
 
-    /// Brings field and selection of a view to the device. Rendering does so by itself; done before,
+    /// Brings field and selection of a view of `grid`, the one given to [`Self::new`], to the device.
+    /// Rendering does so by itself; done before,
     /// it is no part of what the first picture takes.
     ///
     /// # Errors
     /// When the values are too large for the adapter.
     pub fn show(&mut self, grid: &Grid, view: &View) -> Result<(), GpuError> {
+        let grid = shown_grid(grid, view.ghosts.as_ref());
         let wanted = Shown {
             field: view.field.clone(),
             drawn: view.drawn.clone(),

@@ -2,6 +2,7 @@
 // rays, nearest first: the bits of distance and of linear red, green and blue, for each pixel of the part of
 // the picture that the tile lies in (`Surfaces` in scene/surfaces.rs says what is seen).
 #import frame
+#import grid
 #import transfer
 
 override SURFACES: bool = false;
@@ -61,13 +62,14 @@ fn blend_layer(layers: ptr<function, Layers>, sum: ptr<function, Accumulated>, d
     return true;
 }
 
-// A ray up to the hull, which ends it; nothing of it where the hull is the first that it meets.
+// A ray up to the hull, which ends it; nothing of it where nothing can be in front: only ghosts are outside.
 fn before_hull(ray: Ray, layers: Layers) -> Ray {
     var cut = ray;
     if SURFACES && HULL && layers.distance < NO_LAYER {
+        let has_more = ray.starts_inside || GHOSTS;
         let samples = ceil(layers.distance / frame.step - 0.5) - ray.first;
-        cut.count = select(0.0, clamp(samples, 0.0, ray.count), ray.starts_inside);
-        cut.leave = select(ray.enter, min(ray.leave, layers.distance), ray.starts_inside);
+        cut.count = select(0.0, clamp(samples, 0.0, ray.count), has_more);
+        cut.leave = select(ray.enter, min(ray.leave, layers.distance), has_more);
     }
     return cut;
 }
