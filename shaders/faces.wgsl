@@ -2,9 +2,7 @@
 // triangles, one fragment = where the ray of a pixel meets a face. Reads the grid, the list of faces
 // and, to peel, the states of the rays; writes face number + 1 and the bits of the distance, nearest
 // first by the fragment's depth.
-#import frame
-#import grid
-#import facing
+#import raster
 
 struct FacesInfo {
     // FACES_PEEL, FACES_FIRST or FACES_LAST.
@@ -21,48 +19,9 @@ const FACES_LAST: u32 = 2u;
 // (column * nk + layer) * 6 + face.
 @group(3) @binding(1) var<storage, read> boundary_faces: array<u32>;
 
-struct Corner {
-    @builtin(position) position: vec4f,
-    @location(0) depth: f32,
-    @location(1) @interpolate(flat) face: u32,
-}
-
 @vertex
 fn vertex(@builtin(vertex_index) index: u32) -> Corner {
-    let face = boundary_faces[index / 6u];
-    let column = face / 6u / grid.nk;
-    let layer = face / 6u % grid.nk;
-    var triangle = array<u32, 6>(0u, 1u, 3u, 0u, 3u, 2u);
-    var number = index % 6u;
-    if frame.world_handedness * face_orientation(face % 6u) < 0.0 {
-        // Every triangle is counterclockwise as seen from outside its cell.
-        number = (number / 3u) * 3u + (3u - number % 3u) % 3u;
-    }
-    let corner = face_corner(face % 6u, triangle[number]);
-    let pillars_of = pillar_index(column);
-    let lists = column_lists[column];
-    let pillar = load_pillar(pillars_of[corner & 3u]);
-    let depth = depths[list_entry(lists[corner & 3u], layer, corner >> 2u)];
-    let from_eye = vec3f((pillar.at - frame.eye.xy) + (pillar.low_bits + pillar.slope * depth), depth - frame.eye.z);
-    let w = dot(frame.view_z, from_eye);
-    // The picture's clip space, then the tile's.
-    let scale = vec2f(f32(frame.width), f32(frame.height)) / vec2f(tile.size);
-    let shift = scale - vec2f(1.0) - 2.0 * vec2f(tile.origin) / vec2f(tile.size);
-    var out: Corner;
-    out.position = vec4f(
-        scale.x * dot(frame.view_x, from_eye) + shift.x * w,
-        scale.y * dot(frame.view_y, from_eye) - shift.y * w,
-        0.5 * w,
-        w,
-    );
-    out.depth = w;
-    out.face = face;
-    return out;
-}
-
-struct Met {
-    @builtin(frag_depth) depth: f32,
-    @location(0) met: vec2u,
+    return face_vertex(boundary_faces[index / 6u], index % 6u);
 }
 
 @fragment

@@ -16,7 +16,9 @@
 // eight rays together, so what is rare stands outside the loops, and options are pipeline constants.
 #import section
 #import shading
+#import surfaces
 #import facing
+#import projection
 
 // Rays go on across faults and collapsed layers.
 override CROSSES: bool = true;
@@ -78,21 +80,14 @@ struct Walk {
     recoveries: u32,
     // Steps in a row that have brought the ray no further.
     stalls: u32,
+    // Layers of surfaces that are blended.
+    passed: u32,
 }
 
 // Corners of a cell relative to the ray: two coordinates across it and the distance from the eye.
 struct Projected {
     p0: vec3f, p1: vec3f, p2: vec3f, p3: vec3f,
     p4: vec3f, p5: vec3f, p6: vec3f, p7: vec3f,
-}
-
-// The ray as origin of a frame: a point on it, two directions across, and distances along.
-struct RayFrame {
-    origin: vec3f,
-    across_x: vec3f,
-    across_y: vec3f,
-    along: vec3f,
-    t_origin: f32,
 }
 
 struct Exit {
@@ -103,19 +98,8 @@ struct Exit {
 }
 
 fn frame_of(ray: Ray) -> RayFrame {
-    var r: RayFrame;
-    r.t_origin = max(ray.enter, 0.0);
-    r.origin = frame.eye + r.t_origin * ray.direction;
-    let helper = select(vec3f(0.0, 0.0, 1.0), vec3f(1.0, 0.0, 0.0), abs(ray.direction.z) > 0.7 * length(ray.direction));
-    r.across_x = normalize(cross(helper, ray.direction));
-    r.across_y = normalize(cross(ray.direction, r.across_x));
-    r.along = ray.direction / dot(ray.direction, ray.direction);
-    return r;
-}
-
-fn project(r: RayFrame, pillar: Pillar, depth: f32) -> vec3f {
-    let from_origin = vec3f((pillar.at - r.origin.xy) + (pillar.low_bits + pillar.slope * depth), depth - r.origin.z);
-    return vec3f(dot(r.across_x, from_origin), dot(r.across_y, from_origin), r.t_origin + dot(r.along, from_origin));
+    let t = max(ray.enter, 0.0);
+    return frame_at(frame.eye + t * ray.direction, ray.direction, t);
 }
 
 fn project_cell(r: RayFrame, column: u32, layer: u32) -> Projected {
@@ -132,10 +116,6 @@ fn project_cell(r: RayFrame, column: u32, layer: u32) -> Projected {
         project(r, pillar0, bottom.x), project(r, pillar1, bottom.y), project(r, pillar2, bottom.z),
         project(r, pillar3, bottom.w),
     );
-}
-
-fn cross2d(a: vec3f, b: vec3f) -> f32 {
-    return a.x * b.y - a.y * b.x;
 }
 
 // Where the ray leaves through a face, if that lies farther than what was found so far. `sense` is the
@@ -202,40 +182,30 @@ fn enter_through(c: Projected, face: u32) -> vec3f {
     return vec3f((d * q01.z + f * q00.z + g * q11.z) / sum, g / sum, (d + g) / sum);
 }
 
-// Parameters in the cell of a point on one of its faces.
-fn on_face(face: u32, at: vec2f) -> vec3f {
-    let side = f32(face & 1u);
-    let axis = face >> 1u;
-    if axis == 0u {
-        return vec3f(side, at);
-    }
-    if axis == 1u {
-        return vec3f(at.x, side, at.y);
-    }
-    return vec3f(at, side);
-}
-
 @compute @workgroup_size(8, 8)
 fn begin(@builtin(global_invocation_id) id: vec3u) {
     if any(id.xy >= tile.size) {
         return;
     }
     let number = id.y * tile.size.x + id.x;
-    let ray = ray_of(tile.origin + id.xy);
+    let pixel = tile.origin + id.xy;
+    let whole = ray_of(pixel);
+    let layers = layers_of(pixel, 0u);
+    let ray = before_hull(whole, layers);
     var walk: Walk;
     var tally: Tally;
     walk.done = ray.enter;
     walk.entry_t = NOWHERE;
     walk.t = ray.enter;
     walk.phase = select(NEEDS_ENTRY, STRAYED, ray.starts_inside);
-    let section = section_color(ray);
+    let section = section_color(whole);
     if ray.leave <= ray.enter || section.a == 1.0 {
         walk.phase = ENDED;
     }
     if walk.phase == STRAYED {
         locate_again(&walk, ray, &tally);
     }
-    finish(number, walk, Accumulated(section.rgb, 1.0 - section.a), tally);
+    finish(number, walk, Accumulated(section.rgb, 1.0 - section.a), layers, tally);
 }
 
 @compute @workgroup_size(64)
@@ -263,7 +233,8 @@ fn walk(@builtin(global_invocation_id) id: vec3u) {
     let number = rays[id.x];
     var walk = load_walk(number);
     let place = in_tile(number);
-    let ray = ray_of(tile.origin + place);
+    var layers = layers_of(tile.origin + place, walk.passed);
+    let ray = before_hull(ray_of(tile.origin + place), layers);
     let r = frame_of(ray);
     let sums = bitcast<vec4f>(ray_states[LIBC_STATE * number]);
     var sum = Accumulated(sums.rgb, sums.a);
@@ -283,7 +254,7 @@ fn walk(@builtin(global_invocation_id) id: vec3u) {
             }
             let uvw = on_face(exit.face, exit.at);
             let t = max(exit.t, walk.t);
-            if !integrate(&walk, &sum, ray, t, uvw, &tally) {
+            if !integrate(&walk, &sum, &layers, ray, t, uvw, &tally) {
                 break;
             }
             walk.t = t;
@@ -299,7 +270,7 @@ fn walk(@builtin(global_invocation_id) id: vec3u) {
             cross_fault(&walk, r);
         }
     }
-    finish(number, walk, sum, tally);
+    finish(number, walk, sum, layers, tally);
 }
 
 fn in_tile(number: u32) -> vec2u {
@@ -307,17 +278,22 @@ fn in_tile(number: u32) -> vec2u {
 }
 
 // Writes the picture where a ray has ended; else its state, and lists it for the next dispatch.
-fn finish(number: u32, walk: Walk, sum: Accumulated, tally: Tally) {
+fn finish(number: u32, walk: Walk, sum: Accumulated, layers: Layers, tally: Tally) {
     let is_lost = walk.recoveries > MOST_RECOVERIES;
     if walk.phase == ENDED || is_lost {
         let pixel = tile.origin + in_tile(number);
-        textureStore(target_image, vec2i(pixel), vec4f(sum.color, 1.0 - sum.transmittance));
+        var whole = sum;
+        var rest = layers;
+        while blend_layer(&rest, &whole, BEYOND_LAYERS) {}
+        textureStore(target_image, vec2i(pixel), vec4f(whole.color, 1.0 - whole.transmittance));
         count(COUNT_FINISHED, 1u);
         count(COUNT_LOST, select(0u, 1u, is_lost));
         atomicMax(&counters[2u * COUNT_PEELS], walk.peels);
     } else {
         ray_states[LIBC_STATE * number] = bitcast<vec4u>(vec4f(sum.color, sum.transmittance));
-        store_walk(number, walk);
+        var state = walk;
+        state.passed = layers.passed;
+        store_walk(number, state);
         rays_left[atomicAdd(&rays_left_count, 1u)] = number;
         count(COUNT_PAUSED, select(0u, 1u, walk.phase != NEEDS_ENTRY));
         count(COUNT_RECOVERED, select(0u, 1u, walk.phase == STRAYED));
@@ -348,15 +324,15 @@ fn load_walk(number: u32) -> Walk {
     let b = bitcast<vec4f>(ray_states[state + 2u]);
     let c = ray_states[state + 3u];
     return Walk(c.y & 7u, c.x, c.y >> 6u, b.w, b.xyz, c.y >> 3u & 7u, bitcast<f32>(a.y), bitcast<f32>(a.x),
-        bitcast<f32>(a.z), a.w, c.z, c.w & 0xffffu, c.w >> 16u);
+        bitcast<f32>(a.z), a.w, c.z & 0xffffffu, c.w & 0xffffu, c.w >> 16u, c.z >> 24u);
 }
 
 fn store_walk(number: u32, walk: Walk) {
     let state = LIBC_STATE * number;
     ray_states[state + 1u] = vec4u(bitcast<vec3u>(vec3f(walk.n, walk.done, walk.entry_t)), walk.entry);
     ray_states[state + 2u] = bitcast<vec4u>(vec4f(walk.uvw, walk.t));
-    ray_states[state + 3u] = vec4u(walk.column, walk.phase | walk.exit_face << 3u | walk.layer << 6u, walk.peels,
-        walk.recoveries | walk.stalls << 16u);
+    ray_states[state + 3u] = vec4u(walk.column, walk.phase | walk.exit_face << 3u | walk.layer << 6u,
+        walk.peels | walk.passed << 24u, walk.recoveries | walk.stalls << 16u);
 }
 
 // Locates the ray at its distance; it walks on in its cell, or needs an entry where there is none.
@@ -507,9 +483,10 @@ fn segment_value(s: Segment, t: f32) -> f32 {
 }
 
 // Adds what lies between the current place of the ray and its exit at distance `t`; false where the ray
-// pauses before.
-fn integrate(walk: ptr<function, Walk>, sum: ptr<function, Accumulated>, ray: Ray, t: f32, uvw: vec3f,
-    tally: ptr<function, Tally>) -> bool {
+// pauses before. Surfaces lie on faces, so those that are nearer than the exit lie at the entry.
+fn integrate(walk: ptr<function, Walk>, sum: ptr<function, Accumulated>, layers: ptr<function, Layers>, ray: Ray,
+    t: f32, uvw: vec3f, tally: ptr<function, Tally>) -> bool {
+    while blend_layer(layers, sum, 0.5 * ((*walk).t + t)) {}
     var s: Segment;
     s.t = (*walk).t;
     s.length = max(t - s.t, 1e-20);

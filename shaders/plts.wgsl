@@ -10,6 +10,7 @@
 // after 65,535 iterations of all loops together), and no submission may run for long.
 #import section
 #import shading
+#import surfaces
 #import topology
 
 @compute @workgroup_size(8, 8)
@@ -18,21 +19,25 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         return;
     }
     let pixel = tile.origin + id.xy;
-    let ray = ray_of(pixel);
+    let whole = ray_of(pixel);
     let state = 2u * (id.y * tile.size.x + id.x);
     var sum = Accumulated(vec3f(0.0), 1.0);
     var n = 0.0;
+    var passed = 0u;
     if tile.resume == 1u {
         n = bitcast<f32>(ray_states[state + 1u].x);
+        passed = ray_states[state + 1u].y;
         if n == DONE {
             return;
         }
         let sums = bitcast<vec4f>(ray_states[state]);
         sum = Accumulated(sums.rgb, sums.a);
     } else {
-        let section = section_color(ray);
+        let section = section_color(whole);
         sum = Accumulated(section.rgb, 1.0 - section.a);
     }
+    var layers = layers_of(pixel, passed);
+    let ray = before_hull(whole, layers);
     var track: Track;
     var samples = 0u;
     // Two phases, so that rays side by side locate together and march together.
@@ -41,6 +46,9 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
             n += find(&track, ray.base + n * ray.advance, ray.advance, frame.interpolation);
         }
         while track.has_cell {
+            if blend_layer(&layers, &sum, (ray.first + n + 0.5) * frame.step) {
+                continue;
+            }
             samples += 1u;
             let is_ghost = is_ghost(track.cell.column, track.cell.layer);
             var entry = transfer(value_on(track));
@@ -61,8 +69,9 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     }
     if n < ray.count && is_open(sum) {
         ray_states[state] = bitcast<vec4u>(vec4f(sum.color, sum.transmittance));
-        ray_states[state + 1u] = vec4u(bitcast<u32>(n), 0u, 0u, 0u);
+        ray_states[state + 1u] = vec4u(bitcast<u32>(n), layers.passed, 0u, 0u);
     } else {
+        while blend_layer(&layers, &sum, BEYOND_LAYERS) {}
         ray_states[state + 1u] = vec4u(bitcast<u32>(DONE), 0u, 0u, 0u);
         textureStore(target_image, vec2i(pixel), vec4f(sum.color, 1.0 - sum.transmittance));
         count(COUNT_FINISHED, 1u);

@@ -7,6 +7,7 @@
 // A ray passes a brick, or a larger part of the pyramid, at once where it is empty; in one step where it
 // is even; in longer steps, from the average pyramid, where it is thin.
 #import section
+#import surfaces
 #import random
 
 // A clip plane has an opaque section.
@@ -38,7 +39,7 @@ struct Stretch {
     level: f32,
 }
 
-// A ray's state: its sums; then next sample and end, or DONE.
+// A ray's state: its sums; then next sample or DONE, end, and layers of surfaces that are blended.
 const SRG_STATE: u32 = 2u;
 
 @compute @workgroup_size(8, 8)
@@ -46,7 +47,9 @@ fn begin(@builtin(global_invocation_id) id: vec3u) {
     if any(id.xy >= tile.size) {
         return;
     }
-    let ray = ray_of(tile.origin + id.xy);
+    let pixel = tile.origin + id.xy;
+    let whole = ray_of(pixel);
+    let ray = before_hull(whole, layers_of(pixel, 0u));
     let entry = textureLoad(entries, vec2i(id.xy), 0).xy;
     let exit = textureLoad(exits, vec2i(id.xy), 0).xy;
     let enter = select(bitcast<f32>(entry.y), ray.enter, ray.starts_inside);
@@ -55,7 +58,7 @@ fn begin(@builtin(global_invocation_id) id: vec3u) {
     let is_met = exit.x != 0u && (entry.x != 0u || ray.starts_inside);
     var color = vec4f(0.0);
     if SECTIONS {
-        color = section_color(ray);
+        color = section_color(whole);
     }
     let state = SRG_STATE * (id.y * tile.size.x + id.x);
     ray_states[state] = bitcast<vec4u>(vec4f(color.rgb, 1.0 - color.a));
@@ -77,6 +80,7 @@ fn march(@builtin(global_invocation_id) id: vec3u) {
     let sums = bitcast<vec4f>(ray_states[state]);
     var sum = Accumulated(sums.rgb, sums.a);
     let ray = ray_of(pixel);
+    var layers = layers_of(pixel, ray_states[state + 1u].z);
     let base = (ray.base - volume.box_low) / volume.box_extent;
     let advance = ray.advance / volume.box_extent;
     var samples = 0u;
@@ -97,6 +101,9 @@ fn march(@builtin(global_invocation_id) id: vec3u) {
         if LONG_STEPS {
             taken = min(taken, stretch.end - n);
         }
+        if blend_layer(&layers, &sum, (ray.first + n + 0.5 * taken) * frame.step) {
+            continue;
+        }
         let at = base + (n + 0.5 * (taken - 1.0)) * advance;
         let voxel = textureSampleLevel(voxels, linear, at, stretch.level).xyz;
         let before = sum.transmittance;
@@ -114,8 +121,10 @@ fn march(@builtin(global_invocation_id) id: vec3u) {
     if n < span.y && is_open(sum) {
         ray_states[state] = bitcast<vec4u>(vec4f(sum.color, sum.transmittance));
         ray_states[state + 1u].x = bitcast<u32>(n);
+        ray_states[state + 1u].z = layers.passed;
         count(COUNT_PAUSED, 1u);
     } else {
+        while blend_layer(&layers, &sum, BEYOND_LAYERS) {}
         ray_states[state + 1u].x = bitcast<u32>(DONE);
         textureStore(target_image, vec2i(pixel), vec4f(sum.color, 1.0 - sum.transmittance));
         count(COUNT_FINISHED, 1u);

@@ -1,7 +1,9 @@
 //! A case: one grid, its properties and time steps. Values come through [`Source`], on demand.
 
+use std::sync::Arc;
+
 use crate::model::derived::Derived;
-use crate::model::{CellField, Grid};
+use crate::model::{CellField, FaultFaces, Grid};
 
 /// Where a property's values come from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
@@ -140,6 +142,8 @@ pub struct Case {
     pub grid: Grid,
     /// What else the files say.
     pub about: About,
+    /// Which faces lie on the faults of [`About::named_faults`], by their number there.
+    pub fault_faces: Arc<FaultFaces>,
     /// Time steps in file order.
     pub steps: Vec<Step>,
     /// Properties that can be shown.

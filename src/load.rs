@@ -1,6 +1,7 @@
 //! From files to a [`Case`]: the one module that knows both the file formats and the model.
 
 use std::path::Path;
+use std::sync::Arc;
 use std::time::Instant;
 
 use strataray_parsers::case::{GridSource, RestartSource, find};
@@ -16,7 +17,8 @@ use crate::case::{
     SOIL, Source, Step,
 };
 use crate::model::derived::Derived;
-use crate::model::{Dims, Grid, GridInput, MapAxes, ModelError};
+use crate::model::topology::Face;
+use crate::model::{Dims, FaultFaces, Grid, GridInput, MapAxes, ModelError};
 
 /// Arrays of cell count that are no properties: solver and well bookkeeping.
 const NOT_PROPERTIES: [&str; 3] = ["ACTNUM", "SEQNUM", "INTEHEAD"];
@@ -47,6 +49,10 @@ pub fn open(path: &Path) -> Result<Case, ParseError> {
         steps: Vec::new(),
         deck,
     };
+    let fault_faces = source
+        .deck
+        .as_ref()
+        .map(|deck| fault_faces(deck, &about.named_faults));
     if let Some(path) = &files.init {
         match init::open(path).and_then(|a| source.check(&a, path).map(|()| a)) {
             Ok(arrays) => {
@@ -89,6 +95,7 @@ pub fn open(path: &Path) -> Result<Case, ParseError> {
     Ok(Case {
         grid,
         about,
+        fault_faces: Arc::new(fault_faces.unwrap_or_default()),
         steps,
         properties,
         source: Box::new(source),
@@ -205,17 +212,7 @@ fn read_deck(
     };
     about.map_axes = deck.map_axes;
     about.porosity_model = "single".into();
-    for fault in &deck.faults {
-        let span = |[a, b]: [usize; 2]| b.saturating_sub(a) + 1;
-        let faces = span(fault.i) * span(fault.j) * span(fault.k);
-        match about.named_faults.iter_mut().find(|f| f.name == fault.name) {
-            Some(known) => known.faces += faces,
-            None => about.named_faults.push(NamedFault {
-                name: fault.name.clone(),
-                faces,
-            }),
-        }
-    }
+    about.named_faults = named_faults(&deck);
     let slots = CellSlots::new(&grid, deck.actnum.as_deref(), PorosityModel::Single);
     Ok((
         grid,
@@ -226,6 +223,49 @@ fn read_deck(
             ..deck
         }),
     ))
+}
+
+/// The faults of a deck in the order of their names' first use.
+fn named_faults(deck: &Grdecl) -> Vec<NamedFault> {
+    let mut named: Vec<NamedFault> = Vec::new();
+    for fault in &deck.faults {
+        let span = |[a, b]: [usize; 2]| b.saturating_sub(a) + 1;
+        let faces = span(fault.i) * span(fault.j) * span(fault.k);
+        match named.iter_mut().find(|f| f.name == fault.name) {
+            Some(known) => known.faces += faces,
+            None => named.push(NamedFault {
+                name: fault.name.clone(),
+                faces,
+            }),
+        }
+    }
+    named
+}
+
+/// Which faces lie on which of the named faults.
+fn fault_faces(deck: &Grdecl, named: &[NamedFault]) -> FaultFaces {
+    let mut faces = FaultFaces::default();
+    for fault in &deck.faults {
+        let number = named.iter().position(|f| f.name == fault.name);
+        if let (Some(number), Some(face)) = (number, lateral_face(&fault.face)) {
+            // Files count from 1.
+            let cells = [fault.i, fault.j, fault.k].map(|[a, b]| a - 1..=b - 1);
+            faces.add(number, cells, face);
+        }
+    }
+    faces
+}
+
+/// The lateral face that FAULTS calls `I`, `X-`, `J+` and so on; `None` for upper and lower ones.
+fn lateral_face(name: &str) -> Option<Face> {
+    let is_minus = name.ends_with('-');
+    Some(match (name.chars().next()?, is_minus) {
+        ('X' | 'I', true) => Face::IMinus,
+        ('X' | 'I', false) => Face::IPlus,
+        ('Y' | 'J', true) => Face::JMinus,
+        ('Y' | 'J', false) => Face::JPlus,
+        _ => return None,
+    })
 }
 
 fn dims([ni, nj, nk]: [usize; 3]) -> Dims {

@@ -5,10 +5,12 @@ use std::time::{Duration, Instant};
 
 use glam::DVec3;
 
+use crate::gpu::faces::{BoundaryFaces, FaceList};
 use crate::gpu::illumination::{Illumination, LightTimes};
 use crate::gpu::probe::{self, Located};
+use crate::gpu::surfaces::SurfacePainter;
 use crate::gpu::transfer_tables::TransferTables;
-use crate::gpu::{FrameRenderer, FrameStats, Gpu, GpuBytes, GpuError, GpuGrid};
+use crate::gpu::{Drawing, FrameRenderer, FrameStats, Gpu, GpuBytes, GpuError, GpuGrid};
 use crate::model::{CellField, Grid};
 use crate::picture::Image;
 use crate::scene::ghosts::{Ghosts, shown_grid};
@@ -22,6 +24,9 @@ pub struct Renderer {
     frames: FrameRenderer,
     tables: Option<TransferTables>,
     light: Illumination,
+    faces: BoundaryFaces,
+    /// Made when surfaces are first shown.
+    surfaces: Option<SurfacePainter>,
     strategies: Vec<(StrategyKind, Box<dyn RenderStrategy>)>,
     shown: Option<Shown>,
 }
@@ -71,6 +76,8 @@ impl Renderer {
             grid: GpuGrid::new(&gpu, grid)?,
             light: Illumination::new(&gpu)?,
             tables: None,
+            faces: BoundaryFaces::default(),
+            surfaces: None,
             gpu,
             frames: FrameRenderer::default(),
             strategies: Vec::new(),
@@ -100,14 +107,16 @@ impl Renderer {
         progress: &dyn Fn(f64) -> bool,
     ) -> Result<Option<Frame>, GpuError> {
         let start = Instant::now();
-        let grid = shown_grid(grid, view.ghosts.as_ref());
         self.show(grid, view)?;
+        let (of_case, grid) = (grid, shown_grid(grid, view.ghosts.as_ref()));
         let Self {
             gpu,
             grid: on_device,
             frames,
             tables,
             light,
+            faces,
+            surfaces,
             ..
         } = self;
         let tables = match tables.take().filter(|t| t.are_of(&view.transfer)) {
@@ -118,11 +127,20 @@ impl Renderer {
             return Ok(None);
         }
         let strategy = strategy(gpu, &mut self.strategies, view.strategy)?;
+        let faces = match strategy.draws_faces() || SurfacePainter::shares_faces(view) {
+            true => Some(faces.update(gpu, grid, on_device, &view.drawn)?),
+            false => None,
+        };
+        let mut surfaces = surfaces_of(gpu, surfaces, view)?;
+        if let Some(surfaces) = &mut surfaces {
+            surfaces.update(gpu, of_case, on_device, view, faces, light.work())?;
+        }
         let preparation = Preparation {
             gpu,
             model: grid,
             grid: on_device,
             view,
+            faces,
             progress,
         };
         if !strategy.prepare(&preparation)? {
@@ -130,8 +148,13 @@ impl Renderer {
         }
         gpu.wait()?;
         let prepare = start.elapsed();
-        let group = light.bind(gpu, tables);
-        let made = frames.render(gpu, on_device, group, strategy, view, progress)?;
+        let lists = surfaces.as_ref().map_or(0, |s| s.bytes(view));
+        let drawing = Drawing {
+            light: light.bind(gpu, tables),
+            surfaces,
+            strategy,
+        };
+        let made = frames.render(gpu, on_device, drawing, view, progress)?;
         Ok(made.map(|(image, stats)| Frame {
             image,
             stats,
@@ -140,6 +163,7 @@ impl Renderer {
             bytes: on_device.bytes()
                 + strategy.bytes()
                 + GpuBytes {
+                    geometry: faces.map_or(0, FaceList::bytes) + lists,
                     targets: stats.target_bytes,
                     lighting: light.bytes(),
                     ..GpuBytes::default()
@@ -191,12 +215,14 @@ impl Renderer {
         Ok(None)
     }
 
-    /// Brings field and selection of a view to the device. Rendering does so by itself; done before,
+    /// Brings field and selection of a view of `grid`, the one given to [`Self::new`], to the device.
+    /// Rendering does so by itself; done before,
     /// it is no part of what the first picture takes.
     ///
     /// # Errors
     /// When the values are too large for the adapter.
     pub fn show(&mut self, grid: &Grid, view: &View) -> Result<(), GpuError> {
+        let grid = shown_grid(grid, view.ghosts.as_ref());
         let wanted = Shown {
             field: view.field.clone(),
             drawn: view.drawn.clone(),
@@ -221,6 +247,22 @@ impl Renderer {
         }
         Ok(())
     }
+}
+
+/// What finds the surfaces of a view, compiled when it is first asked for; `None` where it shows none.
+fn surfaces_of<'a>(
+    gpu: &Gpu,
+    compiled: &'a mut Option<SurfacePainter>,
+    view: &View,
+) -> Result<Option<&'a mut SurfacePainter>, GpuError> {
+    if !view.surfaces.are_shown() {
+        return Ok(None);
+    }
+    let painter = match compiled.take() {
+        Some(known) => known,
+        None => SurfacePainter::new(gpu)?,
+    };
+    Ok(Some(compiled.insert(painter)))
 }
 
 /// The strategy of a kind, compiled when it is first asked for.

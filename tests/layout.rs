@@ -4,11 +4,11 @@
 use std::mem::{offset_of, size_of};
 
 use strataray::gpu::layout::{
-    self, BlurInfo, BricksInfo, Emitter, Found, Frame, GridInfo, LightingInfo, Slab, Tile,
-    VolumeInfo,
+    self, BlurInfo, BricksInfo, Emitter, Found, Frame, GridInfo, LightingInfo, PaintInfo, Slab,
+    Tile, VolumeInfo,
 };
 use strataray::gpu::shader;
-use strataray::scene::lighting;
+use strataray::scene::{lighting, surfaces};
 use wgpu::naga::{Expression, Literal, Module, TypeInner, front::wgsl};
 
 fn module() -> Module {
@@ -77,8 +77,18 @@ fn structs_agree() {
         clip_planes
     );
     agrees!(
-        m, Tile, origin, size, resume, work_limit, reserved0, reserved1
+        m,
+        Tile,
+        origin,
+        size,
+        resume,
+        work_limit,
+        layers,
+        part_width,
+        part_origin,
+        reserved
     );
+    agrees!(m, PaintInfo, palette, faults, layer, first_row, rows);
     agrees!(
         m,
         GridInfo,
@@ -187,6 +197,9 @@ fn constants_agree() {
         ("MAX_CLIP_PLANES", layout::MAX_CLIP_PLANES as u32),
         ("BRICK", layout::BRICK),
         ("RUN", layout::RUN),
+        ("SHEET_LAYERS", layout::SHEET_LAYERS),
+        ("PAINT_WORK", layout::PAINT_WORK),
+        ("FAULT_COLORS", layout::FAULT_COLORS as u32),
         ("COUNTERS", layout::COUNTERS),
         ("COUNT_SAMPLES", layout::COUNT_SAMPLES),
         ("COUNT_ITERATIONS", layout::COUNT_ITERATIONS),
@@ -230,6 +243,11 @@ fn numbers_of_the_shading_agree() {
         ("GRADIENT_FADE_HIGH", lighting::GRADIENT_FADE[1]),
         ("SPECULAR", lighting::SPECULAR),
         ("SHININESS", lighting::SHININESS),
+        ("SHEET_OPACITY", surfaces::SHEET_OPACITY),
+        ("EDGE_WIDTH", surfaces::EDGE_WIDTH),
+        ("EDGE_DARKNESS", surfaces::EDGE_DARKNESS),
+        ("EDGE_FADE_LOW", surfaces::EDGE_FADE[0]),
+        ("EDGE_FADE_HIGH", surfaces::EDGE_FADE[1]),
     ] {
         let named = |(_, c): &(_, &wgpu::naga::Constant)| c.name.as_deref() == Some(name);
         let (_, constant) = m.constants.iter().find(named).unwrap();

@@ -225,6 +225,8 @@ fn ghosts_of_inactive_cells_agree_with_the_reference() {
                 ..without
             };
             let truth = reference::render(&case.grid, &view, &|_| true).unwrap();
+            // Showing the view before it is rendered changes nothing.
+            renderer.show(&case.grid, &view).unwrap();
             for strategy in StrategyKind::ALL {
                 let db = psnr(
                     &on_gpu(&mut renderer, &case, &view, strategy),

@@ -249,6 +249,7 @@ impl<'a> Bench<'a> {
             model: &self.case.grid,
             grid: &self.grid,
             view,
+            faces: None,
             progress: &progress,
         };
         let done = self.srg.prepare(&what).unwrap();

@@ -103,6 +103,25 @@ fn evaluate(cell: Cell, q: vec3f) -> vec4f {
         + q.z * (cell.kw + q.x * (cell.kuw + q.y * cell.kuvw));
 }
 
+// How a place in the cell changes with each of the parameters.
+fn tangents(cell: Cell, q: vec3f) -> mat3x3f {
+    return mat3x3f(
+        (cell.ku + q.y * cell.kuv + q.z * (cell.kuw + q.y * cell.kuvw)).xyz,
+        (cell.kv + q.x * cell.kuv + q.z * (cell.kvw + q.x * cell.kuvw)).xyz,
+        (cell.kw + q.x * cell.kuw + q.y * (cell.kvw + q.x * cell.kuvw)).xyz,
+    );
+}
+
+// How the parameters change along a displacement; not at all in a cell without volume.
+fn parameters_along(cell: Cell, q: vec3f, displacement: vec3f) -> vec3f {
+    let t = tangents(cell, q);
+    let nu = cross(t[1], t[2]);
+    let determinant = dot(t[0], nu);
+    let scale = select(0.0, 1.0 / determinant, abs(determinant) > 1e-30);
+    let rates = vec3f(dot(nu, displacement), dot(cross(t[2], t[0]), displacement), dot(cross(t[0], t[1]), displacement));
+    return scale * rates;
+}
+
 fn is_inside(q: vec3f) -> bool {
     return all(q >= vec3f(-INSIDE_SLACK)) && all(q <= vec3f(1.0 + INSIDE_SLACK));
 }
@@ -120,13 +139,11 @@ fn solve(cell: Cell, point: vec3f, start: vec3f, enough: f32) -> Solution {
     var previous = 1e30;
     for (var n = 0u; n < NEWTON_LIMIT; n++) {
         let q = s.uvw;
-        let tu = (cell.ku + q.y * cell.kuv + q.z * (cell.kuw + q.y * cell.kuvw)).xyz;
-        let tv = (cell.kv + q.x * cell.kuv + q.z * (cell.kvw + q.x * cell.kuvw)).xyz;
-        let tw = (cell.kw + q.x * cell.kuw + q.y * (cell.kvw + q.x * cell.kuvw)).xyz;
-        let nu = cross(tv, tw);
-        let nv = cross(tw, tu);
-        let nw = cross(tu, tv);
-        let determinant = dot(tu, nu);
+        let t = tangents(cell, q);
+        let nu = cross(t[1], t[2]);
+        let nv = cross(t[2], t[0]);
+        let nw = cross(t[0], t[1]);
+        let determinant = dot(t[0], nu);
         s.iterations = n + 1u;
         if abs(determinant) < 1e-30 {
             // On a collapsed edge; the tangents span a volume again further inside.

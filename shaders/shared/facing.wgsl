@@ -21,6 +21,19 @@ fn face_corner(face: u32, number: u32) -> u32 {
     return first + 2u * second + 4u * side;
 }
 
+// Parameters in the cell of a point on one of its faces.
+fn on_face(face: u32, at: vec2f) -> vec3f {
+    let side = f32(face & 1u);
+    let axis = face >> 1u;
+    if axis == 0u {
+        return vec3f(side, at);
+    }
+    if axis == 1u {
+        return vec3f(at.x, side, at.y);
+    }
+    return vec3f(at, side);
+}
+
 // +1 where the triangles' sense is that of the outward normal in a right-handed cell, else -1.
 fn face_orientation(face: u32) -> f32 {
     let plus = select(-1.0, 1.0, (face & 1u) == 1u);

@@ -6,8 +6,8 @@
 @group(0) @binding(2) var target_image: texture_storage_2d<rgba32float, write>;
 // Pairs of low and high words, see the COUNT constants.
 @group(0) @binding(3) var<storage, read_write> counters: array<atomic<u32>, 24>;
-// What a strategy keeps of each ray of the tile from one dispatch to the next; floats as their bits,
-// for numbers kept as floats may be flushed to zero.
+// What a strategy keeps of each ray of the tile from one dispatch to the next, and behind that the layers of
+// surfaces; floats as their bits, for numbers kept as floats may be flushed to zero.
 @group(0) @binding(4) var<storage, read_write> ray_states: array<vec4u>;
 
 const DONE: f32 = -1.0;
@@ -26,7 +26,8 @@ struct Ray {
     // Distances from the eye between which the ray is kept; none where `leave <= enter`.
     enter: f32,
     leave: f32,
-    // The ray enters through a clip plane, and its section is opaque.
+    // The clip plane through which it enters, or NO_CUT, and whether its section is opaque.
+    cut: u32,
     opaque_cut: bool,
     // The ray starts inside the box: the eye is there, or a clip plane opens it.
     starts_inside: bool,
@@ -39,11 +40,35 @@ fn view_direction(pixel: vec2u) -> vec3f {
     return frame.forward + x * frame.right + y * frame.up;
 }
 
+// Grid-space displacement of a pixel's ray per world-space length.
+fn ray_direction(pixel: vec2u) -> vec3f {
+    let world = normalize(view_direction(pixel));
+    return world.x * frame.grid_from_world_x + world.y * frame.grid_from_world_y + world.z * frame.grid_from_world_z;
+}
+
+// How a point of a ray moves from a pixel to the next one to the right, and to the one below: grid space.
+fn pixel_steps(direction: vec3f, distance: f32) -> mat2x3f {
+    let depth = distance * dot(frame.view_z, direction);
+    let right = 2.0 * depth / f32(frame.width) * frame.right;
+    let down = -2.0 * depth / f32(frame.height) * frame.up;
+    let to_grid = mat3x3f(frame.grid_from_world_x, frame.grid_from_world_y, frame.grid_from_world_z);
+    return mat2x3f(to_grid * right, to_grid * down);
+}
+
+// True on the kept side of all clip planes.
+fn is_kept(point: vec3f) -> bool {
+    for (var n = 0u; n < frame.clip_count; n++) {
+        let plane = frame.clip_planes[n];
+        if dot(plane.xyz, point) + plane.w < 0.0 {
+            return false;
+        }
+    }
+    return true;
+}
+
 // The ray of a pixel, cut to the model's box and the clip planes.
 fn ray_of(pixel: vec2u) -> Ray {
-    let world = normalize(view_direction(pixel));
-    let direction = world.x * frame.grid_from_world_x + world.y * frame.grid_from_world_y
-        + world.z * frame.grid_from_world_z;
+    let direction = ray_direction(pixel);
     let safe = select(direction, vec3f(1e-12), abs(direction) < vec3f(1e-12));
     let a = (frame.box_low - frame.eye) / safe;
     let b = (frame.box_high - frame.eye) / safe;
@@ -76,6 +101,7 @@ fn ray_of(pixel: vec2u) -> Ray {
     let end = min(ceil(box_leave / frame.step - 0.5), floor(clip_leave / frame.step - 0.5));
     ray.count = select(max(0.0, end - ray.first + 1.0), 0.0, ray.leave <= ray.enter);
     ray.starts_inside = ray.leave > ray.enter && clip_enter >= box_enter;
+    ray.cut = cut;
     ray.opaque_cut = ray.starts_inside && cut != NO_CUT && (frame.opaque_cuts >> cut & 1u) == 1u;
     ray.base = frame.eye + (ray.first + 0.5) * frame.step * direction;
     ray.advance = frame.step * direction;

@@ -1,6 +1,8 @@
 // Every struct and constant that host and shaders share; the host's mirrors have the same names.
 
 const MAX_CLIP_PLANES: u32 = 8u;
+// The last one is that of faults without a name.
+const FAULT_COLORS: u32 = 8u;
 
 struct Frame {
     // Grid space relative to the model's origin, file length units.
@@ -52,8 +54,11 @@ struct Tile {
     resume: u32,
     // Loop iterations after which a ray pauses until the next dispatch.
     work_limit: u32,
-    reserved0: u32,
-    reserved1: u32,
+    // Position in the ray states of the layers of surfaces of the picture's part that the tile lies in.
+    layers: u32,
+    part_width: u32,
+    part_origin: vec2u,
+    reserved: vec2u,
 }
 
 struct GridInfo {
@@ -194,6 +199,18 @@ struct Emitter {
     volume: u32,
 }
 
+// A layer of surface points that gets its colors.
+struct PaintInfo {
+    // Linear colors of faults.
+    palette: array<vec4f, FAULT_COLORS>,
+    // Faces that lie on faults.
+    faults: u32,
+    layer: u32,
+    // Rows of the part that are painted.
+    first_row: u32,
+    rows: u32,
+}
+
 // One found point for the probe: cell column and layer, or NOT_FOUND, and (s, t, r) and value.
 struct Found {
     column: u32,
@@ -244,6 +261,16 @@ const PACKED_SHIFT: u32 = 11u;
 const PACKED_COVERAGE: u32 = 31u;
 const PACKED_VALUES: u32 = 2046u;
 const PACKED_GHOST: u32 = 2047u;
+// Points of sheets that a ray meets, at most.
+const SHEET_LAYERS: u32 = 4u;
+// Loop iterations that a point of a surface costs beside its light, about.
+const PAINT_WORK: u32 = 2u;
+const SHEET_OPACITY: f32 = 0.5;
+// Lines along edges: width in pixels, darkness, and pixels from edge to edge between which they come to be seen.
+const EDGE_WIDTH: f32 = 1.5;
+const EDGE_DARKNESS: f32 = 0.85;
+const EDGE_FADE_LOW: f32 = 2.0;
+const EDGE_FADE_HIGH: f32 = 6.0;
 // Counters, each of a low and a high word.
 const COUNTERS: u32 = 12u;
 const COUNT_SAMPLES: u32 = 0u;

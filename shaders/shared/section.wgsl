@@ -1,4 +1,5 @@
 // Where a clip plane opens the model, the cells that it cuts can be shown as an opaque section.
+#import edges
 #import locate
 #import shading
 #import transfer
@@ -17,5 +18,18 @@ fn section_color(ray: Ray) -> vec4f {
         return vec4f(0.0);
     }
     let inside = clamp(location.solution.uvw, vec3f(0.0), vec3f(1.0));
-    return vec4f(shade(transfer(evaluate(location.cell, inside).w).rgb, point, false), 1.0);
+    let color = shade(transfer(evaluate(location.cell, inside).w).rgb, point, false);
+    if !CELL_EDGES {
+        return vec4f(color, 1.0);
+    }
+    let normal = frame.clip_planes[ray.cut].xyz;
+    let steps = pixel_steps(ray.direction, ray.enter);
+    let right = parameters_along(location.cell, inside, on_plane(steps[0], normal, ray.direction));
+    let down = parameters_along(location.cell, inside, on_plane(steps[1], normal, ray.direction));
+    return vec4f(with_edges(color, inside, right, down), 1.0);
+}
+
+// A displacement across a ray, moved along it into a plane that the ray crosses.
+fn on_plane(displacement: vec3f, normal: vec3f, direction: vec3f) -> vec3f {
+    return displacement - dot(normal, displacement) / dot(normal, direction) * direction;
 }

@@ -1,12 +1,13 @@
-//! The boundary faces of the drawn cells, rasterized: where the rays of a tile come in and go out.
+//! Faces of cells by number, and the boundary faces rasterized: where the rays of a tile come in and go out.
 
 use rayon::prelude::*;
 
 use super::device::{Gpu, GpuError};
-use super::frame::{Place, Round};
 use super::grid_upload::GpuGrid;
 use super::pipeline::RasterPipeline;
-use crate::model::Grid;
+use super::round::{Place, Round};
+use crate::model::topology::Face;
+use crate::model::{Dims, Grid, Ijk};
 
 /// Which face a pixel gets; the order is that of the shader's constants.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -22,48 +23,46 @@ pub enum FaceMode {
 const MODES: u32 = 3;
 
 /// Face number + 1 (0 for none) and the bits of the distance from the eye as f32.
-const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Uint;
+pub(super) const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Uint;
 
-/// The list of boundary faces on the device, and the pipeline that draws it.
-pub struct BoundaryFaces {
-    pipeline: RasterPipeline,
-    listed: Option<Listed>,
-}
-
-struct Listed {
+/// Faces by number on the device.
+#[derive(Clone)]
+pub struct FaceList {
     /// Version of the drawn cells that the list was made of.
-    drawn: u64,
-    margin: f32,
-    list: wgpu::Buffer,
-    count: u32,
-    /// By [`FaceMode`].
-    groups: Vec<wgpu::BindGroup>,
+    pub drawn: u64,
+    /// `(column * nk + layer) * 6 + face` of each.
+    pub numbers: wgpu::Buffer,
+    /// How many there are.
+    pub count: u32,
 }
 
-/// What a tile's faces are drawn into.
-pub struct FaceTarget {
-    size: [u32; 2],
-    /// Two words a pixel: face number + 1, and the bits of its distance.
-    pub met: wgpu::TextureView,
-    depth: wgpu::TextureView,
-}
-
-impl BoundaryFaces {
-    /// Compiles the shader.
+impl FaceList {
+    /// A list of the drawn cells that `grid` has now.
     ///
     /// # Errors
-    /// When the driver refuses it.
-    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+    /// When it exceeds what the adapter holds.
+    pub fn new(gpu: &Gpu, grid: &GpuGrid, numbers: &[u32]) -> Result<Self, GpuError> {
         Ok(Self {
-            pipeline: RasterPipeline::new(gpu, "faces", &[FORMAT])?,
-            listed: None,
+            drawn: grid.versions.drawn,
+            numbers: gpu.storage("faces", numbers)?,
+            count: numbers.len() as u32,
         })
     }
 
+    /// Bytes on the device.
+    pub fn bytes(&self) -> u64 {
+        self.numbers.size()
+    }
+}
+
+/// The boundary faces of the drawn cells: one list for all that draw them.
+#[derive(Default)]
+pub struct BoundaryFaces {
+    list: Option<FaceList>,
+}
+
+impl BoundaryFaces {
     /// Lists the faces anew where the drawn cells have changed.
-    ///
-    /// `margin` is how far, in world space, the next entry of a peel may lie before the end of the
-    /// last one.
     ///
     /// # Errors
     /// When the list exceeds what the adapter holds.
@@ -73,39 +72,73 @@ impl BoundaryFaces {
         model: &Grid,
         grid: &GpuGrid,
         drawn: &[bool],
-        margin: f32,
-    ) -> Result<(), GpuError> {
-        let version = grid.versions.drawn;
-        let known = self.listed.take().filter(|l| l.drawn == version);
-        if known.as_ref().is_some_and(|l| l.margin == margin) {
-            self.listed = known;
-            return Ok(());
-        }
-        let (list, count) = match known {
-            Some(known) => (known.list, known.count),
-            None => {
-                let faces = numbers(model, drawn)?;
-                (gpu.storage("boundary faces", &faces)?, faces.len() as u32)
-            }
+    ) -> Result<&FaceList, GpuError> {
+        let known = self.list.take().filter(|l| l.drawn == grid.versions.drawn);
+        let list = match known {
+            Some(known) => known,
+            None => FaceList::new(gpu, grid, &numbers(model, &model.boundary_faces(drawn))?)?,
         };
-        let group = |mode: u32| {
-            let info = gpu.uniform("faces info", &[mode, margin.to_bits()]);
-            let resources = [info.as_entire_binding(), list.as_entire_binding()];
-            gpu.bind(&self.pipeline.own, &resources)
-        };
-        self.listed = Some(Listed {
-            drawn: version,
-            margin,
-            groups: (0..MODES).map(group).collect(),
-            count,
-            list,
-        });
-        Ok(())
+        Ok(self.list.insert(list))
+    }
+}
+
+/// Draws boundary faces.
+pub struct FaceRaster {
+    pipeline: RasterPipeline,
+    bound: Option<Bound>,
+}
+
+struct Bound {
+    list: FaceList,
+    margin: f32,
+    /// By [`FaceMode`].
+    groups: Vec<wgpu::BindGroup>,
+}
+
+/// What a tile's faces are drawn into.
+pub struct FaceTarget {
+    size: [u32; 2],
+    /// Two words a pixel: face number + 1, and the bits of its distance.
+    pub met: wgpu::TextureView,
+    pub(super) depth: wgpu::TextureView,
+}
+
+impl FaceRaster {
+    /// Compiles the shader.
+    ///
+    /// # Errors
+    /// When the driver refuses it.
+    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+        Ok(Self {
+            pipeline: RasterPipeline::new(gpu, "faces", &[FORMAT])?,
+            bound: None,
+        })
     }
 
-    /// Bytes of the list.
-    pub fn bytes(&self) -> u64 {
-        self.listed.as_ref().map_or(0, |l| l.list.size())
+    /// Takes the faces to draw.
+    ///
+    /// `margin` is how far, in world space, the next entry of a peel may lie before the end of the
+    /// last one.
+    pub fn update(&mut self, gpu: &Gpu, faces: Option<&FaceList>, margin: f32) {
+        let is_of = |b: &Bound, f: &FaceList| b.list.drawn == f.drawn && b.margin == margin;
+        let known = self.bound.take();
+        self.bound = faces.map(|faces| match known.filter(|b| is_of(b, faces)) {
+            Some(known) => known,
+            None => self.bind(gpu, faces, margin),
+        });
+    }
+
+    fn bind(&self, gpu: &Gpu, faces: &FaceList, margin: f32) -> Bound {
+        let group = |mode: u32| {
+            let info = gpu.uniform("faces info", &[mode, margin.to_bits()]);
+            let resources = [info.as_entire_binding(), faces.numbers.as_entire_binding()];
+            gpu.bind(&self.pipeline.own, &resources)
+        };
+        Bound {
+            list: faces.clone(),
+            margin,
+            groups: (0..MODES).map(group).collect(),
+        }
     }
 
     /// Records a pass that draws the faces of a tile; nothing is met before [`Self::update`].
@@ -118,10 +151,10 @@ impl BoundaryFaces {
         place: Place,
     ) {
         let mut pass = round.raster(encoder, &target.met, &target.depth, place);
-        if let Some(listed) = &self.listed {
+        if let Some(bound) = &self.bound {
             pass.set_pipeline(&self.pipeline.pipeline);
-            pass.set_bind_group(3, &listed.groups[mode as usize], &[]);
-            pass.draw(0..6 * listed.count, 0..1);
+            pass.set_bind_group(3, &bound.groups[mode as usize], &[]);
+            pass.draw(0..6 * bound.list.count, 0..1);
         }
     }
 }
@@ -143,14 +176,17 @@ impl FaceTarget {
     }
 }
 
-fn texture(gpu: &Gpu, size: [u32; 2], format: wgpu::TextureFormat) -> wgpu::TextureView {
+pub(super) fn texture(gpu: &Gpu, size: [u32; 2], format: wgpu::TextureFormat) -> wgpu::TextureView {
     let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING;
     let texture = gpu.flat_texture("faces", size, format, usage);
     texture.create_view(&wgpu::TextureViewDescriptor::default())
 }
 
-/// `(column * nk + layer) * 6 + face` of each boundary face.
-fn numbers(model: &Grid, drawn: &[bool]) -> Result<Vec<u32>, GpuError> {
+/// Numbers of faces as shaders know them: `(column * nk + layer) * 6 + face`.
+///
+/// # Errors
+/// When 32 bits do not number all faces of the grid.
+pub fn numbers(model: &Grid, faces: &[(Ijk, Face)]) -> Result<Vec<u32>, GpuError> {
     let dims = model.dims();
     let needed = 6 * dims.cells() as u64;
     if needed >= u64::from(u32::MAX) {
@@ -160,9 +196,13 @@ fn numbers(model: &Grid, drawn: &[bool]) -> Result<Vec<u32>, GpuError> {
             limit: u64::from(u32::MAX),
         });
     }
-    let number = |(cell, face): &(crate::model::Ijk, crate::model::topology::Face)| {
-        let column = cell.i + dims.ni * cell.j;
-        ((column * dims.nk + cell.k) * 6 + *face as usize) as u32
-    };
-    Ok(model.boundary_faces(drawn).par_iter().map(number).collect())
+    let numbers = faces
+        .par_iter()
+        .map(|(cell, face)| number(dims, *cell, *face));
+    Ok(numbers.collect())
+}
+
+fn number(dims: Dims, cell: Ijk, face: Face) -> u32 {
+    let column = cell.i + dims.ni * cell.j;
+    ((column * dims.nk + cell.k) * 6 + face as usize) as u32
 }

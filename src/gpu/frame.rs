@@ -8,7 +8,8 @@ use glam::DVec3;
 use super::device::{Gpu, GpuError};
 use super::grid_upload::GpuGrid;
 use super::layout::{self, Frame, MAX_CLIP_PLANES, Tile};
-use super::pipeline::Pipeline;
+use super::round::Round;
+use super::surfaces::SurfacePainter;
 use super::target;
 use super::tiles::{self, Pace, Rect};
 use crate::picture::Image;
@@ -43,7 +44,7 @@ pub struct FrameStats {
     pub recovered_rays: u64,
     /// Rays that could not be set right.
     pub lost_rays: u64,
-    /// Loop iterations of all rays, about.
+    /// Loop iterations of all rays and surface points, about.
     pub work: u64,
     /// Times that a ray paused within what it was doing.
     pub pauses: u64,
@@ -53,17 +54,34 @@ pub struct FrameStats {
     pub target_bytes: u64,
 }
 
+/// What a frame is made with.
+pub struct Drawing<'a> {
+    /// Bind group 2: transfer function and light.
+    pub light: wgpu::BindGroup,
+    /// What finds the surfaces, where some are shown.
+    pub surfaces: Option<&'a mut SurfacePainter>,
+    /// What casts the rays.
+    pub strategy: &'a mut dyn RenderStrategy,
+}
+
 /// Makes frames with one strategy.
 #[derive(Default)]
 pub struct FrameRenderer {
     pace: Pace,
+    /// How much of surfaces' colors fits into a submission.
+    painting: Pace,
 }
 
 /// Loop iterations after which a ray pauses at the latest: on software adapters within what llvmpipe
 /// allows a group of eight rays.
 const WORK_LIMIT: [u32; 2] = [6_000, 100_000];
+/// Loop iterations that rasterizing the surfaces costs a pixel, about; it is done at once for a part of the
+/// picture that a submission has room for.
+const PART_WORK: u64 = 2;
 /// Bytes of the shader's counters: low and high words.
 const COUNTERS: u64 = 8 * layout::COUNTERS as u64;
+/// Bytes of a surface point: distance and color.
+const LAYER_BYTES: u64 = 16;
 /// Bytes of two timestamps, in front of the counters in the staging buffer.
 const TICKS: u64 = 16;
 
@@ -77,124 +95,8 @@ struct Bound<'a> {
     queries: Option<(wgpu::QuerySet, wgpu::Buffer)>,
 }
 
-/// One round of a tile, as a strategy records it: one submission that takes every ray further.
-pub struct Round<'a> {
-    /// The device.
-    pub gpu: &'a Gpu,
-    /// Pixels of the tile.
-    pub size: [u32; 2],
-    /// True in the tile's first round, before which its rays have no state.
-    pub starts: bool,
-    /// Rays of the tile that have not ended.
-    pub rays_left: u32,
-    /// Rays that paused within what they were doing in the round before.
-    pub paused: u64,
-    /// Of these, rays that lost their way.
-    pub strayed: u64,
-    groups: &'a [wgpu::BindGroup; 3],
-    queries: Option<&'a wgpu::QuerySet>,
-}
-
-/// Where a pass stands in its round; the first and the last one take the time.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Place {
-    /// The round's only pass.
-    Only,
-    /// The first of several.
-    First,
-    /// Neither first nor last.
-    Between,
-    /// The last of several.
-    Last,
-}
-
-impl Round<'_> {
-    /// Query set with the indices that a pass writes its begin and end to.
-    fn times(&self, place: Place) -> Option<(&wgpu::QuerySet, Option<u32>, Option<u32>)> {
-        let begin = matches!(place, Place::Only | Place::First).then_some(0);
-        let end = matches!(place, Place::Only | Place::Last).then_some(1);
-        let set = self.queries.filter(|_| begin.is_some() || end.is_some())?;
-        Some((set, begin, end))
-    }
-
-    /// Records a dispatch that covers `size` invocations; `own` is bind group 3.
-    pub fn compute(
-        &self,
-        encoder: &mut wgpu::CommandEncoder,
-        pipeline: &Pipeline,
-        own: Option<&wgpu::BindGroup>,
-        size: [u32; 2],
-        place: Place,
-    ) {
-        let times = self.times(place);
-        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
-            label: Some("rays"),
-            timestamp_writes: times.map(|(query_set, begin, end)| {
-                wgpu::ComputePassTimestampWrites {
-                    query_set,
-                    beginning_of_pass_write_index: begin,
-                    end_of_pass_write_index: end,
-                }
-            }),
-        });
-        pass.set_pipeline(&pipeline.pipeline);
-        for (n, group) in (0..).zip(self.groups.iter().chain(own)) {
-            pass.set_bind_group(n, group, &[]);
-        }
-        let [x, y, _] = pipeline.groups_for([size[0], size[1], 1]);
-        pass.dispatch_workgroups(x, y, 1);
-    }
-
-    /// Begins a render pass over the tile, its bind groups set; the caller sets the pipeline.
-    pub fn raster<'e>(
-        &self,
-        encoder: &'e mut wgpu::CommandEncoder,
-        color: &wgpu::TextureView,
-        depth: &wgpu::TextureView,
-        place: Place,
-    ) -> wgpu::RenderPass<'e> {
-        let times = self.times(place);
-        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("faces"),
-            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: color,
-                depth_slice: None,
-                resolve_target: None,
-                ops: wgpu::Operations {
-                    load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
-                    store: wgpu::StoreOp::Store,
-                },
-            })],
-            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-                view: depth,
-                depth_ops: Some(wgpu::Operations {
-                    load: wgpu::LoadOp::Clear(1.0),
-                    store: wgpu::StoreOp::Discard,
-                }),
-                stencil_ops: None,
-            }),
-            timestamp_writes: times.map(|(query_set, begin, end)| {
-                wgpu::RenderPassTimestampWrites {
-                    query_set,
-                    beginning_of_pass_write_index: begin,
-                    end_of_pass_write_index: end,
-                }
-            }),
-            occlusion_query_set: None,
-            multiview_mask: None,
-        });
-        let [width, height] = self.size.map(|n| n as f32);
-        pass.set_viewport(0.0, 0.0, width, height, 0.0, 1.0);
-        pass.set_scissor_rect(0, 0, self.size[0], self.size[1]);
-        for (n, group) in (0..).zip(self.groups) {
-            pass.set_bind_group(n, group, &[]);
-        }
-        pass
-    }
-}
-
 impl FrameRenderer {
-    /// Renders a view; `None` where `progress` cancelled it. `light` is bind group 2.
+    /// Renders a view; `None` where `progress` cancelled it.
     ///
     /// # Errors
     /// When the picture is too large for the adapter or the device reports an error.
@@ -202,12 +104,16 @@ impl FrameRenderer {
         &mut self,
         gpu: &Gpu,
         grid: &GpuGrid,
-        light: wgpu::BindGroup,
-        strategy: &mut dyn RenderStrategy,
+        drawing: Drawing<'_>,
         view: &View,
         progress: &dyn Fn(f64) -> bool,
     ) -> Result<Option<(Image, FrameStats)>, GpuError> {
         let start = Instant::now();
+        let Drawing {
+            light,
+            mut surfaces,
+            strategy,
+        } = drawing;
         let limit = gpu.device.limits().max_texture_dimension_2d;
         if view.size.iter().any(|&n| n > limit) {
             return Err(GpuError::Unsuitable {
@@ -218,8 +124,11 @@ impl FrameRenderer {
         let target = target::create(gpu, view.size);
         let counters = gpu.scratch("counters", COUNTERS);
         let pixels = u64::from(view.size[0]) * u64::from(view.size[1]);
-        let state_bytes = strategy.ray_state_bytes() * pixels.min(tiles::MAX_AREA);
-        let states = gpu.scratch("ray states", state_bytes);
+        let most = pixels.min(tiles::MAX_AREA);
+        let state_bytes = strategy.ray_state_bytes() * most;
+        let layers = surfaces.as_ref().map_or(0, |s| s.layers());
+        let layer_bytes = LAYER_BYTES * u64::from(layers) * most;
+        let states = gpu.scratch("ray states", state_bytes + layer_bytes);
         let frame = gpu.uniform("frame", &frame_uniform(grid, view));
         let tile = gpu.uniform("tile", &Tile::zeroed());
         let texture = target.create_view(&wgpu::TextureViewDescriptor::default());
@@ -247,9 +156,25 @@ impl FrameRenderer {
             ..FrameStats::default()
         };
         let least_work = strategy.least_work();
-        let draw = |rect, pace: &mut Pace| bound.draw(&mut *strategy, rect, pace, &mut stats);
-        if !tiles::cover(view.size, &mut self.pace, least_work, draw, progress)? {
-            return Ok(None);
+        let mut done = 0;
+        for part in bound.parts(view.size, surfaces.is_some(), &self.painting) {
+            let part = Part {
+                rect: part,
+                layers: (state_bytes / LAYER_BYTES) as u32,
+            };
+            if let Some(surfaces) = &mut surfaces {
+                bound.find_surfaces(surfaces, part, &mut self.painting, &mut stats)?;
+            }
+            let draw = |rect, pace: &mut Pace| {
+                bound.draw(&mut *strategy, part.tile(rect), pace, &mut stats)
+            };
+            let area = part.rect.area();
+            let so_far =
+                |fraction| progress((done as f64 + fraction * area as f64) / pixels as f64);
+            if !tiles::cover(part.rect, &mut self.pace, least_work, draw, &so_far)? {
+                return Ok(None);
+            }
+            done += area;
         }
         let pixels = target::read(gpu, &target, view.size)?;
         stats.wall = start.elapsed();
@@ -263,28 +188,92 @@ impl FrameRenderer {
     }
 }
 
+/// A part of the picture whose surfaces are found at once.
+#[derive(Clone, Copy)]
+struct Part {
+    rect: Rect,
+    /// Position of its layers in the ray states.
+    layers: u32,
+}
+
+impl Part {
+    /// A tile of it.
+    fn tile(self, rect: Rect) -> Tile {
+        Tile {
+            origin: rect.origin,
+            size: rect.size,
+            layers: self.layers,
+            part_width: self.rect.size[0],
+            part_origin: self.rect.origin,
+            ..Tile::zeroed()
+        }
+    }
+}
+
 impl Bound<'_> {
+    /// The parts of a picture: all of it at once where no surfaces are to be found.
+    fn parts(&self, size: [u32; 2], has_surfaces: bool, pace: &Pace) -> Vec<Rect> {
+        let whole = Rect {
+            origin: [0, 0],
+            size,
+        };
+        match has_surfaces {
+            true => tiles::parts(whole, pace.area(PART_WORK)),
+            false => vec![whole],
+        }
+    }
+
+    /// Finds the surface points of a part, and then their colors in as many submissions as these need.
+    fn find_surfaces(
+        &self,
+        surfaces: &mut SurfacePainter,
+        part: Part,
+        pace: &mut Pace,
+        stats: &mut FrameStats,
+    ) -> Result<(), GpuError> {
+        let uniform = part.tile(part.rect);
+        let round = self.round(&uniform, 0);
+        self.submit(&uniform, |encoder| surfaces.peel(&round, encoder), stats)?;
+        let [width, height] = part.rect.size;
+        let row = u64::from(width) * surfaces.work();
+        for layer in 0..surfaces.layers() {
+            let mut next = 0;
+            while next < height {
+                let count = pace.pieces(row).clamp(1, u64::from(height - next)) as u32;
+                let rows = next..next + count;
+                let record = |encoder: &mut _| surfaces.paint(layer, &rows, &round, encoder);
+                let before = stats.work;
+                let took = self.submit(&uniform, record, stats)?;
+                pace.learn(took, stats.work - before);
+                next += count;
+            }
+        }
+        Ok(())
+    }
+
     /// Makes one tile, in as many submissions as its rays need.
     fn draw(
         &self,
         strategy: &mut dyn RenderStrategy,
-        rect: Rect,
+        tile: Tile,
         pace: &mut Pace,
         stats: &mut FrameStats,
     ) -> Result<(), GpuError> {
-        let mut uniform = Tile {
-            origin: rect.origin,
-            size: rect.size,
-            ..Tile::zeroed()
-        };
-        let goal = stats.finished_rays + rect.area();
+        let mut uniform = tile;
+        let goal = stats.finished_rays + u64::from(tile.size[0]) * u64::from(tile.size[1]);
         let most = WORK_LIMIT[usize::from(!self.gpu.is_software())];
         let mut before = *stats;
         while stats.finished_rays < goal {
             let left = goal - stats.finished_rays;
             uniform.work_limit = pace.work_limit(left, strategy.least_work(), most);
             let now = *stats;
-            let took = self.submit(&mut *strategy, &uniform, left as u32, &before, stats)?;
+            let round = Round {
+                paused: now.pauses - before.pauses,
+                strayed: now.recovered_rays - before.recovered_rays,
+                ..self.round(&uniform, left as u32)
+            };
+            let record = |encoder: &mut _| strategy.encode(&round, encoder);
+            let took = self.submit(&uniform, record, stats)?;
             pace.learn(took, stats.work - now.work);
             before = now;
             uniform.resume = 1;
@@ -292,30 +281,32 @@ impl Bound<'_> {
         Ok(())
     }
 
-    /// Submits one dispatch, waits for it and brings the statistics up to date.
+    /// A round of a tile, before anything is known of its rays.
+    fn round(&self, uniform: &Tile, rays_left: u32) -> Round<'_> {
+        Round {
+            gpu: self.gpu,
+            size: uniform.size,
+            starts: uniform.resume == 0,
+            rays_left,
+            paused: 0,
+            strayed: 0,
+            groups: &self.groups,
+            queries: self.queries.as_ref().map(|(set, _)| set),
+        }
+    }
+
+    /// Submits what `record` records, waits for it and brings the statistics up to date.
     fn submit(
         &self,
-        strategy: &mut dyn RenderStrategy,
         uniform: &Tile,
-        rays_left: u32,
-        before: &FrameStats,
+        record: impl FnOnce(&mut wgpu::CommandEncoder),
         stats: &mut FrameStats,
     ) -> Result<Duration, GpuError> {
         let gpu = self.gpu;
         gpu.queue
             .write_buffer(&self.tile, 0, bytemuck::bytes_of(uniform));
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        let round = Round {
-            gpu,
-            size: uniform.size,
-            starts: uniform.resume == 0,
-            rays_left,
-            paused: stats.pauses - before.pauses,
-            strayed: stats.recovered_rays - before.recovered_rays,
-            groups: &self.groups,
-            queries: self.queries.as_ref().map(|(set, _)| set),
-        };
-        strategy.encode(&round, &mut encoder);
+        record(&mut encoder);
         if let Some((set, resolve)) = &self.queries {
             encoder.resolve_query_set(set, 0..2, resolve, 0);
             encoder.copy_buffer_to_buffer(resolve, 0, &self.staging, 0, TICKS);

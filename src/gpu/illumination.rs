@@ -125,6 +125,7 @@ pub struct Illumination {
     info: wgpu::Buffer,
     emitters: wgpu::Buffer,
     sections: wgpu::Buffer,
+    work: u32,
     field: Option<Field>,
     pyramid: Option<Pyramid>,
     /// Opacities without any blur, for rays over cones.
@@ -211,6 +212,7 @@ impl Illumination {
             info: gpu.uniform("lighting", &none),
             emitters: gpu.storage::<Emitter>("emitters", &[bytemuck::Zeroable::zeroed()])?,
             sections: gpu.storage::<[f32; 4]>("cone sections", &[])?,
+            work: 0,
             field: None,
             pyramid: None,
             opacities: None,
@@ -235,6 +237,7 @@ impl Illumination {
     ) -> Result<bool, GpuError> {
         self.times = LightTimes::default();
         if !Shading::of(&view.lighting).is_on() {
+            self.work = 0;
             self.forget();
             return Ok(true);
         }
@@ -395,6 +398,7 @@ impl Illumination {
         self.info = gpu.uniform("lighting", &info);
         self.emitters = gpu.storage("emitters", &emitters.emitters)?;
         self.sections = gpu.storage("cone sections", &emitters.sections)?;
+        self.work = emitters.work;
         Ok(())
     }
 
@@ -571,6 +575,11 @@ impl Illumination {
             self.gradients.as_ref().map(|g| &g.volume),
         ];
         volumes.iter().flatten().map(|v| v.shape.bytes()).sum()
+    }
+
+    /// Loop iterations that the light of a sample costs, about.
+    pub fn work(&self) -> u32 {
+        self.work
     }
 
     /// The extinction pyramid, where there is one.

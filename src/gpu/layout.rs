@@ -46,8 +46,10 @@ pub struct Tile {
     pub size: [u32; 2],
     pub resume: u32,
     pub work_limit: u32,
-    pub reserved0: u32,
-    pub reserved1: u32,
+    pub layers: u32,
+    pub part_width: u32,
+    pub part_origin: [u32; 2],
+    pub reserved: [u32; 2],
 }
 
 /// Sizes of the grid and its acceleration grid.
@@ -176,6 +178,18 @@ pub struct Emitter {
     pub volume: u32,
 }
 
+/// A layer of surface points that gets its colors.
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+#[allow(missing_docs, reason = "described where the shader reads them")]
+pub struct PaintInfo {
+    pub palette: [[f32; 4]; FAULT_COLORS],
+    pub faults: u32,
+    pub layer: u32,
+    pub first_row: u32,
+    pub rows: u32,
+}
+
 /// One answer of the probe.
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 #[repr(C)]
@@ -247,6 +261,10 @@ pub const PACKED_COVERAGE: u32 = 31;
 pub const PACKED_VALUES: u32 = 2046;
 /// Value of a packed voxel in an inactive cell.
 pub const PACKED_GHOST: u32 = 2047;
+/// Points of sheets that a ray meets, at most.
+pub const SHEET_LAYERS: u32 = 4;
+/// Loop iterations that a point of a surface costs beside its light, about.
+pub const PAINT_WORK: u32 = 2;
 /// Counters, each of a low and a high word.
 pub const COUNTERS: u32 = 12;
 /// Counter of the samples inside drawn cells.
@@ -269,5 +287,7 @@ pub const COUNT_RECOVERED: u32 = 7;
 pub const COUNT_LOST: u32 = 8;
 /// Counter of rays that paused within what they were doing.
 pub const COUNT_PAUSED: u32 = 9;
+/// Colors of faults: of named ones in turn, and of those without a name.
+pub const FAULT_COLORS: usize = crate::scene::surfaces::PALETTE.len() + 1;
 /// Clip planes at most.
 pub const MAX_CLIP_PLANES: usize = crate::scene::resolve::MAX_CLIP_PLANES;

@@ -13,14 +13,17 @@ pub mod pipeline;
 pub mod probe;
 pub mod pyramids;
 pub mod resample;
+pub mod round;
 pub mod shader;
 pub mod slabs;
+pub mod surfaces;
 mod target;
 pub mod tiles;
 pub mod transfer_tables;
 pub mod volume;
 
 pub use device::{Gpu, GpuError};
-pub use frame::{FrameRenderer, FrameStats, Place, Round};
+pub use frame::{Drawing, FrameRenderer, FrameStats};
 pub use grid_upload::{GpuBytes, GpuGrid, Versions};
 pub use pipeline::{Pipeline, RasterPipeline, flag};
+pub use round::{Place, Round};

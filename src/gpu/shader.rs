@@ -20,6 +20,10 @@ sources! {
     "topology" => "shared/topology.wgsl",
     "section" => "shared/section.wgsl",
     "facing" => "shared/facing.wgsl",
+    "raster" => "shared/raster.wgsl",
+    "projection" => "shared/projection.wgsl",
+    "surfaces" => "shared/surfaces.wgsl",
+    "edges" => "shared/edges.wgsl",
     "light" => "shared/light.wgsl",
     "cones" => "shared/cones.wgsl",
     "cone_rays" => "shared/cone_rays.wgsl",
@@ -30,6 +34,8 @@ sources! {
     "faces" => "faces.wgsl",
     "illuminate" => "illuminate.wgsl",
     "libc" => "libc.wgsl",
+    "paint" => "paint.wgsl",
+    "peel" => "peel.wgsl",
     "plts" => "plts.wgsl",
     "probe" => "probe.wgsl",
     "pyramids" => "pyramids.wgsl",
@@ -38,11 +44,13 @@ sources! {
 }
 
 /// The stems of all shaders that are entry points of a pipeline.
-pub const ENTRIES: [&str; 9] = [
+pub const ENTRIES: [&str; 11] = [
     "extinction",
     "faces",
     "illuminate",
     "libc",
+    "paint",
+    "peel",
     "plts",
     "probe",
     "pyramids",

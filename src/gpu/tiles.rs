@@ -58,7 +58,7 @@ impl Pace {
     }
 
     /// Pixels of the next tile, at most, where a ray makes `least` loop iterations in a submission.
-    fn area(&self, least: u64) -> u64 {
+    pub fn area(&self, least: u64) -> u64 {
         self.pieces(least).clamp(256, MAX_AREA)
     }
 
@@ -79,7 +79,19 @@ impl Pace {
     }
 }
 
-/// Calls `draw` for tiles that cover a picture, as large as the pace allows.
+/// Parts of at most so many pixels that cover a rectangle.
+pub fn parts(whole: Rect, most: u64) -> Vec<Rect> {
+    match whole.area() > most.max(1) {
+        true => whole
+            .halves()
+            .into_iter()
+            .flat_map(|half| parts(half, most))
+            .collect(),
+        false => vec![whole],
+    }
+}
+
+/// Calls `draw` for tiles that cover a rectangle, as large as the pace allows.
 ///
 /// `least` is the loop iterations that each ray makes in a submission at least. `progress` is told the
 /// fraction done and returns false to cancel; the result is false then.
@@ -87,16 +99,12 @@ impl Pace {
 /// # Errors
 /// The first error of `draw`.
 pub fn cover<E>(
-    size: [u32; 2],
+    whole: Rect,
     pace: &mut Pace,
     least: u64,
     mut draw: impl FnMut(Rect, &mut Pace) -> Result<(), E>,
     progress: &dyn Fn(f64) -> bool,
 ) -> Result<bool, E> {
-    let whole = Rect {
-        origin: [0, 0],
-        size,
-    };
     let (mut done, mut left) = (0, vec![whole]);
     while let Some(rect) = left.pop() {
         if rect.area() > pace.area(least) {
@@ -117,6 +125,29 @@ pub fn cover<E>(
 mod tests {
     use super::*;
 
+    fn at_origin(size: [u32; 2]) -> Rect {
+        Rect {
+            origin: [0, 0],
+            size,
+        }
+    }
+
+    #[test]
+    fn ok_parts_are_small_and_cover_each_pixel_once() {
+        let whole = Rect {
+            origin: [7, 3],
+            size: [333, 257],
+        };
+        let parts = parts(whole, 1000);
+        assert!(parts.len() > 80 && parts.iter().all(|p| p.area() <= 1000));
+        assert_eq!(parts.iter().map(|p| p.area()).sum::<u64>(), whole.area());
+        let inside = |p: &Rect, axis: usize| {
+            let [low, high] = [whole.origin[axis], whole.origin[axis] + whole.size[axis]];
+            p.origin[axis] >= low && p.origin[axis] + p.size[axis] <= high
+        };
+        assert!(parts.iter().all(|p| inside(p, 0) && inside(p, 1)));
+    }
+
     #[test]
     fn tiles_cover_each_pixel_once() {
         for size in [[1, 1], [1000, 3], [333, 257]] {
@@ -133,7 +164,7 @@ mod tests {
                 Ok(())
             };
             assert_eq!(
-                cover(size, &mut Pace::default(), 500, draw, &|_| true),
+                cover(at_origin(size), &mut Pace::default(), 500, draw, &|_| true),
                 Ok(true)
             );
             assert!(hits.iter().all(|&h| h == 1));
@@ -153,7 +184,13 @@ mod tests {
             Ok(())
         };
         assert_eq!(
-            cover([1000, 500], &mut Pace::default(), 500, slow, &|f| f < 0.9),
+            cover(
+                at_origin([1000, 500]),
+                &mut Pace::default(),
+                500,
+                slow,
+                &|f| f < 0.9
+            ),
             Ok(false)
         );
         assert!(

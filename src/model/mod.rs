@@ -3,6 +3,7 @@
 pub mod corner_point;
 mod depth_lists;
 pub mod derived;
+pub mod faults;
 pub mod fields;
 pub mod grid;
 pub mod ids;
@@ -11,6 +12,7 @@ pub mod synthetic;
 pub mod topology;
 
 pub use corner_point::Hexahedron;
+pub use faults::FaultFaces;
 pub use fields::{CellField, Statistics, VertexField};
 pub use grid::{Grid, GridInput, ModelError, Pillar};
 pub use ids::{ActiveIndex, CellIndex, Dims, Ijk};

@@ -116,13 +116,31 @@ impl Grid {
             Behind::Neighbor(next) => !is_drawn(next),
             Behind::Displaced(_) | Behind::Nothing => true,
         };
+        self.faces_where(drawn, is_open)
+    }
+
+    /// The lateral faces of the cells that `drawn` (by active index) names behind which an active cell
+    /// of equal k is displaced. A face between two drawn cells is there twice, once for each.
+    pub fn fault_faces_of(&self, drawn: &[bool]) -> Vec<(Ijk, Face)> {
+        let is_lateral = |face: Face| !matches!(face, Face::KMinus | Face::KPlus);
+        self.faces_where(drawn, |ijk, face| {
+            is_lateral(face) && matches!(self.behind(ijk, face), Behind::Displaced(_))
+        })
+    }
+
+    fn faces_where(
+        &self,
+        drawn: &[bool],
+        holds: impl Fn(Ijk, Face) -> bool + Sync,
+    ) -> Vec<(Ijk, Face)> {
+        let holds = &holds;
         let cells = self.active_cells().par_iter().zip(drawn);
         cells
             .filter(|(_, drawn)| **drawn)
             .flat_map_iter(|(&cell, _)| {
                 let ijk = self.dims().ijk(cell);
-                let open = Face::ALL.into_iter().filter(move |&f| is_open(ijk, f));
-                open.map(move |face| (ijk, face))
+                let faces = Face::ALL.into_iter().filter(move |&f| holds(ijk, f));
+                faces.map(move |face| (ijk, face))
             })
             .collect()
     }

@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::locate::{Located, Locator};
+use super::surfaces::SurfaceFaces;
 use crate::model::corner_point::weights;
 use crate::model::{CellField, Grid, VertexField};
 use crate::scene::ghosts::{self, shown_grid};
@@ -55,6 +56,20 @@ pub struct Integrator<'a> {
     pub(super) view: &'a View,
     locator: Locator,
     pub(super) vertices: Option<VertexField>,
+    pub(super) surfaces: SurfaceFaces,
+}
+
+/// What a ray has gathered, front to back.
+struct Sum {
+    color: DVec3,
+    transmittance: f64,
+}
+
+impl Sum {
+    fn add(&mut self, color: DVec3, alpha: f64) {
+        self.color += self.transmittance * alpha * color;
+        self.transmittance *= 1.0 - alpha;
+    }
 }
 
 /// What is drawn at a point.
@@ -71,6 +86,7 @@ impl<'a> Integrator<'a> {
     ///
     /// `grid` is the case's; where the view shows inactive cells, it brings its own.
     pub fn new(grid: &'a Grid, view: &'a View) -> Self {
+        let surfaces = SurfaceFaces::new(grid, view);
         let grid = shown_grid(grid, view.ghosts.as_ref());
         let by_vertex = view.interpolation == Interpolation::Vertex;
         Self {
@@ -78,6 +94,7 @@ impl<'a> Integrator<'a> {
             view,
             locator: Locator::new(grid),
             vertices: by_vertex.then(|| VertexField::new(grid, &view.field)),
+            surfaces,
         }
     }
 
@@ -90,27 +107,33 @@ impl<'a> Integrator<'a> {
         if let Some(rgb) = self.section(ray, [enter, leave]) {
             return [rgb[0], rgb[1], rgb[2], 1.0];
         }
-        let mut color = [0.0; 3];
-        let mut transmittance = 1.0;
+        let mut layers = self.layers(ray).into_iter().peekable();
+        let mut sum = Sum {
+            color: DVec3::ZERO,
+            transmittance: 1.0,
+        };
         let mut number = (enter / step - 0.5).ceil().max(0.0);
-        while (number + 0.5) * step <= leave && transmittance >= self.view.early_termination {
-            let position = ray.origin + (number + 0.5) * step * ray.direction;
+        while (number + 0.5) * step <= leave && sum.transmittance >= self.view.early_termination {
+            let distance = (number + 0.5) * step;
+            while let Some(layer) = layers.next_if(|layer| layer.distance <= distance) {
+                sum.add(layer.color, layer.alpha);
+            }
+            let position = ray.origin + distance * ray.direction;
             if let Some((sample, extinction)) = self.absorbing(position) {
                 let alpha = 1.0 - (-extinction * step).exp();
-                let rgb = self.lit(position, &sample);
-                for (sum, channel) in color.iter_mut().zip(rgb) {
-                    *sum += transmittance * alpha * channel;
-                }
-                transmittance *= 1.0 - alpha;
+                sum.add(self.lit(position, &sample).into(), alpha);
             }
             number += 1.0;
         }
-        let [red, green, blue] = color;
-        [red, green, blue, 1.0 - transmittance]
+        for layer in layers {
+            sum.add(layer.color, layer.alpha);
+        }
+        let [red, green, blue] = sum.color.to_array();
+        [red, green, blue, 1.0 - sum.transmittance]
     }
 
     /// True on the kept side of every clip plane.
-    fn is_kept(&self, position: DVec3) -> bool {
+    pub(super) fn is_kept(&self, position: DVec3) -> bool {
         let mut planes = self.view.clip.iter();
         planes.all(|plane| (position - plane.point).dot(plane.normal) >= 0.0)
     }
@@ -137,7 +160,8 @@ impl<'a> Integrator<'a> {
         }
         let sample = self.sample(position)?;
         sample.value?;
-        Some(self.lit(position, &sample))
+        let color = self.lit(position, &sample);
+        Some(self.with_section_edges(color, ray, plane, &sample))
     }
 
     /// What absorbs light at a point of world space, and its extinction there.
@@ -165,15 +189,16 @@ impl<'a> Integrator<'a> {
 
     /// What is drawn at a point of world space, clip planes aside.
     pub(super) fn sample(&self, position: DVec3) -> Option<Sample> {
-        let located = self.drawn_at(position)?;
-        let value = value_at(
-            self.grid,
-            &located,
-            &self.view.field,
-            self.vertices.as_ref(),
-        );
-        let shown = value.is_some() || self.view.ghosts.is_some();
-        shown.then_some(Sample { located, value })
+        let sample = self.sample_in(self.drawn_at(position)?);
+        let shown = sample.value.is_some() || self.view.ghosts.is_some();
+        shown.then_some(sample)
+    }
+
+    /// What is at a place in a cell.
+    pub(super) fn sample_in(&self, located: Located) -> Sample {
+        let (field, vertices) = (&self.view.field, self.vertices.as_ref());
+        let value = value_at(self.grid, &located, field, vertices);
+        Sample { located, value }
     }
 
     /// The drawn cell at a point of world space.

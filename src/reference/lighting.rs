@@ -29,13 +29,24 @@ struct Surface {
 impl Integrator<'_> {
     /// Linear color of a sample of a primary ray; what it is by itself where nothing shades it.
     pub(super) fn lit(&self, point: DVec3, sample: &Sample) -> [f64; 3] {
+        let valued = sample.value.map(|_| sample);
+        self.shaded(point, self.unlit(sample), valued)
+    }
+
+    /// A linear color at a point of a primary ray as light makes it. `valued` is the sample there, of what
+    /// carries a number.
+    pub(super) fn shaded(
+        &self,
+        point: DVec3,
+        color: [f64; 3],
+        valued: Option<&Sample>,
+    ) -> [f64; 3] {
         let lighting = &self.view.lighting;
-        let color = self.unlit(sample);
-        if lighting.is_off() || (lighting.exact_colors && sample.value.is_some()) {
+        if lighting.is_off() || (lighting.exact_colors && valued.is_some()) {
             return color;
         }
         let mut random = random(lighting.seed, point);
-        let surface = self.surface(sample);
+        let surface = self.surface(valued);
         let viewer = (self.view.camera.eye - point).normalize_or_zero();
         let mut diffuse = DVec3::splat(lighting.ambient * self.occlusion(point, &mut random));
         let mut specular = DVec3::ZERO;
@@ -76,9 +87,8 @@ impl Integrator<'_> {
         part * self.transmittance(point, direction, &light.cone, reach, random)
     }
 
-    fn surface(&self, sample: &Sample) -> Surface {
-        let lighting = &self.view.lighting;
-        let shades = lighting.blinn_phong.then_some(sample);
+    fn surface(&self, valued: Option<&Sample>) -> Surface {
+        let shades = valued.filter(|_| self.view.lighting.blinn_phong);
         let gradient = shades.and_then(|s| self.gradient(s)).unwrap_or_default();
         let change = gradient.length() * self.view.transfer.reference_length;
         Surface {

@@ -2,7 +2,8 @@
 //!
 //! Nothing here is shared with the device: cells are found by a tree of boxes and Newton's method,
 //! every sample of the lattice inside the model's box is located anew, and nothing is remembered
-//! from one sample to the next. Light is found by many rays over a cone from every sample.
+//! from one sample to the next. Light is found by many rays over a cone from every sample. Rays meet
+//! surfaces where they meet the triangles of faces, found by a tree of boxes too.
 
 mod cell;
 mod cone;
@@ -10,6 +11,7 @@ mod integrate;
 mod lighting;
 mod locate;
 mod render;
+mod surfaces;
 #[cfg(test)]
 mod tests;
 mod tree;

@@ -66,20 +66,32 @@ impl Tree {
     /// Calls `visit` with the number of every box in a leaf whose bounds contain the point, in no
     /// particular order: all boxes that contain it, and perhaps some that do not.
     pub fn near(&self, point: DVec3, visit: &mut impl FnMut(usize)) {
+        let contains = |[low, high]: [DVec3; 2]| (point.cmpge(low) & point.cmple(high)).all();
+        self.meeting(&contains, visit);
+    }
+
+    /// Calls `visit` with the number of every box in a leaf whose bounds, and those of all above it, meet
+    /// something: all boxes that do, and perhaps some that do not.
+    pub fn meeting(&self, meets: &impl Fn([DVec3; 2]) -> bool, visit: &mut impl FnMut(usize)) {
         if !self.nodes.is_empty() {
-            self.descend(0, point, visit);
+            self.descend(0, meets, visit);
         }
     }
 
-    fn descend(&self, node: usize, point: DVec3, visit: &mut impl FnMut(usize)) {
+    fn descend(
+        &self,
+        node: usize,
+        meets: &impl Fn([DVec3; 2]) -> bool,
+        visit: &mut impl FnMut(usize),
+    ) {
         let Node { bounds, content } = &self.nodes[node];
-        if !(point.cmpge(bounds[0]) & point.cmple(bounds[1])).all() {
+        if !meets(*bounds) {
             return;
         }
         match *content {
             Content::Children(second) => {
-                self.descend(node + 1, point, visit);
-                self.descend(second, point, visit);
+                self.descend(node + 1, meets, visit);
+                self.descend(second, meets, visit);
             }
             Content::Boxes(start, end) => {
                 for &number in &self.order[start..end] {

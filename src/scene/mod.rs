@@ -7,6 +7,7 @@ mod half_turns;
 pub mod lighting;
 pub mod resolve;
 mod settings;
+pub mod surfaces;
 
 use serde::{Deserialize, Serialize};
 
@@ -16,6 +17,7 @@ pub use half_turns::{NamedView, TurnAxis, half_turns};
 pub use lighting::{LightMode, Lighting, LightingSpec};
 pub use resolve::{ClipPlane, SceneError, View, resolve};
 pub use settings::{ClipSpec, CutFace, Integration, LibcSettings, SrgSettings};
+pub use surfaces::{Hull, Surfaces};
 
 /// A scene as users write it. Unknown fields are errors; absent ones have defaults.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -243,11 +245,13 @@ pub enum Inactive {
 pub struct Show {
     /// Inactive cells.
     pub inactive: Inactive,
-    /// Fault surfaces.
+    /// The boundary of the drawn cells.
+    pub hull: Hull,
+    /// Faults as half-transparent sheets.
     pub faults: bool,
     /// Wells.
     pub wells: bool,
-    /// Cell edges.
+    /// Edges of the cells on hull, faults and opaque sections.
     pub cell_edges: bool,
     /// Box around the model with orientation axes.
     pub r#box: bool,
@@ -259,6 +263,7 @@ impl Default for Show {
     fn default() -> Self {
         Self {
             inactive: Inactive::Hidden,
+            hull: Hull::Hidden,
             faults: false,
             wells: true,
             cell_edges: false,

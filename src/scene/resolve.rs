@@ -9,11 +9,11 @@ use super::ghosts::{Ghosts, shown_grid};
 use super::lighting::{self, Lighting};
 use super::{
     Camera, CameraSpec, ClipSpec, ColorSpec, CutFace, Filter, Inactive, Interpolation,
-    LibcSettings, Scene, SrgSettings, StepSpec,
+    LibcSettings, Scene, SrgSettings, StepSpec, Surfaces,
 };
 use crate::case::{Case, CaseError};
 use crate::gpu::volume::Shape;
-use crate::model::{CellField, Dims, Ijk, Spaces};
+use crate::model::{CellField, Dims, FaultFaces, Ijk, Spaces};
 use crate::strategies::StrategyKind;
 use crate::transfer::{TransferFunction, presets};
 
@@ -95,6 +95,10 @@ pub struct View {
     pub ghosts: Option<Arc<Ghosts>>,
     /// Planes that cut parts away.
     pub clip: Vec<ClipPlane>,
+    /// Surfaces in the volume.
+    pub surfaces: Surfaces,
+    /// Which faces lie on faults that have a name.
+    pub named_faults: Arc<FaultFaces>,
     /// Occlusion and lights.
     pub lighting: Lighting,
     /// Settings of the cell-to-cell strategy.
@@ -146,7 +150,10 @@ pub const MAX_CLIP_PLANES: usize = 8;
 /// # Errors
 /// When a value is out of its range, or asks for what the case or this version does not have.
 pub fn resolve(scene: &Scene, case: &Case) -> Result<View, SceneError> {
-    refuse_later_work(scene)?;
+    if scene.version != 1 {
+        let problem = format!("{} is not known; this is version 1", scene.version);
+        return Err(wrong("version", problem));
+    }
     let active_bounds = case.grid.bounds().ok_or(SceneError::Empty)?;
     let exaggeration = match scene.vertical_exaggeration {
         Some(v) => positive("vertical_exaggeration", v)?,
@@ -200,6 +207,8 @@ pub fn resolve(scene: &Scene, case: &Case) -> Result<View, SceneError> {
         drawn: Arc::new(drawn),
         ghosts,
         clip: clip(&scene.clip)?,
+        surfaces: Surfaces::from(&scene.show),
+        named_faults: case.fault_faces.clone(),
         lighting: lighting::resolve(
             &scene.lighting,
             box_edges(&box_corners),
@@ -230,31 +239,6 @@ fn sampling_step(scene: &Scene, edges: DVec3, bounds: [DVec3; 2]) -> Result<f64,
     }
     let problem = format!("{step} is too small; use at least {least:.3e}");
     Err(wrong("sampling_step", problem))
-}
-
-fn refuse_later_work(scene: &Scene) -> Result<(), SceneError> {
-    if scene.version != 1 {
-        return Err(wrong(
-            "version",
-            format!("{} is not known; this is version 1", scene.version),
-        ));
-    }
-    let later = [
-        (
-            "show.faults",
-            scene.show.faults,
-            "fault surfaces are not supported yet; use false",
-        ),
-        (
-            "show.cell_edges",
-            scene.show.cell_edges,
-            "cell edges are not supported yet; use false",
-        ),
-    ];
-    match later.into_iter().find(|l| l.1) {
-        Some((field, _, problem)) => Err(wrong(field, problem)),
-        None => Ok(()),
-    }
 }
 
 fn srg(scene: &Scene, dims: Dims) -> Result<SrgSettings, SceneError> {

@@ -5,20 +5,18 @@
 //! and exit of a cell (campagnolo-2021, 4.1.2). Cost: one step a cell, whatever the number of samples;
 //! one drawing of the faces a peel.
 
-use super::{Preparation, RenderStrategy};
-use crate::gpu::faces::{BoundaryFaces, FaceMode, FaceTarget};
-use crate::gpu::grid_upload::Constants;
-use crate::gpu::illumination::Shading;
-use crate::gpu::{Gpu, GpuBytes, GpuError, Pipeline, Place, Round, flag, tiles};
+use super::{Common, Preparation, RenderStrategy};
+use crate::gpu::faces::{FaceMode, FaceRaster, FaceTarget};
+use crate::gpu::{Gpu, GpuError, Pipeline, Place, Round, flag, tiles};
 use crate::scene::{Integration, Interpolation, LibcSettings};
 
-/// The strategy with its compiled shaders and the list of faces.
+/// The strategy with its compiled shaders.
 pub struct Libc {
     begin: Pipeline,
     walk: Pipeline,
     set_right: Pipeline,
     variant: Variant,
-    faces: BoundaryFaces,
+    faces: FaceRaster,
     target: Option<FaceTarget>,
     /// Rays left before and after a round, in turn.
     rays: [wgpu::Buffer; 2],
@@ -30,15 +28,14 @@ pub struct Libc {
 struct Variant {
     settings: LibcSettings,
     interpolation: Interpolation,
-    grid: Constants,
-    shading: Shading,
+    common: Common,
 }
 
 impl Variant {
     fn compile(self, gpu: &Gpu) -> Result<Pipeline, GpuError> {
         // Many rays a sample are more than a segment can wait for.
         let by_segment =
-            self.settings.integration == Integration::Segments && !self.shading.casts_rays();
+            self.settings.integration == Integration::Segments && !self.common.casts_rays();
         let own = [
             ("CROSSES", flag(self.settings.cross_faults)),
             ("BY_SEGMENT", flag(by_segment)),
@@ -47,13 +44,8 @@ impl Variant {
                 flag(self.interpolation == Interpolation::Vertex),
             ),
         ];
-        let constants: Vec<_> = own.into_iter().chain(self.shared()).collect();
+        let constants: Vec<_> = own.into_iter().chain(self.common.pairs()).collect();
         Pipeline::variant(gpu, "libc", "walk", &constants)
-    }
-
-    /// Constants that all entry points have.
-    fn shared(self) -> impl Iterator<Item = (&'static str, f64)> {
-        self.grid.pairs().into_iter().chain(self.shading.pairs())
     }
 }
 
@@ -66,15 +58,14 @@ impl Libc {
         let variant = Variant {
             settings: LibcSettings::default(),
             interpolation: Interpolation::Vertex,
-            grid: Constants::default(),
-            shading: Shading::default(),
+            common: Common::default(),
         };
         Ok(Self {
             begin: Pipeline::variant(gpu, "libc", "begin", &[])?,
             walk: variant.compile(gpu)?,
             set_right: Pipeline::variant(gpu, "libc", "set_right", &[])?,
             variant,
-            faces: BoundaryFaces::new(gpu)?,
+            faces: FaceRaster::new(gpu)?,
             target: None,
             rays: [0, 1].map(|_| gpu.scratch("rays left", 4 * tiles::MAX_AREA)),
             rays_count: gpu.scratch("number of rays left", 16),
@@ -101,18 +92,21 @@ impl RenderStrategy for Libc {
         32
     }
 
+    fn draws_faces(&self) -> bool {
+        true
+    }
+
     fn prepare(&mut self, what: &Preparation<'_>) -> Result<bool, GpuError> {
         let variant = Variant {
             settings: what.view.libc,
             interpolation: what.view.interpolation,
-            grid: what.grid.constants(),
-            shading: Shading::of(&what.view.lighting),
+            common: Common::of(what),
         };
         if variant != self.variant {
-            if (variant.grid, variant.shading) != (self.variant.grid, self.variant.shading) {
-                let located: Vec<_> = variant.shared().collect();
-                self.begin = Pipeline::variant(what.gpu, "libc", "begin", &located)?;
-                self.set_right = Pipeline::variant(what.gpu, "libc", "set_right", &located)?;
+            if variant.common != self.variant.common {
+                let common: Vec<_> = variant.common.pairs().collect();
+                self.begin = Pipeline::variant(what.gpu, "libc", "begin", &common)?;
+                self.set_right = Pipeline::variant(what.gpu, "libc", "set_right", &common)?;
             }
             self.walk = variant.compile(what.gpu)?;
             self.variant = variant;
@@ -120,19 +114,10 @@ impl RenderStrategy for Libc {
         let margin = match what.grid.layers_cross {
             // Cells may overlap anywhere: every entry counts.
             true => f32::MAX,
-            // The triangles of both sides of a fault face lie apart by less than this.
-            false => 2.0 * what.view.sampling_step as f32,
+            false => what.view.fault_gap() as f32,
         };
-        self.faces
-            .update(what.gpu, what.model, what.grid, &what.view.drawn, margin)?;
+        self.faces.update(what.gpu, what.faces, margin);
         Ok(true)
-    }
-
-    fn bytes(&self) -> GpuBytes {
-        GpuBytes {
-            geometry: self.faces.bytes(),
-            ..GpuBytes::default()
-        }
     }
 
     fn encode(&mut self, round: &Round<'_>, encoder: &mut wgpu::CommandEncoder) {

@@ -4,9 +4,12 @@ pub mod libc;
 pub mod plts;
 pub mod srg;
 
-use crate::gpu::{Gpu, GpuBytes, GpuError, GpuGrid, Round};
+use crate::gpu::faces::FaceList;
+use crate::gpu::grid_upload;
+use crate::gpu::illumination::Shading;
+use crate::gpu::{Gpu, GpuBytes, GpuError, GpuGrid, Round, surfaces};
 use crate::model::Grid;
-use crate::scene::View;
+use crate::scene::{Surfaces, View};
 
 /// What a strategy prepares from.
 pub struct Preparation<'a> {
@@ -18,8 +21,41 @@ pub struct Preparation<'a> {
     pub grid: &'a GpuGrid,
     /// What is looked at.
     pub view: &'a View,
+    /// The boundary faces of the drawn cells, for a strategy that draws them.
+    pub faces: Option<&'a FaceList>,
     /// Told the fraction done; returns false to cancel.
     pub progress: &'a dyn Fn(f64) -> bool,
+}
+
+/// Options that are constants of every strategy's pipelines.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Common {
+    grid: grid_upload::Constants,
+    shading: Shading,
+    surfaces: Surfaces,
+}
+
+impl Common {
+    /// What grid and view ask for.
+    pub fn of(what: &Preparation<'_>) -> Self {
+        Self {
+            grid: what.grid.constants(),
+            shading: Shading::of(&what.view.lighting),
+            surfaces: what.view.surfaces,
+        }
+    }
+
+    /// True where samples cast rays over cones.
+    fn casts_rays(self) -> bool {
+        self.shading.casts_rays()
+    }
+
+    /// Names and values of the shaders' `override` constants.
+    pub fn pairs(self) -> impl Iterator<Item = (&'static str, f64)> {
+        let [grid, shading] = [self.grid.pairs().to_vec(), self.shading.pairs().to_vec()];
+        let surfaces = surfaces::constants(self.surfaces);
+        grid.into_iter().chain(shading).chain(surfaces)
+    }
 }
 
 /// What a strategy gives to a frame.
@@ -35,6 +71,11 @@ pub trait RenderStrategy {
     /// fewer, so that tiles are large.
     fn least_work(&self) -> u64 {
         500
+    }
+
+    /// True where it draws boundary faces: then they are listed before it prepares.
+    fn draws_faces(&self) -> bool {
+        false
     }
 
     /// Brings up to date what the strategy keeps beside the grid; false where it was cancelled.

@@ -5,16 +5,14 @@
 //! acceleration grid where the topology ends (campagnolo-2021, 4.1.3). Cost: about one Newton iteration
 //! a sample inside a cell, a point location at each entry into the model.
 
-use super::{Preparation, RenderStrategy};
-use crate::gpu::grid_upload::Constants;
-use crate::gpu::illumination::Shading;
+use super::{Common, Preparation, RenderStrategy};
 use crate::gpu::{Gpu, GpuError, Pipeline, Place, Round};
 
 /// The strategy with its compiled shader.
 pub struct Plts {
     pipeline: Pipeline,
     /// Constants that it was compiled with.
-    constants: (Constants, Shading),
+    constants: Common,
 }
 
 impl Plts {
@@ -25,7 +23,7 @@ impl Plts {
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         Ok(Self {
             pipeline: Pipeline::new(gpu, "plts")?,
-            constants: Default::default(),
+            constants: Common::default(),
         })
     }
 }
@@ -36,10 +34,9 @@ impl RenderStrategy for Plts {
     }
 
     fn prepare(&mut self, what: &Preparation<'_>) -> Result<bool, GpuError> {
-        let constants = (what.grid.constants(), Shading::of(&what.view.lighting));
+        let constants = Common::of(what);
         if constants != self.constants {
-            let (grid, shading) = constants;
-            let pairs: Vec<_> = grid.pairs().into_iter().chain(shading.pairs()).collect();
+            let pairs: Vec<_> = constants.pairs().collect();
             self.pipeline = Pipeline::variant(what.gpu, "plts", "main", &pairs)?;
             self.constants = constants;
         }

@@ -6,10 +6,8 @@
 //! or drawn cells change. Faults and thin layers are blurred by about a voxel. Pyramids over the volume
 //! shorten the way (volumetric-ray-tracing survey, 8).
 
-use super::{Preparation, RenderStrategy};
-use crate::gpu::faces::{BoundaryFaces, FaceMode, FaceTarget};
-use crate::gpu::grid_upload::Constants;
-use crate::gpu::illumination::Shading;
+use super::{Common, Preparation, RenderStrategy};
+use crate::gpu::faces::{FaceMode, FaceRaster, FaceTarget};
 use crate::gpu::pyramids::{Bricks, Classifier, Limits, PyramidMaker};
 use crate::gpu::resample::Resampler;
 use crate::gpu::slabs::Slabs;
@@ -20,7 +18,7 @@ use crate::model::Dims;
 use crate::scene::{SrgSettings, View};
 use crate::transfer::TransferFunction;
 
-/// The strategy with its compiled shaders, the volume, and the list of faces.
+/// The strategy with its compiled shaders, and the volume.
 pub struct Srg {
     begin: Pipeline,
     march: Pipeline,
@@ -28,7 +26,7 @@ pub struct Srg {
     resampler: Resampler,
     pyramids: PyramidMaker,
     sampler: wgpu::Sampler,
-    faces: BoundaryFaces,
+    faces: FaceRaster,
     /// For the first entries and the last exits.
     targets: [Option<FaceTarget>; 2],
     pace: Pace,
@@ -106,8 +104,7 @@ struct Variant {
     by_brick: bool,
     long_steps: bool,
     roulette: f64,
-    grid: Constants,
-    shading: Shading,
+    common: Common,
 }
 
 impl Variant {
@@ -119,20 +116,18 @@ impl Variant {
             ("LONG_STEPS", flag(self.long_steps)),
             ("ROULETTE", self.roulette),
         ];
-        let shared = self.grid.pairs().into_iter().chain(self.shading.pairs());
-        let constants: Vec<_> = own.into_iter().chain(shared).collect();
+        let constants: Vec<_> = own.into_iter().chain(self.common.pairs()).collect();
         Pipeline::variant(gpu, "srg", entry, &constants)
     }
 
-    fn of(settings: &SrgSettings, sections: bool, grid: Constants, shading: Shading) -> Self {
+    fn of(settings: &SrgSettings, sections: bool, common: Common) -> Self {
         Self {
             sections,
             weighted: settings.weighted,
             by_brick: !limits(settings, 1.0).are_never(),
             long_steps: settings.even > 0.0 || settings.thin > 0.0,
             roulette: settings.roulette,
-            grid,
-            shading,
+            common,
         }
     }
 }
@@ -143,12 +138,7 @@ impl Srg {
     /// # Errors
     /// When the driver refuses one.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        let variant = Variant::of(
-            &SrgSettings::default(),
-            false,
-            Constants::default(),
-            Shading::default(),
-        );
+        let variant = Variant::of(&SrgSettings::default(), false, Common::default());
         Ok(Self {
             begin: variant.compile(gpu, "begin")?,
             march: variant.compile(gpu, "march")?,
@@ -161,7 +151,7 @@ impl Srg {
                 mipmap_filter: wgpu::MipmapFilterMode::Nearest,
                 ..Default::default()
             }),
-            faces: BoundaryFaces::new(gpu)?,
+            faces: FaceRaster::new(gpu)?,
             targets: [None, None],
             pace: Pace::default(),
             fills: 0,
@@ -261,23 +251,21 @@ impl RenderStrategy for Srg {
         12
     }
 
+    fn draws_faces(&self) -> bool {
+        true
+    }
+
     fn prepare(&mut self, what: &Preparation<'_>) -> Result<bool, GpuError> {
         let view = what.view;
         let settings = useful(view);
         let sections = view.clip.iter().any(|plane| plane.opaque);
-        let variant = Variant::of(
-            &settings,
-            sections,
-            what.grid.constants(),
-            Shading::of(&view.lighting),
-        );
+        let variant = Variant::of(&settings, sections, Common::of(what));
         if variant != self.variant {
             self.begin = variant.compile(what.gpu, "begin")?;
             self.march = variant.compile(what.gpu, "march")?;
             self.variant = variant;
         }
-        self.faces
-            .update(what.gpu, what.model, what.grid, &view.drawn, 0.0)?;
+        self.faces.update(what.gpu, what.faces, 0.0);
         let budget = settings.budget_bytes(what.gpu.is_software());
         let limit = what.gpu.device.limits().max_texture_dimension_3d;
         let ghosts = view.ghosts.is_some();
@@ -288,7 +276,6 @@ impl RenderStrategy for Srg {
     fn bytes(&self) -> GpuBytes {
         let volume = |f: &Filled| f.volume.shape.bytes() + f.bricks.bytes();
         GpuBytes {
-            geometry: self.faces.bytes(),
             resampled: self.filled.as_ref().map_or(0, volume),
             ..GpuBytes::default()
         }

@@ -16,6 +16,8 @@ pub struct Shape<'a> {
     pub value: &'a dyn Fn([usize; 3]) -> f64,
     /// True for an active cell.
     pub active: &'a dyn Fn([usize; 3]) -> bool,
+    /// Keywords behind the others.
+    pub keywords: &'a str,
 }
 
 impl Default for Shape<'_> {
@@ -30,6 +32,7 @@ impl Default for Shape<'_> {
             depth: &|[_, _, k], [_, _, dk]| 1000.0 + 20.0 * (k + dk) as f64,
             value: &|_| 0.5,
             active: &|_| true,
+            keywords: "",
         }
     }
 }
@@ -63,6 +66,7 @@ impl Shape<'_> {
             write!(text, "{} ", (self.value)(ijk)).unwrap();
         }
         text += "/\n";
+        text += self.keywords;
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("shape.grdecl");
         std::fs::write(&path, text).unwrap();

@@ -1,0 +1,73 @@
+//! Which lateral faces of cells lie on which fault, as decks say.
+
+use std::collections::HashMap;
+use std::ops::RangeInclusive;
+
+use super::ids::Ijk;
+use super::topology::Face;
+
+/// Layers of a column, and the number of the fault that their faces lie on.
+type Layers = (RangeInclusive<usize>, usize);
+
+/// Numbers of the faults that lateral faces lie on.
+///
+/// **Invariants**: a face is the same seen from both of its cells; where two faults claim it, the first
+/// one has it.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct FaultFaces {
+    /// By column (i, j) and axis (0 for i, 1 for j) of its face toward the larger index.
+    faces: HashMap<(usize, usize, usize), Vec<Layers>>,
+}
+
+impl FaultFaces {
+    /// Adds a face of all cells in a box (zero-based, both ends in it) to a fault. Upper and lower faces
+    /// are no part of a fault here, nor are those at the grid's outside.
+    pub fn add(&mut self, fault: usize, [i, j, k]: [RangeInclusive<usize>; 3], face: Face) {
+        for i in i {
+            for j in j.clone() {
+                if let Some(key) = key(i, j, face) {
+                    self.faces.entry(key).or_default().push((k.clone(), fault));
+                }
+            }
+        }
+    }
+
+    /// Number of the fault that a face of a cell lies on.
+    pub fn fault_of(&self, cell: Ijk, face: Face) -> Option<usize> {
+        let layers = self.faces.get(&key(cell.i, cell.j, face)?)?;
+        let found = layers.iter().find(|(k, _)| k.contains(&cell.k));
+        found.map(|(_, fault)| *fault)
+    }
+}
+
+fn key(i: usize, j: usize, face: Face) -> Option<(usize, usize, usize)> {
+    Some(match face {
+        Face::IPlus => (i, j, 0),
+        Face::IMinus => (i.checked_sub(1)?, j, 0),
+        Face::JPlus => (i, j, 1),
+        Face::JMinus => (i, j.checked_sub(1)?, 1),
+        Face::KMinus | Face::KPlus => return None,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_face_is_found_from_both_of_its_cells() {
+        let mut faults = FaultFaces::default();
+        faults.add(4, [2..=3, 5..=5, 0..=1], Face::IPlus);
+        faults.add(7, [4..=4, 5..=5, 1..=2], Face::IMinus);
+        faults.add(9, [0..=0, 0..=0, 0..=9], Face::JMinus);
+        let at = |i, j, k, face| faults.fault_of(Ijk { i, j, k }, face);
+        assert_eq!(at(2, 5, 0, Face::IPlus), Some(4));
+        assert_eq!(at(3, 5, 0, Face::IMinus), Some(4));
+        // The first has what both claim.
+        assert_eq!(at(3, 5, 1, Face::IPlus), Some(4));
+        assert_eq!(at(3, 5, 2, Face::IPlus), Some(7));
+        assert_eq!(at(2, 5, 2, Face::IPlus), None);
+        assert_eq!(at(2, 5, 0, Face::JPlus), None);
+        assert_eq!(at(0, 0, 0, Face::JMinus), None);
+    }
+}
