@@ -103,6 +103,11 @@ fn structs_agree() {
         depth_low,
         depth_scale
     );
+}
+
+#[test]
+fn structs_of_volumes_agree() {
+    let m = &module();
     agrees!(
         m,
         VolumeInfo,

@@ -113,6 +113,8 @@ mod tests {
             },
             sampling_step: 1.0,
             early_termination: 0.0,
+            surfaces: crate::scene::Surfaces::default(),
+            named_faults: std::sync::Arc::default(),
             drawn: Vec::new().into(),
             clip: Vec::new(),
             ghosts: None,
