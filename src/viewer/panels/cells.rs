@@ -3,7 +3,7 @@
 use eframe::egui::{self, Ui};
 
 use super::About;
-use crate::scene::Inactive;
+use crate::scene::{Hull, Inactive};
 use crate::viewer::action::Action;
 
 pub fn show(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
@@ -54,6 +54,17 @@ fn beside(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
         true => Inactive::Ghost,
         false => Inactive::Hidden,
     };
+    let mut hull = show.hull == Hull::Opaque;
+    ui.checkbox(&mut hull, "Opaque hull")
+        .on_hover_text("The outer faces of the drawn cells, in the property's colors");
+    show.hull = match hull {
+        true => Hull::Opaque,
+        false => Hull::Hidden,
+    };
+    ui.checkbox(&mut show.faults, "Fault surfaces")
+        .on_hover_text("Half-transparent sheets, a color for each name in FAULTS");
+    ui.checkbox(&mut show.cell_edges, "Edges of cells")
+        .on_hover_text("On the hull, fault surfaces and opaque sections");
     ui.checkbox(&mut show.r#box, "Box and axes");
     ui.checkbox(&mut show.legend, "Legend and title");
     if show != about.scene.show {
