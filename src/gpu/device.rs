@@ -244,6 +244,16 @@ impl Gpu {
         })
     }
 
+    /// A sampler that interpolates within a level.
+    pub fn linear_sampler(&self) -> wgpu::Sampler {
+        self.device.create_sampler(&wgpu::SamplerDescriptor {
+            mag_filter: wgpu::FilterMode::Linear,
+            min_filter: wgpu::FilterMode::Linear,
+            mipmap_filter: wgpu::MipmapFilterMode::Nearest,
+            ..Default::default()
+        })
+    }
+
     /// A texture of two dimensions and one level.
     pub fn flat_texture(
         &self,

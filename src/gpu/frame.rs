@@ -412,7 +412,7 @@ fn frame_uniform(grid: &GpuGrid, view: &View) -> Frame {
 }
 
 /// Linear color and extinction of inactive cells.
-fn ghost(view: &View) -> [f32; 4] {
+pub(super) fn ghost(view: &View) -> [f32; 4] {
     let [r, g, b] = ghosts::COLOR.map(|v| linear_from_srgb(v) as f32);
     [r, g, b, view.transfer.extinction_of(ghosts::OPACITY) as f32]
 }

@@ -11,6 +11,7 @@ use glam::{DVec3, Vec3};
 use super::cones::ConeTable;
 use super::device::{Gpu, GpuError};
 use super::extinction::{Blurs, Pyramid};
+use super::frame::{clip_planes, ghost};
 use super::grid_upload::{GpuGrid, Versions};
 use super::layout::{self, Emitter, LightingInfo, Slab};
 use super::pipeline::{Pipeline, flag};
@@ -19,8 +20,8 @@ use super::slabs::Slabs;
 use super::tiles::Pace;
 use super::transfer_tables::TransferTables;
 use super::volume::{Shape, Volume, Voxel};
+use crate::scene::View;
 use crate::scene::lighting::{Cone, LightMode, Lighting, SPOT_EDGE, Source};
-use crate::scene::{View, ghosts};
 
 /// Options of the light that are constants of the strategies' pipelines.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -201,12 +202,7 @@ impl Illumination {
             blurs: Blurs::default(),
             illuminate: Pipeline::new(gpu, "illuminate")?,
             gradient: Pipeline::variant(gpu, "illuminate", "gradient", &[])?,
-            sampler: gpu.device.create_sampler(&wgpu::SamplerDescriptor {
-                mag_filter: wgpu::FilterMode::Linear,
-                min_filter: wgpu::FilterMode::Linear,
-                mipmap_filter: wgpu::MipmapFilterMode::Nearest,
-                ..Default::default()
-            }),
+            sampler: gpu.linear_sampler(),
             pace: Pace::default(),
             nothing: [Voxel::Single, Voxel::Packed, Voxel::Quad].map(|v| Volume::new(gpu, one(v))),
             info: gpu.uniform("lighting", &none),
@@ -284,11 +280,7 @@ impl Illumination {
             .field
             .statistics()
             .map_or([0.0, 1.0], |s| [s.min, s.max]);
-        let mut slabs = Slabs {
-            gpu,
-            pace: &mut self.pace,
-            progress,
-        };
+        let mut slabs = Slabs::new(gpu, &mut self.pace, progress);
         let done = self
             .resampler
             .fill(&mut slabs, grid, &volume, range, view.interpolation)?;
@@ -318,8 +310,8 @@ impl Illumination {
             number: self.made.fields,
             position: position(view, field.range),
             sigma: view.lighting.sigma(gpu.is_software()),
-            ghost: ghost(view),
-            clip_planes: super::frame::clip_planes(grid, view),
+            ghost: ghost(view)[3],
+            clip_planes: clip_planes(grid, view),
             clip_count: view.clip.len() as u32,
             bounds: grid.bounds,
             extent: view.lighting.extent,
@@ -331,11 +323,7 @@ impl Illumination {
                 .is_some_and(|p| p.is_of(&source, &view.transfer))
         };
         let group = self.bind(gpu, tables);
-        let mut slabs = Slabs {
-            gpu,
-            pace: &mut self.pace,
-            progress,
-        };
+        let mut slabs = Slabs::new(gpu, &mut self.pace, progress);
         if !shading.casts_rays() {
             self.opacities = None;
         } else if is_stale(&self.opacities) {
@@ -449,11 +437,7 @@ impl Illumination {
             lights.made[n] = None;
             let from = n as u32 * size[2];
             let which = gpu.uniform("emitter", &[at as u32, from, 0, 0]);
-            let mut slabs = Slabs {
-                gpu,
-                pace: &mut self.pace,
-                progress,
-            };
+            let mut slabs = Slabs::new(gpu, &mut self.pace, progress);
             let work = u64::from(cone_work(&emitter));
             let range = [from, from + size[2]];
             let illuminate = &self.illuminate;
@@ -513,11 +497,7 @@ impl Illumination {
         let volume = Volume::new(gpu, shape);
         let group = self.bind(gpu, tables);
         let which = gpu.uniform("emitter", &[0u32; 4]);
-        let mut slabs = Slabs {
-            gpu,
-            pace: &mut self.pace,
-            progress,
-        };
+        let mut slabs = Slabs::new(gpu, &mut self.pace, progress);
         let gradient = &self.gradient;
         let done = volume.make_level(&mut slabs, 0, GRADIENT_WORK, &|encoder, slab, voxels| {
             run(gpu, gradient, encoder, slab, &which, voxels, &group, 1);
@@ -636,14 +616,7 @@ fn check_size(gpu: &Gpu, size: [u32; 3]) -> Result<(), GpuError> {
 
 /// Transfer-function position of a value that is stored as a part of `range`: offset and factor.
 fn position(view: &View, range: [f64; 2]) -> [f32; 2] {
-    let scale = f64::from(layout::per_unit(view.transfer.range));
-    let low = (range[0] - view.transfer.range[0]) * scale;
-    [low as f32, ((range[1] - range[0]) * scale) as f32]
-}
-
-/// Extinction of inactive cells.
-fn ghost(view: &View) -> f32 {
-    view.transfer.extinction_of(ghosts::OPACITY) as f32
+    view.transfer.positions(range).map(|v| v as f32)
 }
 
 /// Lighting space: the grid's axes from the low corner of the box, in units of the finest level's standard

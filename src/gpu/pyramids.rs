@@ -159,11 +159,7 @@ impl PyramidMaker {
             weigh: both("weigh", "WEIGHTED")?,
             reduce: entry("reduce")?,
             classify: entry("classify")?,
-            sampler: gpu.device.create_sampler(&wgpu::SamplerDescriptor {
-                mag_filter: wgpu::FilterMode::Linear,
-                min_filter: wgpu::FilterMode::Linear,
-                ..Default::default()
-            }),
+            sampler: gpu.linear_sampler(),
         })
     }
 
@@ -317,12 +313,11 @@ pub struct Classifier<'a> {
 
 impl Classifier<'_> {
     fn info(&self, volume: &Volume, bricks: &Bricks) -> BricksInfo {
-        let [low, high] = self.transfer.range;
-        let scale = if high > low { 1.0 / (high - low) } else { 0.0 };
+        let [low, scale] = self.transfer.positions(self.range);
         let limits = self.limits;
         BricksInfo {
-            position_low: (scale * (self.range[0] - low)) as f32,
-            position_scale: (scale * (self.range[1] - self.range[0])) as f32,
+            position_low: low as f32,
+            position_scale: scale as f32,
             empty: limits.empty as f32,
             even: limits.even as f32,
             thin: limits.thin as f32,

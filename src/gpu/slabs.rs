@@ -14,7 +14,16 @@ pub struct Slabs<'a> {
     pub progress: &'a dyn Fn(f64) -> bool,
 }
 
-impl Slabs<'_> {
+impl<'a> Slabs<'a> {
+    /// Work at a pace that it goes on learning.
+    pub fn new(gpu: &'a Gpu, pace: &'a mut Pace, progress: &'a dyn Fn(f64) -> bool) -> Self {
+        Self {
+            gpu,
+            pace,
+            progress,
+        }
+    }
+
     /// Submits `record` for slabs that cover `size`; false where it was cancelled.
     ///
     /// A slab has whole rows, at most `deepest` slices, and at most `most_rows` rows; each element of it

@@ -145,12 +145,7 @@ impl Srg {
             variant,
             resampler: Resampler::new(gpu, false)?,
             pyramids: PyramidMaker::new(gpu)?,
-            sampler: gpu.device.create_sampler(&wgpu::SamplerDescriptor {
-                mag_filter: wgpu::FilterMode::Linear,
-                min_filter: wgpu::FilterMode::Linear,
-                mipmap_filter: wgpu::MipmapFilterMode::Nearest,
-                ..Default::default()
-            }),
+            sampler: gpu.linear_sampler(),
             faces: FaceRaster::new(gpu)?,
             targets: [None, None],
             pace: Pace::default(),

@@ -30,6 +30,14 @@ impl TransferFunction {
         }
     }
 
+    /// Position of a value that is given as a part of `range`, not clamped: offset, and factor on the part.
+    /// Both are 0 where this function's own range is empty.
+    pub fn positions(&self, range: [f64; 2]) -> [f64; 2] {
+        let [low, high] = self.range;
+        let scale = if high > low { 1.0 / (high - low) } else { 0.0 };
+        [scale * (range[0] - low), scale * (range[1] - range[0])]
+    }
+
     /// Color at a position in sRGB; interpolation happens in sRGB, as color maps are published.
     pub fn srgb(&self, position: f64) -> [f64; 3] {
         let (a, b, f) = segment(&self.color, position);
