@@ -1,6 +1,10 @@
 //! A case: one grid, its properties and time steps. Values come through [`Source`], on demand.
 
+mod cache;
+
 use std::sync::Arc;
+
+pub use cache::FieldCache;
 
 use crate::model::derived::Derived;
 use crate::model::{CellField, FaultFaces, Grid};
@@ -150,6 +154,8 @@ pub struct Case {
     pub properties: Vec<Property>,
     /// Gives the values.
     pub source: Box<dyn Source>,
+    /// Fields used last.
+    pub cache: FieldCache,
 }
 
 impl Case {
@@ -175,13 +181,23 @@ impl Case {
         })
     }
 
-    /// Values of a property at a step (ignored for static ones).
+    /// Values of a property at a step (ignored for static ones); those used last are kept.
     ///
     /// `name` may be a difference to a base step, such as `PRESSURE-PRESSURE@0`.
     ///
     /// # Errors
     /// When the property or step does not exist or its file cannot be read.
-    pub fn field(&self, name: &str, step: usize) -> Result<CellField, CaseError> {
+    pub fn field(&self, name: &str, step: usize) -> Result<Arc<CellField>, CaseError> {
+        let step = if self.is_dynamic(name) { step } else { 0 };
+        if let Some(known) = self.cache.find(name, step) {
+            return Ok(known);
+        }
+        let field = Arc::new(self.computed(name, step)?);
+        self.cache.keep(name, step, &field);
+        Ok(field)
+    }
+
+    fn computed(&self, name: &str, step: usize) -> Result<CellField, CaseError> {
         if let Some((now, base, base_step)) = difference(name) {
             let base_step = self.step(base_step)?;
             let now = self.field(now, step)?;

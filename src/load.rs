@@ -13,8 +13,8 @@ use strataray_parsers::units::UnitSystem;
 use strataray_parsers::{At, ParseError, Warnings, init};
 
 use crate::case::{
-    About, Case, CaseError, Kind, LoadTimes, LocalGrid, NamedFault, POROSITY_THICKNESS, Property,
-    SOIL, Source, Step,
+    About, Case, CaseError, FieldCache, Kind, LoadTimes, LocalGrid, NamedFault, POROSITY_THICKNESS,
+    Property, SOIL, Source, Step,
 };
 use crate::model::derived::Derived;
 use crate::model::topology::Face;
@@ -99,6 +99,7 @@ pub fn open(path: &Path) -> Result<Case, ParseError> {
         steps,
         properties,
         source: Box::new(source),
+        cache: FieldCache::default(),
     })
 }
 

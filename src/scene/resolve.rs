@@ -173,7 +173,7 @@ pub fn resolve(scene: &Scene, case: &Case) -> Result<View, SceneError> {
         Inactive::Hidden => (None, field, drawn),
         Inactive::Ghost => {
             let (ghosts, field, drawn) = Ghosts::new(&case.grid, &field, &drawn);
-            (Some(Arc::new(ghosts)), field, drawn)
+            (Some(Arc::new(ghosts)), Arc::new(field), drawn)
         }
     };
     let bounds = shown_grid(&case.grid, ghosts.as_ref()).bounds();
@@ -203,7 +203,7 @@ pub fn resolve(scene: &Scene, case: &Case) -> Result<View, SceneError> {
         early_termination: scene.early_termination,
         interpolation: scene.interpolation,
         property,
-        field: Arc::new(field),
+        field,
         drawn: Arc::new(drawn),
         ghosts,
         clip: clip(&scene.clip)?,
