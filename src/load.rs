@@ -28,7 +28,22 @@ const NOT_PROPERTIES: [&str; 3] = ["ACTNUM", "SEQNUM", "INTEHEAD"];
 /// # Errors
 /// When there is no readable grid. A missing or unfitting INIT or restart only leaves a note.
 pub fn open(path: &Path) -> Result<Case, ParseError> {
+    match open_with(path, &|_| true)? {
+        Some(case) => Ok(case),
+        None => Err(ParseError::new(path, At::File, "", "was not opened")),
+    }
+}
+
+/// As [`open`]; `progress` is told what is read next, and returns false to leave it: the result is `None`
+/// then.
+///
+/// # Errors
+/// As [`open`].
+pub fn open_with(path: &Path, progress: &dyn Fn(&str) -> bool) -> Result<Option<Case>, ParseError> {
     let files = find(path)?;
+    if !progress("the grid") {
+        return Ok(None);
+    }
     let mut warnings = Warnings::default();
     let mut about = About {
         name: files.name.clone(),
@@ -53,6 +68,9 @@ pub fn open(path: &Path) -> Result<Case, ParseError> {
         .deck
         .as_ref()
         .map(|deck| fault_faces(deck, &about.named_faults));
+    if !progress("static properties") {
+        return Ok(None);
+    }
     if let Some(path) = &files.init {
         match init::open(path).and_then(|a| source.check(&a, path).map(|()| a)) {
             Ok(arrays) => {
@@ -61,6 +79,9 @@ pub fn open(path: &Path) -> Result<Case, ParseError> {
             }
             Err(error) => about.notes.push(format!("INIT was not loaded: {error}")),
         }
+    }
+    if !progress("time steps") {
+        return Ok(None);
     }
     match open_restart(&files.restart, &source, &mut warnings) {
         Ok(steps) => {
@@ -92,7 +113,7 @@ pub fn open(path: &Path) -> Result<Case, ParseError> {
         .collect();
     let properties = properties(&source, &about.length_unit, &mut about.notes);
     about.notes.extend(warnings.iter().map(ToString::to_string));
-    Ok(Case {
+    Ok(Some(Case {
         grid,
         about,
         fault_faces: Arc::new(fault_faces.unwrap_or_default()),
@@ -100,7 +121,7 @@ pub fn open(path: &Path) -> Result<Case, ParseError> {
         properties,
         source: Box::new(source),
         cache: FieldCache::default(),
-    })
+    }))
 }
 
 fn note_missing(restart: &RestartSource, has_init: bool, source: &FileSource, about: &mut About) {

@@ -11,7 +11,7 @@ use crate::gpu::probe::{self, Located};
 use crate::gpu::surfaces::SurfacePainter;
 use crate::gpu::transfer_tables::TransferTables;
 use crate::gpu::{Drawing, FrameRenderer, FrameStats, Gpu, GpuBytes, GpuError, GpuGrid};
-use crate::model::{CellField, Grid};
+use crate::model::{CellField, Grid, Ijk};
 use crate::picture::Image;
 use crate::scene::ghosts::{Ghosts, shown_grid};
 use crate::scene::{Interpolation, View};
@@ -187,8 +187,8 @@ impl Renderer {
         direction: DVec3,
         seen: f64,
     ) -> Result<Option<(DVec3, Located)>, GpuError> {
-        let grid = shown_grid(grid, view.ghosts.as_ref());
         self.show(grid, view)?;
+        let grid = shown_grid(grid, view.ghosts.as_ref());
         let eye = view.camera.eye;
         let distances = view.box_corners.iter().map(|c| (*c - eye).dot(direction));
         let far = distances.fold(0.0, f64::max);
@@ -213,6 +213,23 @@ impl Renderer {
             }
         }
         Ok(None)
+    }
+
+    /// The drawn cell of `grid` (the one given to [`Self::new`]) in which a point of world space lies.
+    ///
+    /// # Errors
+    /// When the device reports an error.
+    pub fn cell_at(
+        &mut self,
+        grid: &Grid,
+        view: &View,
+        point: DVec3,
+    ) -> Result<Option<Ijk>, GpuError> {
+        self.show(grid, view)?;
+        let grid = shown_grid(grid, view.ghosts.as_ref());
+        let point = view.spaces.grid_from_world.transform_point3(point);
+        let found = probe::locate(&self.gpu, &self.grid, grid, &[point], view.interpolation)?;
+        Ok(found.first().and_then(|f| f.map(|located| located.ijk)))
     }
 
     /// Brings field and selection of a view of `grid`, the one given to [`Self::new`], to the device.

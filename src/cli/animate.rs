@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use anyhow::{Context, ensure};
 use strataray::case::Case;
+use strataray::filming::shoot;
 use strataray::picture::film::{Film, FilmFormat, FilmShape};
-use strataray::picture::finished;
 use strataray::renderer::Renderer;
 use strataray::scene::{Scene, Sequence, Turn, film};
 
@@ -88,20 +88,17 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let pictures = u32::try_from(sequence.count())?;
     let [low, high] = sequence.range();
     reporter.detail(&format!("{pictures} pictures of values {low} to {high}"));
-    let mut film = Film::create(&arguments.output, shape(arguments, scene.size, pictures))?;
+    let film = Film::create(&arguments.output, shape(arguments, scene.size, pictures))?;
     let gpu = arguments.options.open_gpu(&reporter)?;
     let mut renderer = Renderer::new(gpu, &case.grid)?;
-    reporter.bar(format!("{pictures} pictures"), |progress| {
-        for n in 0..sequence.count() {
-            let done = |f: f64| progress((n as f64 + f) / f64::from(pictures));
-            let view = sequence.view(n, &case)?;
-            let frame = renderer.render(&case.grid, &view, &done)?;
-            let frame = frame.context(CANCELLED)?;
-            film.add(&finished(&frame.image, &case, &view, arguments.plain))?;
-            ensure!(done(1.0), CANCELLED);
-        }
-        Ok(film.finish()?)
-    })
+    let plain = arguments.plain;
+    let made = reporter.bar(format!("{pictures} pictures"), |progress| {
+        shoot(&mut renderer, &case, &sequence, film, plain, &|f| {
+            progress(f)
+        })
+    })?;
+    ensure!(made, CANCELLED);
+    Ok(())
 }
 
 /// Refuses what cannot become a film before anything takes time.

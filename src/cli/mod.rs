@@ -34,6 +34,9 @@ struct Arguments {
     command: Option<Command>,
     /// Cases to open in the viewer.
     cases: Vec<PathBuf>,
+    /// Read the cases again when their files change, as while a simulation runs.
+    #[arg(long)]
+    watch: bool,
 }
 
 #[derive(Subcommand)]
@@ -76,7 +79,9 @@ pub fn run() -> ExitCode {
         Some(Command::Compare(a)) => compare::run(&a),
         Some(Command::Bench(a)) => bench::run(&a),
         Some(Command::Sample(a)) => sample::run(&a),
-        None => strataray::viewer::run(arguments.cases).map_err(anyhow::Error::msg),
+        None => {
+            strataray::viewer::run(arguments.cases, arguments.watch).map_err(anyhow::Error::msg)
+        }
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -1,13 +1,14 @@
-//! What the interface does to a scene: every change has a name, so that it can be undone, tested and told.
+//! What the interface does to a tab's state: every change has a name, so that it can be undone, tested and told.
 
 use serde::{Deserialize, Serialize};
 
+use super::state::{Comparison, Pace, State};
 use crate::scene::{
     CameraSpec, ClipSpec, Filter, Interpolation, LibcSettings, LightingSpec, Scene, Show,
     SrgSettings, StepSpec, TransferSpec,
 };
 
-/// A change of a scene.
+/// A change of a tab's state.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Action {
     /// Shows another property; its own range and curve.
@@ -44,6 +45,23 @@ pub enum Action {
     Background(String),
     /// A whole scene, as from a file.
     Scene(Box<Scene>),
+    /// A second picture, or none.
+    Compare(Option<Comparison>),
+    /// Selects a cell by I, J, K from 1, beside those selected or alone; one that is selected is let go.
+    Select([usize; 3], Beside),
+    /// Selects none.
+    Deselect,
+    /// How time plays.
+    Pace(Pace),
+}
+
+/// Whether a cell joins those that are selected.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Beside {
+    /// It does.
+    Others,
+    /// It replaces them.
+    Nothing,
 }
 
 impl Action {
@@ -66,11 +84,15 @@ impl Action {
             Self::Show(_) => "what is shown",
             Self::Background(_) => "background",
             Self::Scene(_) => "scene",
+            Self::Compare(_) => "comparison",
+            Self::Select(..) | Self::Deselect => "selection",
+            Self::Pace(_) => "pace",
         }
     }
 
     /// Makes the change.
-    pub fn apply(self, scene: &mut Scene) {
+    pub fn apply(self, state: &mut State) {
+        let scene = &mut state.setup.scene;
         match self {
             Self::Property(name) => {
                 scene.property = Some(name);
@@ -92,6 +114,20 @@ impl Action {
             Self::Show(v) => scene.show = v,
             Self::Background(v) => scene.background = v,
             Self::Scene(v) => *scene = *v,
+            Self::Compare(v) => state.setup.comparison = v,
+            Self::Select(cell, beside) => select(&mut state.selected, cell, beside),
+            Self::Deselect => state.selected.clear(),
+            Self::Pace(v) => state.pace = v,
         }
+    }
+}
+
+fn select(selected: &mut Vec<[usize; 3]>, cell: [usize; 3], beside: Beside) {
+    match (beside, selected.iter().position(|c| *c == cell)) {
+        (Beside::Nothing, _) => *selected = vec![cell],
+        (Beside::Others, Some(at)) => {
+            selected.remove(at);
+        }
+        (Beside::Others, None) => selected.push(cell),
     }
 }

@@ -1,4 +1,4 @@
-//! A case in a tab: its files, its scene, its past, what was picked.
+//! A tab: a case, what the user has set, its past, what was read for it.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -7,60 +7,60 @@ use std::time::Instant;
 use super::action::Action;
 use super::history::History;
 use super::loading::Loading;
-use super::worker::Picked;
+use super::reader::{Curves, Table};
+use super::state::State;
+use super::watch::Watch;
 use crate::case::Case;
-use crate::scene::{Scene, StepSpec};
-
-/// Where opening a case has come to.
-pub enum Status {
-    /// It is being opened.
-    Loading(Loading),
-    /// It is there.
-    Ready(Arc<Case>),
-    /// Why it is not there.
-    Failed(String),
-}
+use crate::picking::Hit;
+use crate::scene::StepSpec;
 
 /// A tab.
 pub struct Document {
     /// As the user gave it.
     pub path: PathBuf,
-    /// Where opening it has come to.
-    pub status: Status,
-    /// How it looks.
-    pub scene: Scene,
+    /// The case, once it is there. It stays while it is read again.
+    pub case: Option<Arc<Case>>,
+    /// It is being read.
+    pub loading: Option<Loading>,
+    /// Why the last reading failed.
+    pub error: Option<String>,
+    /// What the user has set.
+    pub state: State,
     /// What can be undone.
     pub history: History,
-    /// Time steps play since; `None` where they stand.
+    /// Time steps play; when the last one came.
     pub playing: Option<Instant>,
-    /// The cell picked last.
-    pub picked: Option<Picked>,
+    /// Tells when the case's files change.
+    pub watch: Option<Watch>,
+    /// Where the pointer met what was selected last.
+    pub hit: Option<Hit>,
+    /// All properties of the selected cells.
+    pub table: Option<Table>,
+    /// The property shown over time, in the selected cells.
+    pub curves: Option<Curves>,
 }
 
 impl Document {
     /// A tab for a case that is being opened.
-    pub fn new(path: PathBuf, loading: Loading, scene: Scene) -> Self {
+    pub fn new(path: PathBuf, loading: Loading, state: State) -> Self {
         Self {
             path,
-            status: Status::Loading(loading),
-            scene,
+            case: None,
+            loading: Some(loading),
+            error: None,
+            state,
             history: History::default(),
             playing: None,
-            picked: None,
-        }
-    }
-
-    /// The case, once it is there.
-    pub fn case(&self) -> Option<&Arc<Case>> {
-        match &self.status {
-            Status::Ready(case) => Some(case),
-            _ => None,
+            watch: None,
+            hit: None,
+            table: None,
+            curves: None,
         }
     }
 
     /// Name of the tab.
     pub fn title(&self) -> String {
-        match self.case() {
+        match &self.case {
             Some(case) => case.about.name.clone(),
             None => self
                 .path
@@ -69,16 +69,35 @@ impl Document {
         }
     }
 
+    /// Takes in a case that was being opened; true where one came.
+    pub fn listen(&mut self) -> bool {
+        let Some(answer) = self.loading.as_ref().and_then(Loading::poll) else {
+            return false;
+        };
+        self.loading = None;
+        match answer {
+            Ok(case) => {
+                self.error = None;
+                self.case = Some(case);
+                true
+            }
+            Err(error) => {
+                self.error = Some(error);
+                false
+            }
+        }
+    }
+
     /// Makes a change that can be undone.
     pub fn apply(&mut self, action: Action) {
-        self.history.apply(&mut self.scene, action);
+        self.history.apply(&mut self.state, action);
     }
 
     /// The step shown, by number, and how many there are; `None` where there are none.
     pub fn step(&self) -> Option<(usize, usize)> {
-        let case = self.case()?;
+        let case = self.case.as_ref()?;
         let count = case.steps.len();
-        let step = match &self.scene.step {
+        let step = match &self.state.setup.scene.step {
             StepSpec::Index(n) => *n,
             StepSpec::Name(name) => case.step(name).ok()?,
         };
@@ -88,13 +107,12 @@ impl Document {
     /// Goes to another step, around the end where `wraps`.
     pub fn move_step(&mut self, by: isize, wraps: bool) {
         if let Some((step, count)) = self.step() {
-            let wanted = step as isize + by;
-            let last = count as isize - 1;
+            let wanted = step.saturating_add_signed(by);
             let next = match wraps {
-                true => wanted.rem_euclid(count as isize),
-                false => wanted.clamp(0, last),
+                true => (step as isize + by).rem_euclid(count as isize) as usize,
+                false => wanted.min(count - 1),
             };
-            self.apply(Action::Step(next as usize));
+            self.apply(Action::Step(next));
         }
     }
 }

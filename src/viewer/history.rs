@@ -1,27 +1,28 @@
-//! Undo and redo: the scenes before each change.
+//! Undo and redo: the setups before each change.
 
 use super::action::Action;
-use crate::scene::Scene;
+use super::state::{Setup, State};
 
-/// Scenes that can be gone back to, at most.
+/// Setups that can be gone back to, at most.
 const MOST: usize = 200;
 
-/// A scene with its past and, after undoing, its future.
+/// A setup's past and, after undoing, its future.
 #[derive(Debug, Clone, Default)]
 pub struct History {
-    past: Vec<(&'static str, Scene)>,
-    future: Vec<(&'static str, Scene)>,
+    past: Vec<(&'static str, Setup)>,
+    future: Vec<(&'static str, Setup)>,
     /// Changes of the same name join the last one, as of a slider that is dragged.
     joins: bool,
 }
 
 impl History {
-    /// Makes a change. While a gesture lasts, changes of one name count as one.
-    pub fn apply(&mut self, scene: &mut Scene, action: Action) {
+    /// Makes a change. While a gesture lasts, changes of one name count as one. What is no part of the
+    /// setup is changed without being remembered.
+    pub fn apply(&mut self, state: &mut State, action: Action) {
         let name = action.name();
-        let before = scene.clone();
-        action.apply(scene);
-        if *scene == before {
+        let before = state.setup.clone();
+        action.apply(state);
+        if state.setup == before {
             return;
         }
         let joins = self.joins && self.past.last().is_some_and(|(last, _)| *last == name);
@@ -40,22 +41,22 @@ impl History {
     }
 
     /// Takes the last change back; its name.
-    pub fn undo(&mut self, scene: &mut Scene) -> Option<&'static str> {
-        Self::step(&mut self.past, &mut self.future, scene)
+    pub fn undo(&mut self, state: &mut State) -> Option<&'static str> {
+        Self::step(&mut self.past, &mut self.future, &mut state.setup)
     }
 
     /// Makes the change again that was taken back last; its name.
-    pub fn redo(&mut self, scene: &mut Scene) -> Option<&'static str> {
-        Self::step(&mut self.future, &mut self.past, scene)
+    pub fn redo(&mut self, state: &mut State) -> Option<&'static str> {
+        Self::step(&mut self.future, &mut self.past, &mut state.setup)
     }
 
     fn step(
-        from: &mut Vec<(&'static str, Scene)>,
-        to: &mut Vec<(&'static str, Scene)>,
-        scene: &mut Scene,
+        from: &mut Vec<(&'static str, Setup)>,
+        to: &mut Vec<(&'static str, Setup)>,
+        setup: &mut Setup,
     ) -> Option<&'static str> {
         let (name, other) = from.pop()?;
-        to.push((name, std::mem::replace(scene, other)));
+        to.push((name, std::mem::replace(setup, other)));
         Some(name)
     }
 
@@ -73,34 +74,50 @@ impl History {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::viewer::action::Beside;
 
     #[test]
     fn undo_and_redo_go_through_changes() {
-        let (mut history, mut scene) = (History::default(), Scene::default());
-        let start = scene.clone();
-        history.apply(&mut scene, Action::Strategy("srg".into()));
+        let (mut history, mut state) = (History::default(), State::default());
+        let start = state.clone();
+        history.apply(&mut state, Action::Strategy("srg".into()));
         history.end_gesture();
         for v in [2.0, 3.0, 4.0] {
-            history.apply(&mut scene, Action::Exaggeration(Some(v)));
+            history.apply(&mut state, Action::Exaggeration(Some(v)));
         }
         history.end_gesture();
-        let end = scene.clone();
-        assert_eq!(history.undo(&mut scene), Some("vertical exaggeration"));
-        assert_eq!(scene.vertical_exaggeration, None);
-        assert_eq!(history.undo(&mut scene), Some("strategy"));
-        assert_eq!(scene, start);
-        assert_eq!(history.undo(&mut scene), None);
-        history.redo(&mut scene);
-        history.redo(&mut scene);
-        assert_eq!(scene, end);
+        let end = state.clone();
+        assert_eq!(history.undo(&mut state), Some("vertical exaggeration"));
+        assert_eq!(state.setup.scene.vertical_exaggeration, None);
+        assert_eq!(history.undo(&mut state), Some("strategy"));
+        assert_eq!(state, start);
+        assert_eq!(history.undo(&mut state), None);
+        history.redo(&mut state);
+        history.redo(&mut state);
+        assert_eq!(state, end);
         // A change after undoing forgets what was undone.
-        history.undo(&mut scene);
-        history.apply(&mut scene, Action::Step(3));
+        history.undo(&mut state);
+        history.apply(&mut state, Action::Step(3));
         assert_eq!(history.redoes(), None);
         // What changes nothing is no change.
         history.end_gesture();
-        history.apply(&mut scene, Action::Step(3));
-        assert_eq!(history.undo(&mut scene), Some("time step"));
+        history.apply(&mut state, Action::Step(3));
+        assert_eq!(history.undo(&mut state), Some("time step"));
         assert_eq!(history.undoes(), Some("strategy"));
+    }
+
+    #[test]
+    fn a_selection_outlives_undo() {
+        let (mut history, mut state) = (History::default(), State::default());
+        history.apply(&mut state, Action::Strategy("srg".into()));
+        let cell = [3, 4, 5];
+        history.apply(&mut state, Action::Select(cell, Beside::Nothing));
+        history.undo(&mut state);
+        assert_eq!(state.selected, [cell]);
+        assert_eq!(state.setup, Setup::default());
+        // One that is picked again beside others is let go.
+        history.apply(&mut state, Action::Select([1, 1, 1], Beside::Others));
+        history.apply(&mut state, Action::Select(cell, Beside::Others));
+        assert_eq!(state.selected, [[1, 1, 1]]);
     }
 }

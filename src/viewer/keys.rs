@@ -37,6 +37,18 @@ pub enum Command {
     Light,
     /// Dark or light.
     Theme,
+    /// Closes the tab.
+    Close,
+    /// Saves a film.
+    Film,
+    /// A second picture, or none.
+    Compare,
+    /// Selects no cell.
+    Deselect,
+    /// The picture alone, or with panels.
+    Panels,
+    /// What was not loaded.
+    Notes,
     /// The sheet of shortcuts.
     Help,
 }
@@ -47,7 +59,7 @@ const CTRL_ALT: Modifiers = Modifiers::COMMAND.plus(Modifiers::ALT);
 const NONE: Modifiers = Modifiers::NONE;
 
 /// Every shortcut, with what it says in the sheet.
-pub const SHORTCUTS: [(Modifiers, Key, Command, &str); 26] = [
+pub const SHORTCUTS: [(Modifiers, Key, Command, &str); 32] = [
     (CTRL, Key::O, Command::Open, "Open a case"),
     (NONE, Key::F5, Command::Reload, "Read the case again"),
     (CTRL, Key::S, Command::SaveScene, "Save the scene"),
@@ -72,6 +84,12 @@ pub const SHORTCUTS: [(Modifiers, Key, Command, &str); 26] = [
     (NONE, Key::S, Command::NextStrategy, "Next strategy"),
     (NONE, Key::Q, Command::Light, "Occlusion on or off"),
     (CTRL, Key::D, Command::Theme, "Dark or light"),
+    (CTRL, Key::W, Command::Close, "Close the case"),
+    (CTRL, Key::F12, Command::Film, "Save a film"),
+    (NONE, Key::C, Command::Compare, "Compare two pictures"),
+    (NONE, Key::Escape, Command::Deselect, "Select no cell"),
+    (CTRL, Key::B, Command::Panels, "Panels or the picture alone"),
+    (CTRL, Key::N, Command::Notes, "What was not loaded"),
     (NONE, Key::F1, Command::Help, "This sheet"),
     (
         Modifiers::SHIFT,

@@ -1,38 +1,77 @@
 //! Cases are opened in the background.
 
 use std::path::PathBuf;
-use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::case::Case;
 use crate::load;
 
 /// A case that is being opened.
 pub struct Loading {
-    answer: Receiver<Result<Case, String>>,
+    answer: Receiver<Result<Arc<Case>, String>>,
+    stage: Arc<Mutex<String>>,
+    cancel: Arc<AtomicBool>,
 }
 
 impl Loading {
-    /// Begins to open; `wake` is called when that is done.
-    pub fn begin(path: PathBuf, wake: impl FnOnce() + Send + 'static) -> Self {
+    /// Begins to open; `wake` is called when that comes to another stage, and at the end.
+    pub fn begin(path: PathBuf, wake: impl Fn() + Send + 'static) -> Self {
         let (send, answer) = channel();
+        let stage = Arc::new(Mutex::new(String::new()));
+        let cancel = Arc::new(AtomicBool::new(false));
+        let (shared_stage, shared_cancel) = (stage.clone(), cancel.clone());
         std::thread::spawn(move || {
-            let case = load::open(&path).map_err(|e| e.to_string());
+            let progress = |stage: &str| {
+                let mut shared = shared_stage.lock().unwrap_or_else(PoisonError::into_inner);
+                stage.clone_into(&mut shared);
+                wake();
+                !shared_cancel.load(Ordering::Relaxed)
+            };
+            let case = match load::open_with(&path, &progress) {
+                Ok(Some(case)) => Ok(Arc::new(case)),
+                Ok(None) => Err("opening it was cancelled".into()),
+                Err(error) => Err(error.to_string()),
+            };
             // Nobody listens where the tab was closed meanwhile.
             let _ = send.send(case);
             wake();
         });
-        Self { answer }
+        Self {
+            answer,
+            stage,
+            cancel,
+        }
     }
 
     /// The case, or why there is none; `None` while it is being opened.
     pub fn poll(&self) -> Option<Result<Arc<Case>, String>> {
         match self.answer.try_recv() {
-            Ok(case) => Some(case.map(Arc::new)),
+            Ok(case) => Some(case),
             Err(TryRecvError::Empty) => None,
             Err(TryRecvError::Disconnected) => {
                 Some(Err("opening the case ended without an answer".into()))
             }
         }
+    }
+
+    /// What is being read.
+    pub fn stage(&self) -> String {
+        self.stage
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .clone()
+    }
+
+    /// Asks to stop before the next stage.
+    pub fn cancel(&self) {
+        self.cancel.store(true, Ordering::Relaxed);
+    }
+}
+
+impl Drop for Loading {
+    fn drop(&mut self) {
+        self.cancel();
     }
 }

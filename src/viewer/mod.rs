@@ -4,31 +4,45 @@
 //! their own.
 
 mod action;
+mod bar;
 mod command;
+mod commands;
+mod dialogs;
 mod document;
+mod export;
+mod handles;
 mod history;
 mod keys;
 mod loading;
 mod orbit;
 mod overlay;
 mod panels;
+mod pictures;
+mod reader;
 mod settings;
+mod sheets;
+mod sides;
+mod state;
+mod studio;
 mod viewport;
+mod watch;
 mod welcome;
 mod window;
 mod worker;
 
 use std::path::PathBuf;
 
-pub use action::Action;
-pub use document::{Document, Status};
+pub use action::{Action, Beside};
+pub use document::Document;
+pub use state::{Comparison, Layout, Pace, Setup, State};
 pub use window::Window;
 
-/// Opens the window on cases and returns when it is closed.
+/// Opens the window on cases and returns when it is closed. Where it `watches`, cases are read again when
+/// their files change.
 ///
 /// # Errors
 /// When there is no display or no graphics driver; the sentence says what to do.
-pub fn run(cases: Vec<PathBuf>) -> Result<(), String> {
+pub fn run(cases: Vec<PathBuf>, watches: bool) -> Result<(), String> {
     let names = ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"];
     let is_set = |name: &str| std::env::var_os(name).is_some_and(|v| !v.is_empty());
     if cfg!(target_os = "linux") && !names.into_iter().any(is_set) {
@@ -44,7 +58,7 @@ pub fn run(cases: Vec<PathBuf>) -> Result<(), String> {
         ..Default::default()
     };
     let create = |cc: &eframe::CreationContext<'_>| -> Result<Box<dyn eframe::App>, _> {
-        Ok(Box::new(Window::new(&cc.egui_ctx, cases)))
+        Ok(Box::new(Window::new(&cc.egui_ctx, cases, watches)))
     };
     eframe::run_native("strataray", options, Box::new(create))
         .map_err(|e| format!("the window cannot be opened: {e}"))

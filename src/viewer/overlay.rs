@@ -3,6 +3,8 @@
 use eframe::egui::{self, Align2, Color32, FontId, Painter, Pos2, Rect, Stroke, pos2, vec2};
 use glam::DVec3;
 
+use super::studio::DIFFERENCE_SCALE;
+use crate::metrics::Comparison;
 use crate::picture::{Annotations, far_edges, legend_labels};
 use crate::scene::View;
 
@@ -133,4 +135,25 @@ fn legend(painter: &Painter, rect: Rect, view: &View, annotations: &Annotations,
     };
     let at = pos2(bar.center().x, top - 8.0);
     write(painter, at, Align2::CENTER_BOTTOM, &heading, ink, TEXT);
+}
+
+/// A short text beside the pointer.
+pub fn tip(ui: &egui::Ui, at: Pos2, text: &str) {
+    let painter = ui.painter();
+    let visuals = ui.visuals();
+    let font = FontId::proportional(TEXT);
+    let text = painter.layout_no_wrap(text.to_owned(), font, visuals.strong_text_color());
+    let place = Rect::from_min_size(at, text.size()).expand(5.0);
+    painter.rect_filled(place, 3.0, visuals.window_fill());
+    painter.galley(at, text, visuals.strong_text_color());
+}
+
+/// What a map of differences means.
+pub fn difference(painter: &Painter, rect: Rect, figures: &Comparison) {
+    let text = format!(
+        "CIEDE2000: mean {:.2}, 99 % below {:.2}; brightest at {DIFFERENCE_SCALE} or more",
+        figures.ciede2000_mean, figures.ciede2000_p99
+    );
+    let at = rect.left_top() + vec2(12.0, 10.0);
+    write(painter, at, Align2::LEFT_TOP, &text, Color32::WHITE, 15.0);
 }

@@ -4,17 +4,53 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
+use super::state::Pace;
+
 /// Cases that are remembered, at most.
 const MOST_RECENT: usize = 12;
 
 /// What the user has chosen once.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Settings {
     /// Cases opened last, the newest first.
     pub recent: Vec<PathBuf>,
     /// Light letters on dark ground.
     pub dark: bool,
+    /// The picture alone, without panels.
+    pub hides_panels: bool,
+    /// How time plays.
+    pub pace: Pace,
+    /// How pictures and films are saved.
+    pub export: Export,
+}
+
+/// How pictures and films are saved.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Export {
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+    /// With title, legend, box and axes, as the scene says.
+    pub annotated: bool,
+    /// A film turns around the model instead of going through time.
+    pub turns: bool,
+    /// Pictures a second.
+    pub fps: f64,
+    /// Pictures of a turn.
+    pub views: usize,
+}
+
+impl Default for Export {
+    fn default() -> Self {
+        Self {
+            size: [1920, 1080],
+            annotated: true,
+            turns: false,
+            fps: 10.0,
+            views: 72,
+        }
+    }
 }
 
 impl Default for Settings {
@@ -22,6 +58,9 @@ impl Default for Settings {
         Self {
             recent: Vec::new(),
             dark: true,
+            hides_panels: false,
+            pace: Pace::default(),
+            export: Export::default(),
         }
     }
 }

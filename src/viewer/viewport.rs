@@ -14,8 +14,6 @@ use crate::scene::{Camera, Scene, View};
 /// What the viewport keeps from frame to frame.
 #[derive(Default)]
 pub struct Viewport {
-    /// Where it is, in points.
-    pub rect: Option<Rect>,
     /// The point that the drag in progress turns around.
     pivot: Option<DVec3>,
 }
@@ -27,8 +25,13 @@ pub struct Touched {
     pub actions: Vec<Action>,
     /// A place was clicked, 0 to 1 to the right and down.
     pub pick: Option<DVec2>,
-    /// A drag is in progress.
-    pub is_dragging: bool,
+}
+
+impl Touched {
+    /// Adds what the pointer did to another picture, but for what was clicked there.
+    pub fn join(&mut self, other: Self) {
+        self.actions.extend(other.actions);
+    }
 }
 
 /// Zoom of a turn of the wheel by a point.
@@ -44,7 +47,6 @@ impl Viewport {
         shown: Option<(&TextureHandle, &Arc<View>)>,
     ) -> Touched {
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
-        self.rect = Some(rect);
         let mut touched = Touched::default();
         let painter = ui.painter_at(rect);
         let Some((texture, view)) = shown else {
@@ -63,7 +65,6 @@ impl Viewport {
         if let Some(camera) = self.moved(&input, &now) {
             touched.actions.push(Action::Camera(orbit::spec(&camera)));
         }
-        touched.is_dragging = response.dragged();
         if response.clicked() {
             touched.pick = input.at;
         }

@@ -2,8 +2,9 @@
 
 use std::path::PathBuf;
 
-use eframe::egui::{RichText, Ui};
+use eframe::egui::{Color32, RichText, Spinner, Ui};
 
+use super::document::Document;
 use super::settings::Settings;
 
 /// What the user asked for.
@@ -30,6 +31,28 @@ pub fn show(ui: &mut Ui, settings: &Settings) -> Option<Asked> {
         section(ui, "Recent cases", &settings.recent, &mut asked);
     });
     asked
+}
+
+/// The page of a case that is being opened, or could not be; true where it is closed.
+pub fn waiting(ui: &mut Ui, document: &Document) -> bool {
+    let mut closes = false;
+    ui.vertical_centered(|ui| {
+        ui.add_space(0.4 * ui.available_height());
+        ui.label(document.path.display().to_string());
+        match (&document.loading, &document.error) {
+            (Some(loading), _) => {
+                ui.add(Spinner::new());
+                ui.label(format!("reading {}", loading.stage()));
+                closes = ui.button("Cancel").clicked();
+            }
+            (None, error) => {
+                let red = Color32::from_rgb(220, 80, 60);
+                ui.colored_label(red, error.as_deref().unwrap_or("it was not opened"));
+                closes = ui.button("Close").clicked();
+            }
+        }
+    });
+    closes
 }
 
 fn section(ui: &mut Ui, title: &str, cases: &[PathBuf], asked: &mut Option<Asked>) {

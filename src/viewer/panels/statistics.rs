@@ -15,7 +15,7 @@ pub fn show(ui: &mut Ui, about: &About<'_>, _actions: &mut Vec<Action>) {
     let rows = [
         (
             "Picture",
-            format!("{} x {}", picture.size[0], picture.size[1]),
+            format!("{} x {}", picture.rgb.size[0], picture.rgb.size[1]),
         ),
         ("Rays", ms(picture.stats.frame)),
         ("Preparation", ms(picture.prepare)),

@@ -1,0 +1,177 @@
+//! Pictures of any size and films, made for files beside the window, on a device of their own.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
+use std::sync::mpsc::{Receiver, TryRecvError, channel};
+
+use crate::case::Case;
+use crate::filming::shoot;
+use crate::gpu::Gpu;
+use crate::picture::film::{Film, FilmShape};
+use crate::picture::{Format, finished, write_exr, write_png};
+use crate::renderer::Renderer;
+use crate::scene::{Scene, Sequence, Turn, film, resolve};
+
+/// What is to be made.
+#[derive(Clone)]
+pub struct ExportSpec {
+    /// Of which case.
+    pub case: Arc<Case>,
+    /// How it looks; `size` is the picture's.
+    pub scene: Scene,
+    /// One picture, or a film.
+    pub kind: Kind,
+    /// Without title, legend and axes.
+    pub plain: bool,
+}
+
+/// What kind of file is made.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Kind {
+    /// A picture.
+    Still,
+    /// A film of all time steps.
+    Steps {
+        /// Pictures a second.
+        fps: f64,
+    },
+    /// A film of a turn around the model.
+    Orbit {
+        /// Pictures a second.
+        fps: f64,
+        /// Pictures.
+        views: usize,
+    },
+}
+
+/// Parts of [`Export::done`].
+const WHOLE: f64 = 1e6;
+
+/// A file that is being made.
+pub struct Export {
+    /// What it is.
+    pub what: String,
+    answer: Receiver<Result<String, String>>,
+    done: Arc<AtomicU32>,
+    cancel: Arc<AtomicBool>,
+}
+
+impl Export {
+    /// Begins to make a file; `wake` is called now and then, and at the end.
+    pub fn begin(spec: ExportSpec, path: PathBuf, wake: impl Fn() + Send + 'static) -> Self {
+        let (send, answer) = channel();
+        let done = Arc::new(AtomicU32::new(0));
+        let cancel = Arc::new(AtomicBool::new(false));
+        let what = format!("writing {}", path.display());
+        let (shared_done, shared_cancel) = (done.clone(), cancel.clone());
+        std::thread::spawn(move || {
+            let progress = |part: f64| {
+                let now = (WHOLE * part) as u32;
+                // A hundred times in all, not for each tile.
+                if now.abs_diff(shared_done.load(Ordering::Relaxed)) > (WHOLE / 100.0) as u32 {
+                    shared_done.store(now, Ordering::Relaxed);
+                    wake();
+                }
+                !shared_cancel.load(Ordering::Relaxed)
+            };
+            let made = match make(&spec, &path, &progress) {
+                Ok(true) => Ok(format!("{} is written", path.display())),
+                Ok(false) => Err(format!(
+                    "{} was cancelled; nothing was written",
+                    path.display()
+                )),
+                Err(error) => Err(error.to_string()),
+            };
+            // The window may be gone.
+            let _ = send.send(made);
+            wake();
+        });
+        Self {
+            what,
+            answer,
+            done,
+            cancel,
+        }
+    }
+
+    /// Part that is done, 0 to 1.
+    pub fn done(&self) -> f32 {
+        (f64::from(self.done.load(Ordering::Relaxed)) / WHOLE) as f32
+    }
+
+    /// Asks to stop.
+    pub fn cancel(&self) {
+        self.cancel.store(true, Ordering::Relaxed);
+    }
+
+    /// What came of it; `None` while it is being made.
+    pub fn poll(&self) -> Option<Result<String, String>> {
+        match self.answer.try_recv() {
+            Ok(made) => Some(made),
+            Err(TryRecvError::Empty) => None,
+            Err(TryRecvError::Disconnected) => {
+                Some(Err(format!("{} ended without an answer", self.what)))
+            }
+        }
+    }
+}
+
+type Fallible<T> = Result<T, Box<dyn std::error::Error>>;
+
+/// Makes the file; false where it was cancelled.
+fn make(spec: &ExportSpec, path: &Path, progress: &dyn Fn(f64) -> bool) -> Fallible<bool> {
+    let case = &spec.case;
+    let (fps, sequence) = match spec.kind {
+        Kind::Still => return still(spec, path, progress),
+        Kind::Steps { fps } => {
+            let steps = film::steps(case, None, 1)?;
+            // Looking at all values is a small part of the work.
+            let looks = |part: f64| progress(0.05 * part);
+            let Some(sequence) = Sequence::over_steps(&spec.scene, case, &steps, &looks)? else {
+                return Ok(false);
+            };
+            (fps, sequence)
+        }
+        Kind::Orbit { fps, views } => {
+            let turn = Turn {
+                degrees: 360.0,
+                views,
+            };
+            (fps, Sequence::around(&spec.scene, case, turn)?)
+        }
+    };
+    let shape = FilmShape {
+        size: spec.scene.size,
+        pictures: u32::try_from(sequence.count())?,
+        fps,
+        hold: 0.0,
+    };
+    let film = Film::create(path, shape)?;
+    let mut renderer = Renderer::new(Arc::new(Gpu::new(None)?), &case.grid)?;
+    Ok(shoot(
+        &mut renderer,
+        case,
+        &sequence,
+        film,
+        spec.plain,
+        progress,
+    )?)
+}
+
+fn still(spec: &ExportSpec, path: &Path, progress: &dyn Fn(f64) -> bool) -> Fallible<bool> {
+    let format = Format::from_path(path)?;
+    let view = resolve(&spec.scene, &spec.case)?;
+    let mut renderer = Renderer::new(Arc::new(Gpu::new(None)?), &spec.case.grid)?;
+    let Some(frame) = renderer.render(&spec.case.grid, &view, progress)? else {
+        return Ok(false);
+    };
+    match format {
+        Format::Exr => write_exr(path, &frame.image)?,
+        Format::Png => {
+            let rgb = finished(&frame.image, &spec.case, &view, spec.plain);
+            write_png(path, frame.image.size, &rgb)?;
+        }
+    }
+    Ok(true)
+}

@@ -1,0 +1,272 @@
+//! The selected cells: where they are, what the case says of them, curves over time, what can be done
+//! with them.
+
+use std::fmt::Write;
+
+use eframe::egui::{self, Ui};
+use egui_plot::{Legend, Line, Plot, VLine};
+
+use super::About;
+use crate::case::Case;
+use crate::model::Ijk;
+use crate::picking::{Hit, Part};
+use crate::scene::{Filter, PropertyFilter};
+use crate::viewer::action::Action;
+use crate::viewer::reader::{Curves, Table};
+
+/// Cells whose values are listed beside each other, at most.
+const MOST_COLUMNS: usize = 4;
+/// Half of the part of the color range within which values are alike.
+const ALIKE: f64 = 0.025;
+
+pub fn show(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
+    let selected = &about.state.selected;
+    let Some(last) = selected.last() else {
+        ui.weak("Click a cell in the picture; Ctrl adds more.");
+        go_to(ui, about, actions);
+        return;
+    };
+    if let Some(hit) = about.hit.filter(|h| one_based(h.ijk) == *last) {
+        ui.label(place(hit));
+        if let Some(text) = part(hit, about.case) {
+            ui.label(text);
+        }
+    }
+    for cell in selected.iter().rev().take(MOST_COLUMNS).rev() {
+        ui.label(named(*cell));
+    }
+    go_to(ui, about, actions);
+    if let Some(table) = about.table {
+        values(ui, table);
+        buttons(ui, about, table, actions);
+    }
+    if let Some(curves) = about.curves {
+        plot(ui, about, curves);
+    }
+}
+
+fn one_based(ijk: Ijk) -> [usize; 3] {
+    [ijk.i + 1, ijk.j + 1, ijk.k + 1]
+}
+
+fn named([i, j, k]: [usize; 3]) -> String {
+    format!("I {i}  J {j}  K {k}")
+}
+
+fn place(hit: &Hit) -> String {
+    let [east, north, depth] = hit.map.to_array();
+    format!("E {east:.1}  N {north:.1}  depth {depth:.2}")
+}
+
+/// What of the cell was met, where that is more than its inside.
+pub fn part(hit: &Hit, case: &Case) -> Option<String> {
+    let unit = case.about.length_unit.to_lowercase();
+    Some(match &hit.part {
+        Part::Inside => return None,
+        Part::Section => "Section of a clip plane".into(),
+        Part::Face(_) => "Outer face".into(),
+        Part::Fault(fault) => {
+            let name = fault.name.as_deref().unwrap_or("without a name");
+            let beyond = named(one_based(fault.beyond));
+            format!(
+                "Fault {name}, throw {:.1} {unit}\nthe other side is {beyond}",
+                fault.throw
+            )
+        }
+    })
+}
+
+/// A cell by its numbers.
+fn go_to(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
+    let dims = about.case.grid.dims();
+    let id = ui.scope_id().with("cell");
+    let start = about.state.selected.last().copied().unwrap_or([1; 3]);
+    let mut cell: [usize; 3] = ui.data(|d| d.get_temp(id)).unwrap_or(start);
+    ui.horizontal(|ui| {
+        let axes = [("I", dims.ni), ("J", dims.nj), ("K", dims.nk)];
+        for (value, (name, count)) in cell.iter_mut().zip(axes) {
+            let drag = egui::DragValue::new(value)
+                .range(1..=count)
+                .prefix(format!("{name} "));
+            ui.add(drag).on_hover_text(format!("{name}, 1 to {count}"));
+        }
+        let select = ui
+            .button("Select")
+            .on_hover_text("Selects this cell beside the others");
+        if select.clicked() {
+            let beside = crate::viewer::action::Beside::Others;
+            actions.push(Action::Select(cell, beside));
+        }
+    });
+    ui.data_mut(|d| d.insert_temp(id, cell));
+}
+
+fn values(ui: &mut Ui, table: &Table) {
+    let list = egui::ScrollArea::both().id_salt("values").max_height(170.0);
+    list.show(ui, |ui| {
+        let grid = egui::Grid::new("values of the selected cells");
+        grid.striped(true).show(ui, |ui| {
+            for (name, unit, values) in &table.rows {
+                ui.label(name);
+                for value in values.iter().rev().take(MOST_COLUMNS).rev() {
+                    ui.label(value.map_or_else(|| "-".into(), |v| v.to_string()));
+                }
+                ui.weak(unit);
+                ui.end_row();
+            }
+        });
+    });
+}
+
+fn buttons(ui: &mut Ui, about: &About<'_>, table: &Table, actions: &mut Vec<Action>) {
+    ui.horizontal(|ui| {
+        let copy = ui.button("Copy").on_hover_text("All of it as CSV, to the clipboard");
+        if copy.clicked() {
+            ui.ctx().copy_text(csv(table, about.curves));
+        }
+        let clear = ui.button("Clear").on_hover_text("Selects none");
+        if clear.clicked() {
+            actions.push(Action::Deselect);
+        }
+        let alike = ui.button("Only alike");
+        let what = "Draws only cells whose value of the property shown is like that of the cell selected last";
+        if alike.on_hover_text(what).clicked()
+            && let Some(filter) = like(about, table)
+        {
+            actions.push(Action::Filter(filter));
+        }
+    });
+    ui.horizontal(|ui| {
+        ui.label("Only its");
+        let Some([i, j, k]) = about.state.selected.last().copied() else {
+            return;
+        };
+        let filter = &about.scene.filter;
+        for (name, wanted) in [
+            (
+                "I",
+                Filter {
+                    i: Some([i, i]),
+                    ..filter.clone()
+                },
+            ),
+            (
+                "J",
+                Filter {
+                    j: Some([j, j]),
+                    ..filter.clone()
+                },
+            ),
+            (
+                "K",
+                Filter {
+                    k: Some([k, k]),
+                    ..filter.clone()
+                },
+            ),
+        ] {
+            let what = format!("Draws only cells of the same {name}");
+            if ui.button(name).on_hover_text(what).clicked() {
+                actions.push(Action::Filter(wanted));
+            }
+        }
+        let all = ui
+            .button("All cells")
+            .on_hover_text("Takes all filters away");
+        if all.clicked() {
+            actions.push(Action::Filter(Filter::default()));
+        }
+    });
+}
+
+/// The filter that keeps values like the last cell's: the same where they are whole numbers, else those
+/// within a part of the color range.
+fn like(about: &About<'_>, table: &Table) -> Option<Filter> {
+    let picture = about.picture?;
+    let name = &picture.view.property;
+    let field = about.case.field(name, picture.view.step).ok()?;
+    let row = table.rows.iter().find(|r| r.0 == *name);
+    let value = f64::from((*row?.2.last()?)?);
+    let are_whole = field
+        .values()
+        .iter()
+        .all(|v| v.is_nan() || v.fract() == 0.0);
+    let range = field.statistics()?;
+    let reach = if are_whole {
+        0.0
+    } else {
+        ALIKE * (range.max - range.min)
+    };
+    let mut filter = about.scene.filter.clone();
+    filter.properties.retain(|p| p.name != *name);
+    filter.properties.push(PropertyFilter {
+        name: name.clone(),
+        min: value - reach,
+        max: value + reach,
+    });
+    Some(filter)
+}
+
+fn plot(ui: &mut Ui, about: &About<'_>, curves: &Curves) {
+    if curves.points.iter().all(|p| p.len() < 2) {
+        ui.weak(format!("{} does not change with time.", curves.property));
+        return;
+    }
+    let unit = about.case.unit(&curves.property);
+    ui.label(format!("{} {unit} over days", curves.property));
+    let plot = Plot::new("curves")
+        .height(150.0)
+        .allow_scroll(false)
+        .legend(Legend::default().follow_insertion_order(true));
+    plot.show(ui, |plot| {
+        for (cell, points) in curves.of.cells.iter().zip(&curves.points) {
+            plot.line(Line::new(named(*cell), points.clone()));
+        }
+        let shown = about
+            .picture
+            .and_then(|p| about.case.steps.get(p.view.step));
+        if let Some(step) = shown {
+            plot.vline(VLine::new("step shown", step.days));
+        }
+    });
+}
+
+/// Values of the step, then curves, as comma-separated text with a heading each.
+pub fn csv(table: &Table, curves: Option<&Curves>) -> String {
+    let mut text = String::from("property,unit");
+    let heads = |text: &mut String, cells: &[[usize; 3]]| {
+        for [i, j, k] in cells {
+            // Writing to a string cannot fail.
+            let _ = write!(text, ",{i} {j} {k}");
+        }
+        text.push('\n');
+    };
+    heads(&mut text, &table.of.cells);
+    for (name, unit, values) in &table.rows {
+        let _ = write!(text, "{name},{unit}");
+        for value in values {
+            let _ = match value {
+                Some(value) => write!(text, ",{value}"),
+                None => write!(text, ","),
+            };
+        }
+        text.push('\n');
+    }
+    if let Some(curves) = curves {
+        let _ = write!(text, "\n{},days", curves.property);
+        heads(&mut text, &curves.of.cells);
+        let steps = &curves.of.case.steps;
+        for step in steps {
+            let _ = write!(text, "{},{}", step.date, step.days);
+            for points in &curves.points {
+                let value = points.iter().find(|p| p[0] == step.days);
+                let _ = match value {
+                    Some([_, value]) => write!(text, ",{value}"),
+                    None => write!(text, ","),
+                };
+            }
+            text.push('\n');
+        }
+    }
+    text
+}

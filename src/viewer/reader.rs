@@ -1,0 +1,245 @@
+//! Values are read on a thread of their own: those of the selected cells, curves over time, and the next
+//! steps before they are shown.
+
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+
+use crate::case::{Case, Property};
+use crate::model::Ijk;
+
+/// Cells of a case, by I, J, K from 1.
+#[derive(Clone)]
+pub struct Cells {
+    /// The case.
+    pub case: Arc<Case>,
+    /// The cells.
+    pub cells: Vec<[usize; 3]>,
+}
+
+impl PartialEq for Cells {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.case, &other.case) && self.cells == other.cells
+    }
+}
+
+/// All properties of some cells at a step.
+#[derive(Clone, PartialEq)]
+pub struct Table {
+    /// Of which cells.
+    pub of: Cells,
+    /// At which step.
+    pub step: usize,
+    /// Name, unit and a value for each cell, where it has one.
+    pub rows: Vec<(String, String, Vec<Option<f32>>)>,
+}
+
+/// A property of some cells over time.
+#[derive(Clone, PartialEq)]
+pub struct Curves {
+    /// Of which cells.
+    pub of: Cells,
+    /// Which property.
+    pub property: String,
+    /// By cell: days and value of the steps that have one.
+    pub points: Vec<Vec<[f64; 2]>>,
+}
+
+/// What the thread says.
+pub enum Read {
+    /// All properties of some cells.
+    Table(Table),
+    /// Curves over time.
+    Curves(Curves),
+}
+
+/// What is asked for; a newer wish of a kind replaces the one before.
+#[derive(Default)]
+struct Wishes {
+    table: Option<(Cells, usize)>,
+    curves: Option<(Cells, String)>,
+    ahead: Option<(Arc<Case>, Vec<(String, usize)>)>,
+    ends: bool,
+}
+
+/// The thread that reads values.
+pub struct Reader {
+    wishes: Arc<(Mutex<Wishes>, Condvar)>,
+    answers: Receiver<Read>,
+}
+
+impl Reader {
+    /// Starts it; `wake` is called with each answer.
+    pub fn start(wake: impl Fn() + Send + 'static) -> Self {
+        let (outbox, answers) = channel();
+        let wishes = Arc::new((Mutex::default(), Condvar::new()));
+        let thread = Thread {
+            wishes: wishes.clone(),
+            outbox,
+            wake: Box::new(wake),
+        };
+        std::thread::spawn(move || thread.run());
+        Self { wishes, answers }
+    }
+
+    /// Asks for all properties of some cells at a step.
+    pub fn table(&self, of: Cells, step: usize) {
+        self.wish(|w| w.table = Some((of, step)));
+    }
+
+    /// Asks for a property of some cells over time.
+    pub fn curves(&self, of: Cells, property: String) {
+        self.wish(|w| w.curves = Some((of, property)));
+    }
+
+    /// Reads properties at steps, so that they are at hand when they are shown.
+    pub fn ahead(&self, case: Arc<Case>, fields: Vec<(String, usize)>) {
+        self.wish(|w| w.ahead = Some((case, fields)));
+    }
+
+    fn wish(&self, change: impl FnOnce(&mut Wishes)) {
+        change(&mut lock(&self.wishes.0));
+        self.wishes.1.notify_one();
+    }
+
+    /// What has been said since the last call.
+    pub fn poll(&self) -> Vec<Read> {
+        self.answers.try_iter().collect()
+    }
+}
+
+impl Drop for Reader {
+    fn drop(&mut self) {
+        self.wish(|w| w.ends = true);
+    }
+}
+
+fn lock(wishes: &Mutex<Wishes>) -> MutexGuard<'_, Wishes> {
+    wishes.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+enum Wish {
+    Table(Cells, usize),
+    Curves(Cells, String),
+    Ahead(Arc<Case>, Vec<(String, usize)>),
+}
+
+struct Thread {
+    wishes: Arc<(Mutex<Wishes>, Condvar)>,
+    outbox: Sender<Read>,
+    wake: Box<dyn Fn() + Send>,
+}
+
+impl Thread {
+    fn run(self) {
+        while let Some(wish) = self.next() {
+            match wish {
+                Wish::Table(of, step) => {
+                    let rows = rows(&of, step);
+                    self.say(Read::Table(Table { of, step, rows }));
+                }
+                Wish::Curves(of, property) => self.follow(of, property),
+                Wish::Ahead(case, fields) => {
+                    for (property, step) in fields {
+                        // Reading ahead is a favor: where it fails, showing the step will say why.
+                        let _ = case.field(&property, step);
+                        if self.has_wishes() {
+                            break;
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    /// Waits for the next wish, the quickest kind first; `None` when the window is gone.
+    fn next(&self) -> Option<Wish> {
+        let mut wishes = lock(&self.wishes.0);
+        loop {
+            if wishes.ends {
+                return None;
+            }
+            if let Some((of, step)) = wishes.table.take() {
+                return Some(Wish::Table(of, step));
+            }
+            if let Some((case, fields)) = wishes.ahead.take() {
+                return Some(Wish::Ahead(case, fields));
+            }
+            if let Some((of, property)) = wishes.curves.take() {
+                return Some(Wish::Curves(of, property));
+            }
+            wishes = self
+                .wishes
+                .1
+                .wait(wishes)
+                .unwrap_or_else(PoisonError::into_inner);
+        }
+    }
+
+    fn has_wishes(&self) -> bool {
+        let w = lock(&self.wishes.0);
+        w.ends || w.table.is_some() || w.curves.is_some() || w.ahead.is_some()
+    }
+
+    /// Reads a property step by step. Another wish comes first; the curves then begin anew.
+    fn follow(&self, of: Cells, property: String) {
+        let case = of.case.clone();
+        let count = if case.is_dynamic(&property) {
+            case.steps.len()
+        } else {
+            0
+        };
+        let mut points = vec![Vec::new(); of.cells.len()];
+        for step in 0..count {
+            if self.has_wishes() {
+                let mut wishes = lock(&self.wishes.0);
+                wishes.curves.get_or_insert((of, property));
+                return;
+            }
+            // A step that lacks the property, or cannot be read, is a gap in the curve.
+            let Ok(field) = case.field(&property, step) else {
+                continue;
+            };
+            for (points, cell) in points.iter_mut().zip(&of.cells) {
+                if let Some(value) = index(&case, *cell).and_then(|c| field.value(&case.grid, c)) {
+                    points.push([case.steps[step].days, f64::from(value)]);
+                }
+            }
+        }
+        self.say(Read::Curves(Curves {
+            of,
+            property,
+            points,
+        }));
+    }
+
+    fn say(&self, read: Read) {
+        // The window may be gone.
+        let _ = self.outbox.send(read);
+        (self.wake)();
+    }
+}
+
+fn index(case: &Case, [i, j, k]: [usize; 3]) -> Option<crate::model::CellIndex> {
+    let dims = case.grid.dims();
+    let inside =
+        (1..=dims.ni).contains(&i) && (1..=dims.nj).contains(&j) && (1..=dims.nk).contains(&k);
+    inside.then(|| {
+        dims.cell(Ijk {
+            i: i - 1,
+            j: j - 1,
+            k: k - 1,
+        })
+    })
+}
+
+fn rows(of: &Cells, step: usize) -> Vec<(String, String, Vec<Option<f32>>)> {
+    let case = &of.case;
+    let row = |p: &Property| {
+        let field = case.field(&p.name, step).ok()?;
+        let value = |cell: &[usize; 3]| field.value(&case.grid, index(case, *cell)?);
+        let values: Vec<_> = of.cells.iter().map(value).collect();
+        let any = values.iter().any(Option::is_some);
+        any.then(|| (p.name.clone(), p.unit.clone(), values))
+    };
+    case.properties.iter().filter_map(row).collect()
+}

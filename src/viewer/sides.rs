@@ -1,0 +1,321 @@
+//! The middle of the window: one picture, or two that are compared.
+
+use std::sync::Arc;
+
+use eframe::egui::{self, Context, Rect, Sense, Ui, UiBuilder, pos2, vec2};
+use glam::DVec2;
+
+use super::action::Action;
+use super::panels::{self, About, Panel};
+use super::state::{Comparison, Layout};
+use super::viewport::{self, Touched, Viewport};
+use super::welcome::{self, Asked};
+use super::window::Window;
+use super::worker::{Wanted, Why};
+use super::{handles, keys::Command, overlay};
+use crate::case::Case;
+use crate::picking::Hit;
+use crate::picture::Annotations;
+use crate::scene::Scene;
+
+/// Where the pictures are, and what the pointer is on.
+#[derive(Default)]
+pub struct Sides {
+    viewports: [Viewport; 2],
+    /// Where each picture is, in points.
+    rects: [Option<Rect>; 2],
+    /// What the pointer rests on.
+    pub hover: Option<Hit>,
+    /// Where the pointer was when what it rests on was asked for.
+    asked: Option<egui::Pos2>,
+}
+
+/// Seconds that the pointer rests before what is under it is looked for.
+const REST: f64 = 0.35;
+/// Points on both sides of a wipe's line within which it is taken.
+const GRIP: f32 = 5.0;
+
+impl Sides {
+    /// Pixels of each picture.
+    pub fn sizes(&self, pixels_per_point: f32) -> [Option<[u32; 2]>; 2] {
+        let pixels = |rect: Rect| viewport::pixels(rect, pixels_per_point, 1.0);
+        self.rects.map(|r| r.map(pixels))
+    }
+}
+
+impl Window {
+    /// Panels and pictures, or the welcome page.
+    pub(super) fn body(&mut self, ui: &mut Ui, ctx: &Context) {
+        let Some(document) = self.documents.get_mut(self.current) else {
+            match welcome::show(ui, &self.settings) {
+                Some(Asked::Open(path)) => self.open(ctx, path),
+                Some(Asked::Dialog) => self.perform(ctx, Command::Open),
+                None => {}
+            }
+            return;
+        };
+        let Some(case) = document.case.clone() else {
+            let closes = welcome::waiting(ui, document);
+            if closes {
+                self.close(self.current);
+            }
+            return;
+        };
+        let mut actions = Vec::new();
+        if !self.settings.hides_panels {
+            self.panels(ui, &case, &mut actions);
+        }
+        let touched = self.pictures(ui, ctx, &case);
+        actions.extend(touched.actions);
+        for action in actions {
+            self.apply(action);
+        }
+    }
+
+    fn panels(&mut self, ui: &mut Ui, case: &Arc<Case>, actions: &mut Vec<Action>) {
+        let Some(document) = self.documents.get(self.current) else {
+            return;
+        };
+        let others = self.documents.iter().filter(|d| d.path != document.path);
+        let others: Vec<_> = others.map(|d| (d.path.clone(), d.title())).collect();
+        let setup = &document.state.setup;
+        let is_difference = setup.comparison.is_some();
+        let about = About {
+            case,
+            state: &document.state,
+            scene: &setup.scene,
+            picture: self.pictures.shown(0, case).map(|s| &s.picture),
+            difference: self.pictures.last_difference().filter(|_| is_difference),
+            hit: document.hit.as_ref(),
+            table: document.table.as_ref(),
+            curves: document.curves.as_ref(),
+            others: &others,
+        };
+        let left = egui::Panel::left("left");
+        side(ui, left, &panels::LEFT, &about, actions);
+        let right = egui::Panel::right("right");
+        side(ui, right, &panels::RIGHT, &about, actions);
+    }
+
+    fn pictures(&mut self, ui: &mut Ui, ctx: &Context, case: &Arc<Case>) -> Touched {
+        let Some(document) = self.documents.get(self.current) else {
+            return Touched::default();
+        };
+        let setup = document.state.setup.clone();
+        let place = ui.available_rect_before_wrap();
+        let (mut rects, layout) = layout(place, setup.comparison.as_ref());
+        let other = self.other_case().filter(|_| layout.is_some());
+        if other.is_none() {
+            rects = [Some(place), None];
+        }
+        self.sides.rects = rects;
+        let mut touched = self.viewport(ui, case, &setup.scene, rects[0], 0);
+        if let (Some(other), Some(rect), Some(comparison)) = (other, rects[1], &setup.comparison) {
+            let scene = comparison.scene(&setup.scene);
+            match layout {
+                Some(Layout::Beside) => {
+                    let on_other = self.viewport(ui, &other, &scene, Some(rect), 1);
+                    touched.join(on_other);
+                }
+                Some(Layout::Wipe(at)) => {
+                    let moved = self.wipe(ui, &other, &scene, rect, at);
+                    if let Some(at) = moved {
+                        touched.actions.push(Action::Compare(Some(Comparison {
+                            layout: Layout::Wipe(at),
+                            ..comparison.clone()
+                        })));
+                    }
+                }
+                _ => self.difference(ui, rect),
+            }
+            if self.pictures.are_final() {
+                self.pictures.compare();
+            }
+        }
+        if let Some(shown) = self.pictures.shown(0, case)
+            && let Some(rect) = rects[0]
+        {
+            let view = shown.picture.view.clone();
+            let scene = &setup.scene;
+            if let Some(planes) = handles::show(ui, rect, &view, scene) {
+                touched.actions.push(Action::Clip(planes));
+            }
+        }
+        self.point(ui, ctx, case, &setup.scene, &touched);
+        touched
+    }
+
+    /// One picture with what is drawn over it.
+    fn viewport(
+        &mut self,
+        ui: &mut Ui,
+        case: &Arc<Case>,
+        scene: &Scene,
+        rect: Option<Rect>,
+        side: usize,
+    ) -> Touched {
+        let Some(rect) = rect else {
+            return Touched::default();
+        };
+        let shown = self.pictures.shown(side, case);
+        let shown = shown.map(|s| (&s.texture, &s.picture.view));
+        let viewport = &mut self.sides.viewports[side];
+        let builder = UiBuilder::new().id_salt(("side", side)).max_rect(rect);
+        let mut child = ui.new_child(builder);
+        viewport.show(&mut child, case, scene, shown)
+    }
+
+    /// The second picture over the first one, right of a line; where the line was dragged to.
+    fn wipe(
+        &self,
+        ui: &mut Ui,
+        case: &Arc<Case>,
+        scene: &Scene,
+        rect: Rect,
+        at: f64,
+    ) -> Option<f64> {
+        let x = rect.left() + at as f32 * rect.width();
+        let right = Rect::from_min_max(pos2(x, rect.top()), rect.max);
+        if let Some(shown) = self.pictures.shown(1, case) {
+            let painter = ui.painter_at(right);
+            let uv = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
+            painter.image(shown.texture.id(), rect, uv, egui::Color32::WHITE);
+            let view = &shown.picture.view;
+            let size = view.size;
+            let now = view
+                .seen_from(&scene.camera, size)
+                .map_or_else(|_| view.clone(), Arc::new);
+            overlay::draw(&painter, rect, &now, &Annotations::of(case, &now));
+        }
+        let grip = Rect::from_x_y_ranges(x - GRIP..=x + GRIP, rect.y_range());
+        let response = ui.interact(grip, ui.scope_id().with("wipe"), Sense::drag());
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Slider, true, "wipe"));
+        let response = response.on_hover_cursor(egui::CursorIcon::ResizeHorizontal);
+        let width = if response.hovered() || response.dragged() {
+            3.0
+        } else {
+            1.5
+        };
+        let stroke = egui::Stroke::new(width, ui.visuals().strong_text_color());
+        ui.painter().vline(x, rect.y_range(), stroke);
+        let pointer = response
+            .interact_pointer_pos()
+            .filter(|_| response.dragged())?;
+        Some(f64::from(
+            ((pointer.x - rect.left()) / rect.width()).clamp(0.0, 1.0),
+        ))
+    }
+
+    /// The map of differences over the first picture, once it is known.
+    fn difference(&self, ui: &mut Ui, rect: Rect) {
+        let Some(shown) = self.pictures.difference() else {
+            return;
+        };
+        let painter = ui.painter_at(rect);
+        let uv = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
+        painter.image(shown.texture.id(), rect, uv, egui::Color32::WHITE);
+        overlay::difference(&painter, rect, &shown.difference.figures);
+    }
+
+    /// What was clicked, and what the pointer rests on.
+    fn point(
+        &mut self,
+        ui: &mut Ui,
+        ctx: &Context,
+        case: &Arc<Case>,
+        scene: &Scene,
+        touched: &Touched,
+    ) {
+        let sizes = self.sides.sizes(ctx.pixels_per_point());
+        let Some(size) = sizes[0] else { return };
+        let wanted = || Wanted {
+            case: case.clone(),
+            scene: Scene {
+                size,
+                ..scene.clone()
+            },
+        };
+        if let Some(at) = touched.pick {
+            let why = match ctx.input(|i| i.modifiers.command) {
+                true => Why::Join,
+                false => Why::Select,
+            };
+            self.pictures.pick(0, wanted(), at, why);
+        }
+        let Some(rect) = self.sides.rects[0] else {
+            return;
+        };
+        // Only surfaces say more than a click would tell, and only they are found quickly.
+        let says_more = scene.show.faults;
+        let pointer = ctx.input(|i| i.pointer.hover_pos());
+        let pointer =
+            pointer.filter(|p| rect.contains(*p) && says_more && !ctx.egui_is_using_pointer());
+        if self.sides.asked != pointer {
+            self.sides.hover = None;
+        }
+        let Some(pointer) = pointer else {
+            self.sides.asked = None;
+            return;
+        };
+        if self.sides.asked != Some(pointer) {
+            let still = ctx.input(|i| f64::from(i.pointer.time_since_last_movement()));
+            if still >= REST && self.pictures.on_its_way().is_none() {
+                self.sides.asked = Some(pointer);
+                let at = (pointer - rect.min) / rect.size();
+                let at = DVec2::new(f64::from(at.x), f64::from(at.y));
+                self.pictures.pick(0, wanted(), at, Why::Hover);
+            } else {
+                ctx.request_repaint_after_secs((REST - still).max(0.02) as f32);
+            }
+        }
+        if let Some(text) = self
+            .sides
+            .hover
+            .as_ref()
+            .and_then(|h| panels::hover_text(h, case))
+        {
+            let at = pointer + vec2(14.0, 14.0);
+            overlay::tip(ui, at, &text);
+        }
+    }
+}
+
+/// Places of both pictures, and how they are shown.
+fn layout(place: Rect, comparison: Option<&Comparison>) -> ([Option<Rect>; 2], Option<Layout>) {
+    let layout = comparison.map(|c| c.layout);
+    let rects = match layout {
+        None => [Some(place), None],
+        Some(Layout::Beside) => {
+            let (left, right) = place.split_left_right_at_fraction(0.5);
+            [
+                left.with_max_x(left.right() - 1.0),
+                right.with_min_x(right.left() + 1.0),
+            ]
+            .map(Some)
+        }
+        Some(Layout::Wipe(_) | Layout::Difference) => [Some(place), Some(place)],
+    };
+    (rects, layout)
+}
+
+/// Draws the panels of a side, one below the other.
+fn side(
+    ui: &mut Ui,
+    panel: egui::Panel,
+    list: &[Panel],
+    about: &About<'_>,
+    actions: &mut Vec<Action>,
+) {
+    panel
+        .default_size(280.0)
+        .size_range(240.0..=520.0)
+        .show(ui, |ui| {
+            egui::ScrollArea::vertical().show(ui, |ui| {
+                for (title, is_open, show) in list {
+                    egui::CollapsingHeader::new(*title)
+                        .default_open(*is_open)
+                        .show(ui, |ui| show(ui, about, actions));
+                }
+            });
+        });
+}

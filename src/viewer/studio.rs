@@ -1,0 +1,220 @@
+//! What the thread that makes pictures keeps: the device, and for each side a grid on it.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+use glam::DVec2;
+
+use super::worker::{Answer, Difference, Job, Picture, Wanted};
+use crate::case::Case;
+use crate::gpu::Gpu;
+use crate::metrics::{Comparison, ciede2000_map};
+use crate::picking::{self, Hit};
+use crate::picture::{self, Rgb8};
+use crate::renderer::Renderer;
+use crate::scene::{self, CameraSpec, Scene, View};
+
+/// CIEDE2000 that has the last color of a difference map.
+pub const DIFFERENCE_SCALE: f64 = 20.0;
+
+type Say<'a> = &'a dyn Fn(Answer);
+
+/// The device and two sides of it.
+#[derive(Default)]
+pub struct Studio {
+    gpu: Option<Arc<Gpu>>,
+    sides: [Side; 2],
+}
+
+/// A case on the device, and the scene that was resolved last.
+#[derive(Default)]
+struct Side {
+    renderer: Option<(Arc<Case>, Renderer)>,
+    resolved: Option<(Wanted, Arc<View>)>,
+}
+
+impl Studio {
+    /// The device, opened when it is first asked for.
+    ///
+    /// # Errors
+    /// When there is none; the sentence says what to do.
+    pub fn open(&mut self, say: Say<'_>) -> Result<Arc<Gpu>, String> {
+        if let Some(gpu) = &self.gpu {
+            return Ok(gpu.clone());
+        }
+        let gpu = Arc::new(Gpu::new(None).map_err(|e| e.to_string())?);
+        say(Answer::Adapter {
+            name: gpu.describe(),
+            is_software: gpu.is_software(),
+        });
+        self.gpu = Some(gpu.clone());
+        Ok(gpu)
+    }
+
+    /// Does a job.
+    pub fn answer(&mut self, job: Job, cancel: &AtomicBool, say: Say<'_>) -> Answer {
+        let answer = match job {
+            Job::Picture {
+                side,
+                wanted,
+                is_draft,
+            } => {
+                let made = self.make(side, wanted, is_draft, cancel, say);
+                made.map(|made| match made {
+                    Some(picture) => Answer::Picture(side, Box::new(picture)),
+                    None => Answer::Cancelled,
+                })
+            }
+            Job::Pick {
+                side,
+                wanted,
+                at,
+                why,
+            } => {
+                let hit = self.pick(side, &wanted, at, say);
+                hit.map(|hit| Answer::Picked(why, hit))
+            }
+            Job::Difference(of) => difference(of).map(|d| Answer::Difference(Box::new(d))),
+        };
+        answer.unwrap_or_else(|error| {
+            // A lost device does not come back by itself: the next picture opens a new one.
+            if error.is_device {
+                *self = Self::default();
+            }
+            Answer::Failed(error.sentence)
+        })
+    }
+
+    fn make(
+        &mut self,
+        side: usize,
+        wanted: Wanted,
+        is_draft: bool,
+        cancel: &AtomicBool,
+        say: Say<'_>,
+    ) -> Result<Option<Picture>, Failure> {
+        let start = Instant::now();
+        let gpu = self.open(say).map_err(Failure::of_device)?;
+        self.share(side, &wanted.case);
+        let side = &mut self.sides[side];
+        let view = side.view(&wanted)?;
+        let renderer = side.renderer(gpu, &wanted.case)?;
+        let last_said = std::cell::Cell::new(Instant::now());
+        let progress = |part: f64| {
+            if last_said.get().elapsed() > Duration::from_millis(200) {
+                last_said.set(Instant::now());
+                say(Answer::Progress(part as f32));
+            }
+            !cancel.load(Ordering::Relaxed)
+        };
+        let frame = renderer.render(&wanted.case.grid, &view, &progress);
+        let frame = frame.map_err(|e| Failure::of_device(e.to_string()))?;
+        Ok(frame.map(|frame| Picture {
+            rgb: Arc::new(Rgb8 {
+                size: frame.image.size,
+                pixels: frame.image.over_background_8bit(view.background),
+            }),
+            view,
+            wanted,
+            is_draft,
+            stats: frame.stats,
+            prepare: frame.prepare,
+            light: frame.light,
+            bytes: frame.bytes,
+            took: start.elapsed(),
+        }))
+    }
+
+    /// Frees the second side's grid where the first one shows another case alone.
+    fn share(&mut self, side: usize, case: &Arc<Case>) {
+        let holds_other = |s: &Side| {
+            s.renderer
+                .as_ref()
+                .is_some_and(|(c, _)| !Arc::ptr_eq(c, case))
+        };
+        if side == 0 && holds_other(&self.sides[0]) {
+            self.sides[1] = Side::default();
+        }
+    }
+
+    fn pick(
+        &mut self,
+        side: usize,
+        wanted: &Wanted,
+        at: DVec2,
+        say: Say<'_>,
+    ) -> Result<Option<Hit>, Failure> {
+        let gpu = self.open(say).map_err(Failure::of_device)?;
+        let side = &mut self.sides[side];
+        let view = side.view(wanted)?;
+        let renderer = side.renderer(gpu, &wanted.case)?;
+        let hit = picking::pick(renderer, &wanted.case, &view, at);
+        hit.map_err(|e| Failure::of_device(e.to_string()))
+    }
+}
+
+impl Side {
+    /// The renderer of a case: the one at hand, or a new one.
+    fn renderer(&mut self, gpu: Arc<Gpu>, case: &Arc<Case>) -> Result<&mut Renderer, Failure> {
+        let kept = self.renderer.take();
+        let kept = match kept.filter(|(kept, _)| Arc::ptr_eq(kept, case)) {
+            Some(kept) => kept,
+            None => {
+                let made = Renderer::new(gpu, &case.grid);
+                let made = made.map_err(|e| Failure::of_device(e.to_string()))?;
+                (case.clone(), made)
+            }
+        };
+        Ok(&mut self.renderer.insert(kept).1)
+    }
+
+    /// The scene resolved; where only camera and size differ from the last one, without reading values.
+    fn view(&mut self, wanted: &Wanted) -> Result<Arc<View>, Failure> {
+        let of_scene = |e: scene::SceneError| Failure {
+            sentence: e.to_string(),
+            is_device: false,
+        };
+        let without_camera = Wanted {
+            case: wanted.case.clone(),
+            scene: Scene {
+                camera: CameraSpec::default(),
+                size: [1, 1],
+                ..wanted.scene.clone()
+            },
+        };
+        let known = self.resolved.take();
+        let view = match known.filter(|(known, _)| *known == without_camera) {
+            Some((_, view)) => view.seen_from(&wanted.scene.camera, wanted.scene.size),
+            None => scene::resolve(&wanted.scene, &wanted.case),
+        };
+        let view = Arc::new(view.map_err(of_scene)?);
+        self.resolved = Some((without_camera, view.clone()));
+        Ok(view)
+    }
+}
+
+fn difference(of: [Arc<Rgb8>; 2]) -> Result<Difference, Failure> {
+    let figures = Comparison::of(&of[0], &of[1]).map_err(|e| Failure {
+        sentence: e.to_string(),
+        is_device: false,
+    })?;
+    let differences = ciede2000_map(&of[0].pixels, &of[1].pixels).unwrap_or_default();
+    let map = picture::difference_colors(&differences, of[0].size, DIFFERENCE_SCALE);
+    Ok(Difference { of, map, figures })
+}
+
+/// Why there is no answer.
+struct Failure {
+    sentence: String,
+    is_device: bool,
+}
+
+impl Failure {
+    fn of_device(sentence: String) -> Self {
+        Self {
+            sentence,
+            is_device: true,
+        }
+    }
+}
