@@ -7,7 +7,7 @@ use std::sync::Arc;
 pub use cache::FieldCache;
 
 use crate::model::derived::Derived;
-use crate::model::{CellField, FaultFaces, Grid};
+use crate::model::{CellField, FaultFaces, Grid, Ijk};
 
 /// Where a property's values come from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
@@ -78,7 +78,7 @@ pub struct About {
     pub map_axes: Option<[f64; 6]>,
     /// `single`, `dual porosity` or `dual permeability`.
     pub porosity_model: String,
-    /// Non-neighbor connections of the global grid.
+    /// Non-neighbor connections of the global grid, as the file counts them.
     pub nnc: usize,
     /// Local grids.
     pub local_grids: Vec<LocalGrid>,
@@ -148,6 +148,8 @@ pub struct Case {
     pub about: About,
     /// Which faces lie on the faults of [`About::named_faults`], by their number there.
     pub fault_faces: Arc<FaultFaces>,
+    /// Pairs of cells that flow connects though they are no neighbors (NNC).
+    pub connections: Vec<[Ijk; 2]>,
     /// Time steps in file order.
     pub steps: Vec<Step>,
     /// Properties that can be shown.
@@ -286,6 +288,7 @@ impl Case {
                 }
                 soil
             }
+            CONNECTIONS => self.connection_counts(),
             _ => {
                 let thickness = self.derived_thickness()?;
                 let poro = self.file_values("PORO", step)?;
@@ -300,6 +303,17 @@ impl Case {
         Ok(CellField::new(values))
     }
 
+    /// Connections of each active cell.
+    fn connection_counts(&self) -> Vec<f32> {
+        let mut counts = vec![0.0; self.grid.active_cells().len()];
+        for ijk in self.connections.iter().flatten() {
+            if let Some(active) = self.grid.active_index(self.grid.dims().cell(*ijk)) {
+                counts[active.0 as usize] += 1.0;
+            }
+        }
+        counts
+    }
+
     /// DZ of the file where there is one, else the geometric thickness.
     fn derived_thickness(&self) -> Result<Vec<f32>, CaseError> {
         Ok(match self.source.values("DZ", 0)? {
@@ -311,6 +325,8 @@ impl Case {
 
 /// Oil saturation where the file leaves it out.
 pub const SOIL: &str = "SOIL";
+/// Number of non-neighbor connections of a cell.
+pub const CONNECTIONS: &str = "NNC";
 /// Porosity times net-to-gross times thickness.
 pub const POROSITY_THICKNESS: &str = "PORO_THICKNESS";
 

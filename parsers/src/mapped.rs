@@ -1,8 +1,9 @@
 //! A read-only memory map of a whole file: the only unsafe code of the project.
 //!
 //! Hazard: when another process truncates the file while it is mapped, touching the lost
-//! pages raises SIGBUS. No safe interface to mapping can rule that out; a simulator only
-//! appends to its result files while it runs, which is harmless.
+//! pages raises SIGBUS. A simulator only appends to its result files while it runs, which is
+//! harmless, but it begins them anew when it is run again: who reads a file that has been open
+//! for a while asks [`MappedFile::is_whole`] before, which leaves a moment, not hours.
 
 use std::fs::File;
 use std::path::{Path, PathBuf};
@@ -13,6 +14,7 @@ use crate::error::ParseError;
 #[derive(Debug)]
 pub struct MappedFile {
     path: PathBuf,
+    file: File,
     // None for an empty file, which cannot be mapped.
     map: Option<memmap2::Mmap>,
 }
@@ -37,6 +39,7 @@ impl MappedFile {
         };
         Ok(Self {
             path: path.to_owned(),
+            file,
             map,
         })
     }
@@ -44,6 +47,12 @@ impl MappedFile {
     /// The bytes of the file.
     pub fn bytes(&self) -> &[u8] {
         self.map.as_deref().unwrap_or_default()
+    }
+
+    /// False where the file has become shorter since it was mapped.
+    pub fn is_whole(&self) -> bool {
+        let length = self.file.metadata().map_or(0, |m| m.len());
+        length >= self.bytes().len() as u64
     }
 
     /// The path that was opened.

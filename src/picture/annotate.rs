@@ -62,6 +62,7 @@ pub fn annotate(rgb: &mut [[u8; 3]], image: &Image, view: &View, annotations: &A
     }
     let canvas = Canvas::new(image.size, rgb);
     let mut pen = Pen::new(canvas, view.background, Pen::unit_of(image.size));
+    axes::draw_connections(&mut pen, view);
     if annotations.show_box {
         axes::draw_box(&mut pen, image, view);
         axes::draw_axes(&mut pen, view);
@@ -114,6 +115,7 @@ mod tests {
             sampling_step: 1.0,
             early_termination: 0.0,
             surfaces: crate::scene::Surfaces::default(),
+            connections: std::sync::Arc::default(),
             named_faults: std::sync::Arc::default(),
             drawn: Vec::new().into(),
             clip: Vec::new(),

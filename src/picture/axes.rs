@@ -7,6 +7,20 @@ use super::pen::Pen;
 use super::ticks::shortened;
 use crate::scene::{Camera, View};
 
+/// Color of the lines between cells of non-neighbor connections.
+pub const CONNECTION: [u8; 3] = [225, 30, 170];
+
+/// Draws lines between the cells of the view's connections, over the volume: its depth is not known here.
+pub fn draw_connections(pen: &mut Pen, view: &View) {
+    let size = pen.canvas.size.map(f64::from);
+    let thin = pen.thin;
+    for ends in view.connections.iter() {
+        if let Some(line) = on_screen(&view.camera, *ends, size) {
+            pen.canvas.line(line, [thin; 2], CONNECTION, |_, _| 0.8);
+        }
+    }
+}
+
 /// Draws the edges of the box's far sides, under the volume.
 ///
 /// The depth of the volume is not known here, so an edge in front of it could only be drawn wrong.

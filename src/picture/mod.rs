@@ -15,7 +15,7 @@ mod sheet;
 mod ticks;
 
 pub use annotate::{Annotations, annotate, finished};
-pub use axes::far_edges;
+pub use axes::{CONNECTION, far_edges};
 pub use difference::{difference_colors, difference_picture};
 pub use files::{Format, PictureError, write_exr, write_png};
 pub use plot::{Plot, Series};

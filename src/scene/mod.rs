@@ -249,6 +249,8 @@ pub struct Show {
     pub hull: Hull,
     /// Faults as half-transparent sheets.
     pub faults: bool,
+    /// Lines between the cells of non-neighbor connections.
+    pub nnc: bool,
     /// Wells.
     pub wells: bool,
     /// Edges of the cells on hull, faults and opaque sections.
@@ -265,6 +267,7 @@ impl Default for Show {
             inactive: Inactive::Hidden,
             hull: Hull::Hidden,
             faults: false,
+            nnc: false,
             wells: true,
             cell_edges: false,
             r#box: true,

@@ -97,6 +97,8 @@ pub struct View {
     pub clip: Vec<ClipPlane>,
     /// Surfaces in the volume.
     pub surfaces: Surfaces,
+    /// Ends in world space of the connections that are marked: those of drawn cells.
+    pub connections: Arc<Vec<[DVec3; 2]>>,
     /// Which faces lie on faults that have a name.
     pub named_faults: Arc<FaultFaces>,
     /// Occlusion and lights.
@@ -169,6 +171,10 @@ pub fn resolve(scene: &Scene, case: &Case) -> Result<View, SceneError> {
     let field = case.field(&property, step)?;
     let range = range(scene, &field)?;
     let drawn = drawn(case, &field, &scene.filter, step)?;
+    let connections = match scene.show.nnc {
+        true => connections(case, &spaces, &drawn),
+        false => Vec::new(),
+    };
     let (ghosts, field, drawn) = match scene.show.inactive {
         Inactive::Hidden => (None, field, drawn),
         Inactive::Ghost => {
@@ -208,6 +214,7 @@ pub fn resolve(scene: &Scene, case: &Case) -> Result<View, SceneError> {
         ghosts,
         clip: clip(&scene.clip)?,
         surfaces: Surfaces::from(&scene.show),
+        connections: Arc::new(connections),
         named_faults: case.fault_faces.clone(),
         lighting: lighting::resolve(
             &scene.lighting,
@@ -423,6 +430,18 @@ fn drawn(
         }
     }
     Ok(drawn)
+}
+
+/// Middles of the cells of non-neighbor connections in world space, where both are drawn.
+fn connections(case: &Case, spaces: &Spaces, drawn: &[bool]) -> Vec<[DVec3; 2]> {
+    let grid = &case.grid;
+    let middle = |ijk: Ijk| {
+        let active = grid.active_index(grid.dims().cell(ijk))?;
+        let center = grid.hexahedron(ijk).center();
+        drawn[active.0 as usize].then(|| spaces.world_from_grid.transform_point3(center))
+    };
+    let ends = |[a, b]: &[Ijk; 2]| Some([middle(*a)?, middle(*b)?]);
+    case.connections.iter().filter_map(ends).collect()
 }
 
 /// The camera that a scene asks for, given the corners of the model's box.

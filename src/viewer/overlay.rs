@@ -5,7 +5,7 @@ use glam::DVec3;
 
 use super::studio::DIFFERENCE_SCALE;
 use crate::metrics::Comparison;
-use crate::picture::{Annotations, far_edges, legend_labels};
+use crate::picture::{Annotations, CONNECTION, far_edges, legend_labels};
 use crate::scene::View;
 
 const TEXT: f32 = 13.0;
@@ -17,6 +17,13 @@ pub fn draw(painter: &Painter, rect: Rect, view: &View, annotations: &Annotation
         true => Color32::from_gray(235),
         false => Color32::from_gray(30),
     };
+    let [r, g, b] = CONNECTION;
+    let stroke = Stroke::new(1.0, Color32::from_rgb(r, g, b));
+    for ends in view.connections.iter() {
+        if let [Some(a), Some(b)] = ends.map(|p| on_screen(view, rect, p)) {
+            painter.line_segment([a, b], stroke);
+        }
+    }
     if annotations.show_box {
         model_box(painter, rect, view, ink);
         axes(painter, rect, view, ink);

@@ -102,7 +102,12 @@ impl RecordFile {
 
     /// The data of each block, with both markers checked.
     fn blocks(&self, entry: &Entry) -> Result<Vec<&[u8]>, ParseError> {
-        let bytes = self.bytes();
+        if !self.file.is_whole() {
+            let message =
+                "cannot be read: the file was cut off while it was open; load the case again";
+            return Err(self.error(entry, message));
+        }
+        let bytes = self.file.bytes();
         let mut blocks = Vec::new();
         let mut at = entry.data;
         let mut total = 0;

@@ -108,6 +108,7 @@ impl Entry {
 pub struct RecordFile {
     file: MappedFile,
     entries: Vec<Entry>,
+    is_cut: bool,
 }
 
 impl RecordFile {
@@ -120,7 +121,11 @@ impl RecordFile {
         let (entries, broken) = index::index(&file);
         match broken {
             Some(error) => Err(error),
-            None => Ok(Self { file, entries }),
+            None => Ok(Self {
+                file,
+                entries,
+                is_cut: false,
+            }),
         }
     }
 
@@ -132,6 +137,7 @@ impl RecordFile {
     pub fn open_lenient(path: &Path, warnings: &mut Warnings) -> Result<Self, ParseError> {
         let file = MappedFile::open(path)?;
         let (entries, broken) = index::index(&file);
+        let is_cut = broken.is_some();
         if let Some(error) = broken {
             if entries.is_empty() {
                 return Err(error);
@@ -144,7 +150,16 @@ impl RecordFile {
             );
             warnings.push(path, error.at, message);
         }
-        Ok(Self { file, entries })
+        Ok(Self {
+            file,
+            entries,
+            is_cut,
+        })
+    }
+
+    /// True where the file ends within an array, as one does that is being written.
+    pub fn is_cut(&self) -> bool {
+        self.is_cut
     }
 
     /// All arrays in file order.
@@ -165,10 +180,6 @@ impl RecordFile {
     /// An error about an array of this file.
     pub fn error(&self, entry: &Entry, message: impl Into<String>) -> ParseError {
         ParseError::new(self.path(), At::Byte(entry.offset), entry.name(), message)
-    }
-
-    fn bytes(&self) -> &[u8] {
-        self.file.bytes()
     }
 }
 
@@ -272,6 +283,19 @@ pub(crate) mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn err_file_that_is_cut_off_while_open() {
+        let bytes = array("PORO", "REAL", 4, &reals(5000), 1000);
+        let path = tempfile::NamedTempFile::new().unwrap();
+        std::fs::write(path.path(), &bytes).unwrap();
+        let file = RecordFile::open(path.path()).unwrap();
+        assert!(file.f32s(&file.entries()[0]).is_ok());
+        let writer = std::fs::OpenOptions::new().write(true).open(path.path());
+        writer.unwrap().set_len(100).unwrap();
+        let error = file.f32s(&file.entries()[0]).unwrap_err().to_string();
+        assert!(error.contains("cut off"), "{error}");
     }
 
     #[test]

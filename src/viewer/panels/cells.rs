@@ -1,10 +1,13 @@
-//! Which cells are drawn, the vertical exaggeration, and what is drawn beside the volume.
+//! Which cells are drawn, by I, J and K, and the vertical exaggeration.
 
 use eframe::egui::{self, Ui};
 
 use super::About;
-use crate::scene::{Hull, Inactive};
+use crate::scene::Filter;
 use crate::viewer::action::Action;
+
+/// Width of a slider, in points: two stand beside each other.
+const SLIDER: f32 = 58.0;
 
 pub fn show(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
     let dims = about.case.grid.dims();
@@ -15,59 +18,65 @@ pub fn show(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
         ("J", &mut filter.j, dims.nj),
         ("K", &mut filter.k, dims.nk),
     ] {
-        let [mut from, mut to] = range.unwrap_or([1, count]);
-        ui.horizontal(|ui| {
-            ui.label(name);
-            ui.add(egui::Slider::new(&mut from, 1..=count).text(format!("{name} from")));
-        });
-        ui.horizontal(|ui| {
-            ui.label("   ");
-            ui.add(egui::Slider::new(&mut to, 1..=count).text(format!("{name} to")));
-        });
-        let kept = [from.min(to), to.max(from)];
-        *range = (kept != [1, count]).then_some(kept);
+        ui.horizontal(|ui| between(ui, name, range, count));
+    }
+    let all = ui.add_enabled(filter != Filter::default(), egui::Button::new("All cells"));
+    if all
+        .on_hover_text("Takes these and the property filters away")
+        .clicked()
+    {
+        filter = Filter::default();
     }
     if filter != before {
         actions.push(Action::Filter(filter));
     }
     exaggeration(ui, about, actions);
-    beside(ui, about, actions);
+}
+
+/// First and last row, column or layer; a slider each, and a button for one more or less.
+fn between(ui: &mut Ui, name: &str, range: &mut Option<[usize; 2]>, count: usize) {
+    ui.spacing_mut().slider_width = SLIDER;
+    ui.spacing_mut().interact_size.x = 32.0;
+    let [mut from, mut to] = range.unwrap_or([1, count]);
+    let before = [from, to];
+    ui.label(name);
+    for (value, end) in [(&mut from, "first"), (&mut to, "last")] {
+        let slider = ui.add(egui::Slider::new(value, 1..=count));
+        slider.on_hover_text(format!("The {end} {name} drawn, 1 to {count}"));
+    }
+    if [from, to] != before {
+        // The end that was moved pushes the other one.
+        if from > to {
+            match from == before[0] {
+                true => from = to,
+                false => to = from,
+            }
+        }
+        *range = ([from, to] != [1, count]).then_some([from, to]);
+    }
 }
 
 fn exaggeration(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
     let Some(picture) = about.picture else { return };
-    let mut factor = picture.view.vertical_exaggeration;
-    if let Some(wanted) = about.scene.vertical_exaggeration {
-        factor = wanted;
-    }
-    let slider = egui::Slider::new(&mut factor, 0.1..=100.0).logarithmic(true);
-    if ui.add(slider.text("Vertical exaggeration")).changed() {
-        actions.push(Action::Exaggeration(Some(factor)));
-    }
-}
-
-fn beside(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
-    let mut show = about.scene.show.clone();
-    let mut ghosts = show.inactive == Inactive::Ghost;
-    ui.checkbox(&mut ghosts, "Inactive cells");
-    show.inactive = match ghosts {
-        true => Inactive::Ghost,
-        false => Inactive::Hidden,
-    };
-    let mut hull = show.hull == Hull::Opaque;
-    ui.checkbox(&mut hull, "Opaque hull")
-        .on_hover_text("The outer faces of the drawn cells, in the property's colors");
-    show.hull = match hull {
-        true => Hull::Opaque,
-        false => Hull::Hidden,
-    };
-    ui.checkbox(&mut show.faults, "Fault surfaces")
-        .on_hover_text("Half-transparent sheets, a color for each name in FAULTS");
-    ui.checkbox(&mut show.cell_edges, "Edges of cells")
-        .on_hover_text("On the hull, fault surfaces and opaque sections");
-    ui.checkbox(&mut show.r#box, "Box and axes");
-    ui.checkbox(&mut show.legend, "Legend and title");
-    if show != about.scene.show {
-        actions.push(Action::Show(show));
-    }
+    let wanted = about.scene.vertical_exaggeration;
+    let mut factor = wanted.unwrap_or(picture.view.vertical_exaggeration);
+    ui.label("Vertical exaggeration");
+    ui.horizontal(|ui| {
+        ui.spacing_mut().slider_width = 130.0;
+        let slider = egui::Slider::new(&mut factor, 0.1..=100.0).logarithmic(true);
+        let slider = ui.add(slider.prefix("×"));
+        if slider
+            .on_hover_text("Factor on depth, 0.1 to 100")
+            .changed()
+        {
+            actions.push(Action::Exaggeration(Some(factor)));
+        }
+        let own = ui.add_enabled(wanted.is_some(), egui::Button::new("Auto"));
+        if own
+            .on_hover_text("One that suits the model's shape")
+            .clicked()
+        {
+            actions.push(Action::Exaggeration(None));
+        }
+    });
 }

@@ -11,6 +11,7 @@ mod property;
 mod selection;
 mod statistics;
 mod strategy;
+mod surfaces;
 mod transfer;
 
 use std::path::PathBuf;
@@ -52,14 +53,6 @@ pub struct About<'a> {
     pub others: &'a [(PathBuf, String)],
 }
 
-impl About<'_> {
-    /// The property shown.
-    pub fn property(&self) -> Option<&str> {
-        let shown = self.picture.map(|p| p.view.property.as_str());
-        self.scene.property.as_deref().or(shown)
-    }
-}
-
 /// A panel: its title, whether it is open at first, and what draws it.
 pub type Panel = (
     &'static str,
@@ -71,16 +64,17 @@ pub type Panel = (
 pub const LEFT: [Panel; 5] = [
     ("Property", true, property::show),
     ("Cells", true, cells::show),
+    ("Shown", true, surfaces::show),
     ("Property filters", false, filters::show),
     ("Clip planes", false, clip::show),
-    ("Selected cells", true, selection::show),
 ];
 
 /// Panels at the right, from top to bottom.
-pub const RIGHT: [Panel; 5] = [
+pub const RIGHT: [Panel; 6] = [
     ("Transfer function", true, transfer::show),
     ("Strategy", true, strategy::show),
     ("Light", true, light::show),
+    ("Selected cells", true, selection::show),
     ("Compare", false, compare::show),
-    ("Statistics", true, statistics::show),
+    ("Statistics", false, statistics::show),
 ];
