@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
+use std::thread::JoinHandle;
 
 use crate::case::Case;
 use crate::filming::shoot;
@@ -55,6 +56,7 @@ pub struct Export {
     answer: Receiver<Result<String, String>>,
     done: Arc<AtomicU32>,
     cancel: Arc<AtomicBool>,
+    thread: Option<JoinHandle<()>>,
 }
 
 impl Export {
@@ -65,7 +67,7 @@ impl Export {
         let cancel = Arc::new(AtomicBool::new(false));
         let what = format!("writing {}", path.display());
         let (shared_done, shared_cancel) = (done.clone(), cancel.clone());
-        std::thread::spawn(move || {
+        let thread = std::thread::spawn(move || {
             let progress = |part: f64| {
                 let now = (WHOLE * part) as u32;
                 // A hundred times in all, not for each tile.
@@ -92,6 +94,7 @@ impl Export {
             answer,
             done,
             cancel,
+            thread: Some(thread),
         }
     }
 
@@ -113,6 +116,17 @@ impl Export {
             Err(TryRecvError::Disconnected) => {
                 Some(Err(format!("{} ended without an answer", self.what)))
             }
+        }
+    }
+}
+
+impl Drop for Export {
+    /// Waits for the thread: drivers do not like a process that ends while they draw.
+    fn drop(&mut self) {
+        self.cancel();
+        if let Some(thread) = self.thread.take() {
+            // One that panicked has nothing more to do.
+            let _ = thread.join();
         }
     }
 }

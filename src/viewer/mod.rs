@@ -34,8 +34,11 @@ use std::path::PathBuf;
 
 pub use action::{Action, Beside};
 pub use document::Document;
+pub use reader::{Curves, Table};
+pub use settings::Settings;
 pub use state::{Comparison, Layout, Pace, Setup, State};
 pub use window::Window;
+pub use worker::{Difference, Picture};
 
 /// Opens the window on cases and returns when it is closed. Where it `watches`, cases are read again when
 /// their files change.
@@ -58,7 +61,12 @@ pub fn run(cases: Vec<PathBuf>, watches: bool) -> Result<(), String> {
         ..Default::default()
     };
     let create = |cc: &eframe::CreationContext<'_>| -> Result<Box<dyn eframe::App>, _> {
-        Ok(Box::new(Window::new(&cc.egui_ctx, cases, watches)))
+        Ok(Box::new(Window::new(
+            &cc.egui_ctx,
+            cases,
+            watches,
+            Settings::of_user(),
+        )))
     };
     eframe::run_native("strataray", options, Box::new(create))
         .map_err(|e| format!("the window cannot be opened: {e}"))

@@ -23,6 +23,9 @@ pub struct Settings {
     pub pace: Pace,
     /// How pictures and films are saved.
     pub export: Export,
+    /// Where they are kept; `None` where they are not.
+    #[serde(skip)]
+    file: Option<PathBuf>,
 }
 
 /// How pictures and films are saved.
@@ -61,16 +64,25 @@ impl Default for Settings {
             hides_panels: false,
             pace: Pace::default(),
             export: Export::default(),
+            file: None,
         }
     }
 }
 
 impl Settings {
-    /// Those of the last session; the default ones where there are none.
-    pub fn load() -> Self {
-        let read = |path: PathBuf| std::fs::read_to_string(path).ok();
-        let text = file().and_then(read).unwrap_or_default();
-        serde_json::from_str(&text).unwrap_or_default()
+    /// Those of the last session, or the default ones, from the user's configuration folder.
+    pub fn of_user() -> Self {
+        file().map_or_else(Self::default, Self::in_file)
+    }
+
+    /// Those that a file keeps, or the default ones where it does not.
+    pub fn in_file(path: PathBuf) -> Self {
+        let text = std::fs::read_to_string(&path).unwrap_or_default();
+        let known: Self = serde_json::from_str(&text).unwrap_or_default();
+        Self {
+            file: Some(path),
+            ..known
+        }
     }
 
     /// Keeps them.
@@ -78,14 +90,14 @@ impl Settings {
     /// # Errors
     /// When they cannot be written; the sentence is for people.
     pub fn save(&self) -> Result<(), String> {
-        let Some(path) = file() else {
+        let Some(path) = &self.file else {
             return Ok(());
         };
         let write = || -> std::io::Result<()> {
             if let Some(folder) = path.parent() {
                 std::fs::create_dir_all(folder)?;
             }
-            std::fs::write(&path, serde_json::to_string_pretty(self)?)
+            std::fs::write(path, serde_json::to_string_pretty(self)?)
         };
         write().map_err(|e| format!("{} cannot be written: {e}", path.display()))
     }

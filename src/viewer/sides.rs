@@ -126,7 +126,7 @@ impl Window {
                         })));
                     }
                 }
-                _ => self.difference(ui, rect),
+                _ => self.difference_map(ui, rect),
             }
             if self.pictures.are_final() {
                 self.pictures.compare();
@@ -207,7 +207,7 @@ impl Window {
     }
 
     /// The map of differences over the first picture, once it is known.
-    fn difference(&self, ui: &mut Ui, rect: Rect) {
+    fn difference_map(&self, ui: &mut Ui, rect: Rect) {
         let Some(shown) = self.pictures.difference() else {
             return;
         };
@@ -310,7 +310,9 @@ fn side(
         .default_size(280.0)
         .size_range(240.0..=520.0)
         .show(ui, |ui| {
-            egui::ScrollArea::vertical().show(ui, |ui| {
+            // Filled whatever is in it, so that the picture keeps its size.
+            let scroll = egui::ScrollArea::vertical().auto_shrink(false);
+            scroll.show(ui, |ui| {
                 for (title, is_open, show) in list {
                     egui::CollapsingHeader::new(*title)
                         .default_open(*is_open)

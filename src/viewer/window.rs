@@ -19,7 +19,7 @@ use super::sheets::Sheets;
 use super::sides::Sides;
 use super::state::{Setup, State};
 use super::watch::{Change, Watch};
-use super::worker::{Picture, Wanted, Why};
+use super::worker::{Difference, Picture, Wanted, Why};
 use super::{bar, command};
 use crate::case::Case;
 use crate::picking::Hit;
@@ -58,7 +58,7 @@ const AHEAD: usize = 3;
 
 impl Window {
     /// The window on some cases; where it `watches`, it follows their files.
-    pub fn new(ctx: &Context, cases: Vec<PathBuf>, watches: bool) -> Self {
+    pub fn new(ctx: &Context, cases: Vec<PathBuf>, watches: bool, settings: Settings) -> Self {
         let waker = ctx.clone();
         let mut window = Self {
             documents: Vec::new(),
@@ -66,7 +66,7 @@ impl Window {
             pictures: Pictures::new(ctx),
             reader: Reader::start(move || waker.request_repaint()),
             sides: Sides::default(),
-            settings: Settings::load(),
+            settings,
             sheets: Sheets::default(),
             dialog: None,
             export: None,
@@ -136,6 +136,11 @@ impl Window {
         };
         let shown = self.pictures.shown(side, &case)?;
         Some((&shown.picture, self.pictures.are_final()))
+    }
+
+    /// How far the two pictures shown are apart, once that is known.
+    pub fn difference(&self) -> Option<&Difference> {
+        self.pictures.difference().map(|d| &d.difference)
     }
 
     /// How a case is shown at first.
@@ -305,7 +310,10 @@ impl Window {
         if let (Some(comparison), Some(size), Some(case)) =
             (&setup.comparison, sizes[1], self.other_case())
         {
-            let scene = comparison.scene(&self.linked(&setup.scene));
+            let scene = match comparison.case {
+                Some(_) => comparison.scene(&self.linked(&setup.scene)),
+                None => comparison.scene(&setup.scene),
+            };
             wanted.push(Wanted {
                 case,
                 scene: Scene { size, ..scene },
@@ -314,7 +322,7 @@ impl Window {
         wanted
     }
 
-    /// The scene with camera and exaggeration of the first picture, where these depend on its case.
+    /// The scene with camera and exaggeration of the first picture, which may depend on its case.
     fn linked(&self, scene: &Scene) -> Scene {
         let Some((picture, _)) = self.picture(0) else {
             return scene.clone();
@@ -446,7 +454,12 @@ impl Window {
         self.play(ctx);
         self.read();
         let is_down = ctx.input(|i| i.pointer.any_down());
-        if !is_down && let Some(document) = self.document_mut() {
+        let scrolls =
+            ctx.input(|i| i.smooth_scroll_delta != egui::Vec2::ZERO || i.zoom_delta() != 1.0);
+        if !is_down
+            && !scrolls
+            && let Some(document) = self.document_mut()
+        {
             document.history.end_gesture();
         }
         let plays = self.document().is_some_and(|d| d.playing.is_some());

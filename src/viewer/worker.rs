@@ -3,6 +3,7 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
+use std::thread::JoinHandle;
 use std::time::Duration;
 
 use glam::DVec2;
@@ -125,9 +126,11 @@ pub enum Answer {
 
 /// The thread that makes pictures, one at a time.
 pub struct Worker {
-    jobs: Sender<Job>,
+    /// Gone when the thread is to end.
+    jobs: Option<Sender<Job>>,
     answers: Receiver<Answer>,
     cancel: Arc<AtomicBool>,
+    thread: Option<JoinHandle<()>>,
 }
 
 impl Worker {
@@ -137,7 +140,7 @@ impl Worker {
         let (outbox, answers) = channel();
         let cancel = Arc::new(AtomicBool::new(false));
         let cancelled = cancel.clone();
-        std::thread::spawn(move || {
+        let thread = std::thread::spawn(move || {
             let say = |answer| {
                 // The window may be gone.
                 let _ = outbox.send(answer);
@@ -152,9 +155,10 @@ impl Worker {
             }
         });
         Self {
-            jobs,
+            jobs: Some(jobs),
             answers,
             cancel,
+            thread: Some(thread),
         }
     }
 
@@ -176,7 +180,7 @@ impl Worker {
 
     fn send(&self, job: Job) {
         // The thread lives as long as this; were it gone, its silence would be seen by `poll`.
-        let _ = self.jobs.send(job);
+        let _ = self.jobs.as_ref().map(|jobs| jobs.send(job));
     }
 
     /// Asks to leave the picture that is being made.
@@ -187,5 +191,17 @@ impl Worker {
     /// What has been said since the last call.
     pub fn poll(&self) -> Vec<Answer> {
         self.answers.try_iter().collect()
+    }
+}
+
+impl Drop for Worker {
+    /// Waits for the thread: drivers do not like a process that ends while they draw.
+    fn drop(&mut self) {
+        self.cancel();
+        self.jobs = None;
+        if let Some(thread) = self.thread.take() {
+            // One that panicked has nothing more to do.
+            let _ = thread.join();
+        }
     }
 }

@@ -1,0 +1,103 @@
+//! Comparing: two pictures from one camera.
+
+use eframe::egui::{Key, Modifiers, vec2};
+use strataray::viewer::{Action, Comparison, Layout};
+
+use super::common::{gpu, sample};
+use super::driven::Driven;
+
+#[test]
+fn two_strategies_stand_beside_each_other() {
+    let Some(_) = gpu() else { return };
+    let mut driven = Driven::showing(sample());
+    let alone = driven.picture(0);
+    driven.press(Modifiers::NONE, Key::C);
+    driven.wait_final();
+    let views = [0, 1].map(|n| driven.harness.state().picture(n).unwrap().0.view.clone());
+    assert_ne!(views[0].strategy, views[1].strategy);
+    assert_eq!(views[0].camera, views[1].camera);
+    assert!(2 * views[0].size[0] <= alone.size[0]);
+    // A drag on the second one turns both.
+    let before = views[0].camera;
+    let both = driven.places("volume");
+    assert_eq!(both.len(), 2);
+    driven.drag(both[1].center(), both[1].center() + vec2(80.0, 0.0));
+    driven.wait_final();
+    let cameras = [0, 1].map(|n| driven.harness.state().picture(n).unwrap().0.view.camera);
+    assert_eq!(cameras[0], cameras[1]);
+    assert_ne!(cameras[0], before);
+}
+
+#[test]
+fn a_difference_is_measured_and_a_wipe_dragged() {
+    let Some(_) = gpu() else { return };
+    let mut driven = Driven::showing(sample());
+    let comparison = Comparison {
+        layout: Layout::Difference,
+        strategy: Some("srg".into()),
+        ..Comparison::default()
+    };
+    let apply =
+        |d: &mut Driven, c: Comparison| d.harness.state_mut().apply(Action::Compare(Some(c)));
+    apply(&mut driven, comparison.clone());
+    driven.wait_final();
+    driven.wait("the difference", |w| w.difference().is_some());
+    let mean = |d: &Driven| {
+        d.harness
+            .state()
+            .difference()
+            .unwrap()
+            .figures
+            .ciede2000_mean
+    };
+    let strategies = mean(&driven);
+    assert!(strategies > 0.0 && strategies < 3.0, "{strategies}");
+    // With itself there is none; with another step there is more.
+    apply(
+        &mut driven,
+        Comparison {
+            strategy: None,
+            ..comparison.clone()
+        },
+    );
+    driven.wait_final();
+    driven.wait("no difference", |w| {
+        w.difference()
+            .is_some_and(|d| d.figures.ciede2000_mean == 0.0)
+    });
+    apply(
+        &mut driven,
+        Comparison {
+            strategy: None,
+            step: Some(strataray::scene::StepSpec::Index(0)),
+            ..comparison.clone()
+        },
+    );
+    driven.wait_final();
+    driven.wait("a difference", |w| {
+        w.difference()
+            .is_some_and(|d| d.figures.ciede2000_mean > 0.0)
+    });
+    apply(
+        &mut driven,
+        Comparison {
+            layout: Layout::Wipe(0.5),
+            ..comparison
+        },
+    );
+    driven.wait_final();
+    let line = driven.place("wipe").center();
+    driven.drag(line, line + vec2(-100.0, 0.0));
+    let layout = driven
+        .document()
+        .state
+        .setup
+        .comparison
+        .as_ref()
+        .unwrap()
+        .layout;
+    assert!(
+        matches!(layout, Layout::Wipe(at) if at < 0.45),
+        "{layout:?}"
+    );
+}

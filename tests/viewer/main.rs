@@ -1,0 +1,19 @@
+//! The viewer's real interface without a display, driven as users do, on the adapter that there is.
+#![allow(
+    missing_docs,
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    reason = "tests"
+)]
+
+#[path = "../common/mod.rs"]
+mod common;
+mod comparing;
+mod driven;
+mod keeping;
+mod looking;
+mod opening;
+mod selecting;
+mod showing;
+mod speed;

@@ -1,0 +1,139 @@
+//! Selecting: filters, clip planes, cells.
+
+use eframe::egui::{Key, Modifiers, pos2, vec2};
+use egui_kittest::kittest::Queryable;
+use strataray::model::Ijk;
+use strataray::scene::{Hull, Show};
+use strataray::viewer::Action;
+
+use super::common::{gpu, sample};
+use super::driven::{Driven, covered};
+
+#[test]
+fn filters_take_cells_away() {
+    let Some(_) = gpu() else { return };
+    let mut driven = Driven::showing(sample());
+    let all = covered(&driven.picture(0), [255; 3]);
+    let count = driven.document().case.as_ref().unwrap().grid.dims().ni;
+    // The number stands right of its slider.
+    let number = driven.place(&format!("The last I drawn, 1 to {count}"));
+    driven.click_at(number.left_center() - vec2(40.0, 0.0), Modifiers::NONE);
+    let [first, last] = driven.scene().filter.i.unwrap();
+    assert!(first == 1 && last < count, "{first} {last}");
+    driven.wait_final();
+    let some = covered(&driven.picture(0), [255; 3]);
+    assert!(some < 0.9 * all, "{some} {all}");
+    driven.click("All cells");
+    driven.wait_final();
+    assert_eq!(covered(&driven.picture(0), [255; 3]), all);
+    driven.click("Property filters");
+    driven.wait_settled();
+    driven.click("Add a filter");
+    let filter = driven.scene().filter.properties[0].clone();
+    assert!(filter.min < filter.max);
+    driven.wait_final();
+    driven.harness.get_by_label("Smallest value drawn");
+}
+
+#[test]
+fn a_clip_plane_is_moved_by_its_handle() {
+    let Some(_) = gpu() else { return };
+    let mut driven = Driven::showing(sample());
+    let all = covered(&driven.picture(0), [255; 3]);
+    driven.click("Clip planes");
+    driven.wait_settled();
+    driven.click("East");
+    driven.wait_final();
+    let half = covered(&driven.picture(0), [255; 3]);
+    assert!(half < 0.95 * all, "{half} {all}");
+    let plane = driven.scene().clip[0].clone();
+    let handle = driven.place("move plane 1").center();
+    let tip = driven.place("lean plane 1").center();
+    driven.drag(handle, handle + 2.0 * (tip - handle));
+    let moved = driven.scene().clip[0].clone();
+    assert_eq!(moved.normal, plane.normal);
+    assert!(moved.point[0] > plane.point[0] + 1.0, "{moved:?} {plane:?}");
+    driven.wait_final();
+    assert!(covered(&driven.picture(0), [255; 3]) < half);
+    // The other one leans it.
+    let tip = driven.place("lean plane 1").center();
+    driven.drag(tip, tip + vec2(0.0, -60.0));
+    assert_ne!(driven.scene().clip[0].normal, plane.normal);
+    // A drag of a handle leaves the camera alone.
+    for _ in 0..3 {
+        driven.press(Modifiers::COMMAND, Key::Z);
+    }
+    assert!(driven.scene().clip.is_empty());
+    assert_eq!(
+        driven.scene().camera,
+        strataray::scene::CameraSpec::default()
+    );
+}
+
+#[test]
+fn a_picked_cell_tells_its_values() {
+    let Some(_) = gpu() else { return };
+    let mut driven = Driven::showing(sample());
+    // From above, on opaque faces, the cell under a place is known from the grid alone.
+    let show = Show {
+        hull: Hull::Opaque,
+        ..Show::default()
+    };
+    driven.harness.state_mut().apply(Action::Show(show));
+    driven.press(Modifiers::COMMAND.plus(Modifiers::ALT), Key::T);
+    driven.wait_final();
+    let case = driven.document().case.clone().unwrap();
+    let grid = &case.grid;
+    let dims = grid.dims();
+    let column = (0..dims.nk).map(|k| Ijk {
+        i: dims.ni / 4,
+        j: dims.nj / 3,
+        k,
+    });
+    let cell = column.into_iter().find(|c| grid.is_active(*c)).unwrap();
+    let view = driven.harness.state().picture(0).unwrap().0.view.clone();
+    let corners = grid.hexahedron(cell).0;
+    let top = (corners[0] + corners[1] + corners[2] + corners[3]) / 4.0;
+    let world = view.spaces.world_from_grid.transform_point3(top);
+    let at = view.camera.project(world, view.aspect()).unwrap();
+    let place = driven.place("volume");
+    let at = pos2(at.x as f32, at.y as f32).to_vec2() * place.size() + place.min.to_vec2();
+    driven.click_at(at.to_pos2(), Modifiers::NONE);
+    driven.wait("the cell", |w| {
+        w.document().is_some_and(|d| d.table.is_some())
+    });
+    assert_eq!(
+        driven.document().state.selected,
+        [[cell.i + 1, cell.j + 1, cell.k + 1]]
+    );
+    // What is said is what the file has.
+    let table = driven.document().table.clone().unwrap();
+    let told = |name: &str| table.rows.iter().find(|r| r.0 == name).unwrap().2[0];
+    let step = driven.document().step().unwrap().0;
+    for name in ["PORO", "PRESSURE", "DEPTH"] {
+        let field = case.field(name, step).unwrap();
+        assert_eq!(told(name), field.value(grid, dims.cell(cell)), "{name}");
+    }
+    driven.wait("curves", |w| {
+        w.document().is_some_and(|d| d.curves.is_some())
+    });
+    let curves = driven.document().curves.clone().unwrap();
+    assert_eq!(curves.points[0].len(), case.steps.len());
+    // Another one beside it, then only what is like it.
+    driven.click_at(place.center(), Modifiers::COMMAND);
+    driven.wait("two cells", |w| {
+        w.document().is_some_and(|d| d.state.selected.len() == 2)
+    });
+    let of_two = |w: &strataray::viewer::Window| {
+        let table = w.document().and_then(|d| d.table.as_ref());
+        table.is_some_and(|t| t.of.cells.len() == 2)
+    };
+    driven.wait("both tables", of_two);
+    let before = covered(&driven.picture(0), [255; 3]);
+    driven.click("Only alike");
+    assert_eq!(driven.scene().filter.properties.len(), 1);
+    driven.wait_final();
+    assert!(covered(&driven.picture(0), [255; 3]) < before);
+    driven.press(Modifiers::NONE, Key::Escape);
+    assert!(driven.document().state.selected.is_empty());
+}

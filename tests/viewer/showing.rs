@@ -1,0 +1,134 @@
+//! Showing: strategies, properties, time, colors.
+
+use eframe::egui::{Key, Modifiers};
+use strataray::metrics::Comparison;
+use strataray::scene::StepSpec;
+
+use super::common::{gpu, sample};
+use super::driven::Driven;
+
+#[test]
+fn each_strategy_shows_the_same_in_its_own_way() {
+    let Some(_) = gpu() else { return };
+    let mut driven = Driven::showing(sample());
+    let mut pictures = Vec::new();
+    for (label, name) in [("LIBC", "libc"), ("PLTS", "plts"), ("SRG", "srg")] {
+        driven.click(label);
+        assert_eq!(driven.scene().strategy, name);
+        driven.wait_final();
+        pictures.push(driven.picture(0));
+    }
+    for pair in [[0, 1], [0, 2], [1, 2]] {
+        let [a, b] = pair.map(|n| &pictures[n]);
+        let apart = Comparison::of(a, b).unwrap();
+        assert!(a != b && apart.ciede2000_mean < 2.0, "{pair:?} {apart:?}");
+    }
+    // Another property is farther away than another strategy.
+    driven.click("DEPTH");
+    driven.wait_final();
+    let other = Comparison::of(&pictures[2], &driven.picture(0)).unwrap();
+    assert!(other.ciede2000_mean > 2.0, "{other:?}");
+}
+
+#[test]
+fn time_plays_and_stands_still() {
+    let Some(_) = gpu() else { return };
+    let mut driven = Driven::showing(sample());
+    driven.press(Modifiers::NONE, Key::Home);
+    driven.wait_final();
+    let first = driven.picture(0);
+    driven.click("Play");
+    driven.wait("the third step", |w| {
+        w.document()
+            .and_then(|d| d.step())
+            .is_some_and(|s| s.0 >= 2)
+    });
+    driven.click("Pause");
+    let at = driven.document().step().unwrap();
+    driven.wait_final();
+    assert!(driven.picture(0) != first);
+    assert_eq!(driven.document().step().unwrap(), at);
+    // Around the end, unless it is told to stop there.
+    driven.press(Modifiers::NONE, Key::End);
+    assert_eq!(driven.document().step().unwrap().0, at.1 - 1);
+    driven.click("Play");
+    driven.wait("the first step", |w| {
+        w.document()
+            .and_then(|d| d.step())
+            .is_some_and(|s| s.0 == 0)
+    });
+    driven.press(Modifiers::NONE, Key::Space);
+    driven.click("Repeat");
+    driven.press(Modifiers::NONE, Key::End);
+    driven.click("Play");
+    driven.wait("the end", |w| {
+        w.document().is_some_and(|d| d.playing.is_none())
+    });
+    assert_eq!(driven.document().step().unwrap().0, at.1 - 1);
+    // Each step is one that can be undone.
+    driven.press(Modifiers::COMMAND, Key::Z);
+    assert_ne!(driven.scene().step, StepSpec::Index(at.1 - 1));
+}
+
+#[test]
+fn the_transfer_function_is_edited_and_undone() {
+    let Some(_) = gpu() else { return };
+    let mut driven = Driven::showing(sample());
+    let (before, start) = (driven.picture(0), driven.scene().clone());
+    let place = driven.place("opacity curve");
+    // The last point, wherever it is: the one at the right end.
+    let points = driven.scene().transfer.opacity.clone();
+    let shown = |d: &Driven| {
+        d.harness
+            .state()
+            .picture(0)
+            .unwrap()
+            .0
+            .view
+            .transfer
+            .opacity
+            .clone()
+    };
+    let last = points.map_or_else(
+        || *shown(&driven).last().unwrap(),
+        |p| {
+            let [at, opacity] = *p.last().unwrap();
+            (at, opacity)
+        },
+    );
+    let from =
+        place.left_top() + place.size() * eframe::egui::vec2(last.0 as f32, 1.0 - last.1 as f32);
+    let nudge = eframe::egui::vec2(2.0, 0.0);
+    driven.drag(from - nudge, place.right_top() - nudge);
+
+    let edited = driven.scene().transfer.opacity.clone().unwrap();
+    assert!(
+        (edited.last().unwrap()[1] - last.1).abs() > 0.2,
+        "{edited:?}"
+    );
+    driven.wait_final();
+    assert!(driven.picture(0) != before);
+    driven.press(Modifiers::COMMAND, Key::Z);
+    assert_eq!(driven.scene(), &start);
+    driven.wait_final();
+    assert!(driven.picture(0) == before);
+    driven.press(Modifiers::COMMAND, Key::Y);
+    assert_eq!(driven.scene().transfer.opacity, Some(edited));
+}
+
+#[test]
+fn a_window_at_rest_asks_for_no_frames() {
+    let Some(_) = gpu() else { return };
+    let mut driven = Driven::showing(sample());
+    for _ in 0..20 {
+        driven.step();
+    }
+    let delay = |d: &Driven| {
+        let outputs = d.harness.output().viewport_output.values();
+        outputs.map(|o| o.repaint_delay).min().unwrap()
+    };
+    assert!(delay(&driven).as_secs() > 3600, "{:?}", delay(&driven));
+    // The twin: while time plays, it does.
+    driven.press(Modifiers::NONE, Key::Space);
+    assert!(delay(&driven).as_secs() < 3600);
+}
