@@ -20,6 +20,12 @@ need_packages() {
     DEBIAN_FRONTEND=noninteractive "${root[@]}" apt-get install -y -qq --no-install-recommends "${wanted[@]}"
 }
 
+# What windows under X11 load while they run.
+need_window() {
+    command -v dpkg-query >/dev/null || return 0
+    need_packages libxcursor1 libxi6 libxkbcommon-x11-0 "$@"
+}
+
 set_up() {
     if ! command -v cargo >/dev/null && [ -f "$HOME/.cargo/env" ]; then
         . "$HOME/.cargo/env"

@@ -107,6 +107,7 @@ impl Renderer {
         progress: &dyn Fn(f64) -> bool,
     ) -> Result<Option<Frame>, GpuError> {
         let start = Instant::now();
+        self.gpu.check()?;
         self.show(grid, view)?;
         let (of_case, grid) = (grid, shown_grid(grid, view.ghosts.as_ref()));
         let Self {

@@ -1,6 +1,6 @@
 //! The adapter, the device and what it must be able to do.
 
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, OnceLock};
 
 use super::pipeline::{Parameters, SharedLayouts};
 
@@ -43,6 +43,9 @@ pub enum GpuError {
     /// The driver reported an error.
     #[error("the GPU reported an error: {0}")]
     Device(String),
+    /// The device is gone: the driver was reset or updated, or the card was taken away.
+    #[error("the GPU was lost{0}; what is done next opens it anew")]
+    Lost(String),
     /// A shader of this program is broken.
     #[error("shader {name}: {message}")]
     Shader {
@@ -66,6 +69,8 @@ pub struct Gpu {
     /// Layouts of the bind groups that all strategies share.
     pub layouts: SharedLayouts,
     late_error: Arc<Mutex<Option<String>>>,
+    /// Why the device is gone.
+    lost: Arc<OnceLock<String>>,
 }
 
 impl Gpu {
@@ -140,8 +145,22 @@ impl Gpu {
             let mut slot = keep
                 .lock()
                 .unwrap_or_else(std::sync::PoisonError::into_inner);
-            slot.get_or_insert(error.to_string());
+            let words = error.to_string();
+            let words: Vec<&str> = words.split_whitespace().collect();
+            slot.get_or_insert(words.join(" "));
         }));
+        let lost = Arc::new(OnceLock::new());
+        let keep_lost = lost.clone();
+        device.set_device_lost_callback(move |_, why| {
+            let why = why.trim();
+            let why = if why.is_empty() {
+                String::new()
+            } else {
+                format!(" ({why})")
+            };
+            // The first reason is the one.
+            let _ = keep_lost.set(why);
+        });
         let timestamp_period_ns = (!features.is_empty()).then(|| queue.get_timestamp_period());
         Ok(Self {
             layouts: SharedLayouts::new(&device, parameters)?,
@@ -150,6 +169,7 @@ impl Gpu {
             info,
             timestamp_period_ns,
             late_error,
+            lost,
         })
     }
 
@@ -169,6 +189,9 @@ impl Gpu {
     /// # Errors
     /// When there was one.
     pub fn check(&self) -> Result<(), GpuError> {
+        if let Some(why) = self.lost.get() {
+            return Err(GpuError::Lost(why.clone()));
+        }
         let mut slot = self
             .late_error
             .lock()
@@ -196,7 +219,6 @@ impl Gpu {
         what: &'static str,
         content: &[T],
     ) -> Result<wgpu::Buffer, GpuError> {
-        use wgpu::util::DeviceExt;
         let bytes: &[u8] = bytemuck::cast_slice(content);
         let needed = bytes.len() as u64;
         let limits = self.device.limits();
@@ -211,25 +233,38 @@ impl Gpu {
             });
         }
         let contents = if bytes.is_empty() { &[0; 16] } else { bytes };
-        let descriptor = wgpu::util::BufferInitDescriptor {
-            label: Some(what),
-            contents,
-            usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST,
-        };
-        Ok(self.device.create_buffer_init(&descriptor))
+        let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST;
+        Ok(self.filled(what, contents, usage))
     }
 
     /// A buffer of parameters: what shaders declare as a uniform.
     pub fn uniform<T: bytemuck::NoUninit>(&self, label: &str, content: &T) -> wgpu::Buffer {
-        use wgpu::util::DeviceExt;
-        self.device
-            .create_buffer_init(&wgpu::util::BufferInitDescriptor {
-                label: Some(label),
-                contents: bytemuck::bytes_of(content),
-                usage: wgpu::BufferUsages::UNIFORM
-                    | wgpu::BufferUsages::STORAGE
-                    | wgpu::BufferUsages::COPY_DST,
-            })
+        let usage = wgpu::BufferUsages::UNIFORM
+            | wgpu::BufferUsages::STORAGE
+            | wgpu::BufferUsages::COPY_DST;
+        self.filled(label, bytemuck::bytes_of(content), usage)
+    }
+
+    /// A buffer with content. It goes through the queue: a buffer that is mapped when it is made panics
+    /// where the device is lost.
+    fn filled(&self, label: &str, content: &[u8], usage: wgpu::BufferUsages) -> wgpu::Buffer {
+        let whole = content
+            .len()
+            .next_multiple_of(wgpu::COPY_BUFFER_ALIGNMENT as usize);
+        let buffer = self.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some(label),
+            size: whole as u64,
+            usage,
+            mapped_at_creation: false,
+        });
+        if whole == content.len() {
+            self.queue.write_buffer(&buffer, 0, content);
+        } else {
+            let mut padded = content.to_vec();
+            padded.resize(whole, 0);
+            self.queue.write_buffer(&buffer, 0, &padded);
+        }
+        buffer
     }
 
     /// A zeroed buffer that shaders write and the host can copy from.

@@ -82,7 +82,7 @@ impl Window {
             }
             Chosen::Export(spec, path) => {
                 let waker = ctx.clone();
-                self.export = Some(Export::begin(spec, path, move || waker.request_repaint()));
+                self.export = Some(Export::begin(*spec, path, move || waker.request_repaint()));
             }
         }
     }

@@ -16,7 +16,7 @@ pub enum Chosen {
     /// Where to save the scene.
     SaveScene(PathBuf),
     /// Where to write a picture or film.
-    Export(ExportSpec, PathBuf),
+    Export(Box<ExportSpec>, PathBuf),
 }
 
 /// A dialog that is open.

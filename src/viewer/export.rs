@@ -189,3 +189,57 @@ fn still(spec: &ExportSpec, path: &Path, progress: &dyn Fn(f64) -> bool) -> Fall
     }
     Ok(true)
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "tests")]
+mod tests {
+    use super::*;
+
+    fn spec(kind: Kind) -> ExportSpec {
+        let sample = Path::new(env!("CARGO_MANIFEST_DIR")).join("samples/scissor/SCISSOR.EGRID");
+        ExportSpec {
+            case: Arc::new(crate::load::open(&sample).unwrap()),
+            scene: Scene {
+                size: [64, 48],
+                ..Scene::default()
+            },
+            kind,
+            plain: true,
+        }
+    }
+
+    fn made(spec: ExportSpec, path: PathBuf, cancels: bool) -> Result<String, String> {
+        let export = Export::begin(spec, path, || {});
+        if cancels {
+            export.cancel();
+        }
+        loop {
+            if let Some(done) = export.poll() {
+                return done;
+            }
+            std::thread::sleep(std::time::Duration::from_millis(10));
+        }
+    }
+
+    #[test]
+    fn pictures_and_films_are_written_or_not_at_all() {
+        if Gpu::new(None).is_err() {
+            assert!(std::env::var_os("REQUIRE_GPU").is_none());
+            return;
+        }
+        let folder = tempfile::tempdir().unwrap();
+        let file = |name: &str| folder.path().join(name);
+        made(spec(Kind::Still), file("a.png"), false).unwrap();
+        assert!(image::open(file("a.png")).unwrap().width() == 64);
+        let orbit = Kind::Orbit { fps: 5.0, views: 3 };
+        made(spec(orbit), file("turn.gif"), false).unwrap();
+        assert!(file("turn.gif").metadata().unwrap().len() > 100);
+        let error = made(spec(Kind::Steps { fps: 5.0 }), file("b.gif"), true).unwrap_err();
+        assert!(
+            error.contains("cancelled") && !file("b.gif").exists(),
+            "{error}"
+        );
+        let error = made(spec(Kind::Still), file("c.tiff"), false).unwrap_err();
+        assert!(error.contains("c.tiff"), "{error}");
+    }
+}

@@ -52,12 +52,15 @@ pub enum Read {
     Curves(Curves),
 }
 
+/// Properties at steps that are read ahead.
+type Ahead = (Arc<Case>, Vec<(String, usize)>);
+
 /// What is asked for; a newer wish of a kind replaces the one before.
 #[derive(Default)]
 struct Wishes {
     table: Option<(Cells, usize)>,
     curves: Option<(Cells, String)>,
-    ahead: Option<(Arc<Case>, Vec<(String, usize)>)>,
+    ahead: Option<Ahead>,
     ends: bool,
 }
 
@@ -120,7 +123,7 @@ fn lock(wishes: &Mutex<Wishes>) -> MutexGuard<'_, Wishes> {
 enum Wish {
     Table(Cells, usize),
     Curves(Cells, String),
-    Ahead(Arc<Case>, Vec<(String, usize)>),
+    Ahead(Ahead),
 }
 
 struct Thread {
@@ -138,7 +141,7 @@ impl Thread {
                     self.say(Read::Table(Table { of, step, rows }));
                 }
                 Wish::Curves(of, property) => self.follow(of, property),
-                Wish::Ahead(case, fields) => {
+                Wish::Ahead((case, fields)) => {
                     for (property, step) in fields {
                         // Reading ahead is a favor: where it fails, showing the step will say why.
                         let _ = case.field(&property, step);
@@ -161,8 +164,8 @@ impl Thread {
             if let Some((of, step)) = wishes.table.take() {
                 return Some(Wish::Table(of, step));
             }
-            if let Some((case, fields)) = wishes.ahead.take() {
-                return Some(Wish::Ahead(case, fields));
+            if let Some(ahead) = wishes.ahead.take() {
+                return Some(Wish::Ahead(ahead));
             }
             if let Some((of, property)) = wishes.curves.take() {
                 return Some(Wish::Curves(of, property));

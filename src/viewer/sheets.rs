@@ -97,7 +97,7 @@ impl Window {
             };
             let name = if is_film { "film.png" } else { "picture.png" };
             self.dialog = Some(Dialog::save(ctx, name, move |path| {
-                Chosen::Export(spec, path)
+                Chosen::Export(Box::new(spec), path)
             }));
         }
     }

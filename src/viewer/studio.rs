@@ -60,7 +60,12 @@ impl Studio {
                 wanted,
                 is_draft,
             } => {
-                let made = self.make(side, wanted, is_draft, cancel, say);
+                let mut made = self.make(side, &wanted, is_draft, cancel, say);
+                if made.as_ref().is_err_and(|e| e.is_device) {
+                    // A lost device does not come back by itself: once more with a new one.
+                    *self = Self::default();
+                    made = self.make(side, &wanted, is_draft, cancel, say);
+                }
                 made.map(|made| match made {
                     Some(picture) => Answer::Picture(side, Box::new(picture)),
                     None => Answer::Cancelled,
@@ -78,7 +83,6 @@ impl Studio {
             Job::Difference(of) => difference(of).map(|d| Answer::Difference(Box::new(d))),
         };
         answer.unwrap_or_else(|error| {
-            // A lost device does not come back by itself: the next picture opens a new one.
             if error.is_device {
                 *self = Self::default();
             }
@@ -89,7 +93,7 @@ impl Studio {
     fn make(
         &mut self,
         side: usize,
-        wanted: Wanted,
+        wanted: &Wanted,
         is_draft: bool,
         cancel: &AtomicBool,
         say: Say<'_>,
@@ -98,7 +102,7 @@ impl Studio {
         let gpu = self.open(say).map_err(Failure::of_device)?;
         self.share(side, &wanted.case);
         let side = &mut self.sides[side];
-        let view = side.view(&wanted)?;
+        let view = side.view(wanted)?;
         let renderer = side.renderer(gpu, &wanted.case)?;
         let last_said = std::cell::Cell::new(Instant::now());
         let progress = |part: f64| {
@@ -116,7 +120,7 @@ impl Studio {
                 pixels: frame.image.over_background_8bit(view.background),
             }),
             view,
-            wanted,
+            wanted: wanted.clone(),
             is_draft,
             stats: frame.stats,
             prepare: frame.prepare,
@@ -216,5 +220,45 @@ impl Failure {
             sentence,
             is_device: true,
         }
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "tests")]
+mod tests {
+    use super::*;
+    use std::path::Path;
+
+    #[test]
+    fn a_lost_device_is_replaced() {
+        let mut studio = Studio::default();
+        let silent = |_| {};
+        let Ok(gpu) = studio.open(&silent) else {
+            assert!(std::env::var_os("REQUIRE_GPU").is_none());
+            return;
+        };
+        let sample = Path::new(env!("CARGO_MANIFEST_DIR")).join("samples/scissor/SCISSOR.EGRID");
+        let case = Arc::new(crate::load::open(&sample).unwrap());
+        let mut picture = || {
+            let wanted = Wanted {
+                case: case.clone(),
+                scene: Scene {
+                    size: [40, 30],
+                    ..Scene::default()
+                },
+            };
+            let job = Job::Picture {
+                side: 0,
+                wanted,
+                is_draft: false,
+            };
+            studio.answer(job, &AtomicBool::new(false), &silent)
+        };
+        assert!(matches!(picture(), Answer::Picture(0, _)));
+        gpu.device.destroy();
+        // Who holds on to the lost device is told so, in one line.
+        let error = gpu.wait().unwrap_err().to_string();
+        assert!(error.contains("lost") && !error.contains('\n'), "{error}");
+        assert!(matches!(picture(), Answer::Picture(0, _)));
     }
 }

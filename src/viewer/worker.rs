@@ -1,5 +1,6 @@
 //! Pictures are made on a thread of their own, so that the window never waits for one.
 
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
@@ -151,7 +152,14 @@ impl Worker {
                 say(Answer::Failed(error));
             }
             for job in inbox {
-                say(studio.answer(job, &cancelled, &say));
+                let answer = AssertUnwindSafe(|| studio.answer(job, &cancelled, &say));
+                say(catch_unwind(answer).unwrap_or_else(|_| {
+                    // A driver or library gave up; what it left behind is not to be trusted.
+                    studio = Studio::default();
+                    Answer::Failed(
+                        "the graphics driver failed; change something to try again".into(),
+                    )
+                }));
             }
         });
         Self {
