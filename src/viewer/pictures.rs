@@ -10,6 +10,7 @@ use super::worker::{Answer, Difference, Job, Picture, Wanted, Why, Worker};
 use crate::case::Case;
 use crate::picking::Hit;
 use crate::picture::Rgb8;
+use crate::scene::Scene;
 
 /// Milliseconds that a draft may take: 30 pictures a second.
 const DRAFT_MS: f64 = 30.0;
@@ -17,6 +18,10 @@ const DRAFT_MS: f64 = 30.0;
 const PLAY_MS: f64 = 250.0;
 /// A final picture is made where nothing has changed for so long.
 const REST: Duration = Duration::from_millis(150);
+/// Milliseconds that the light of a draft may take.
+const LIGHT_MS: f64 = 12.0;
+/// Parts of its voxels along each axis that a draft's light volume may have.
+const LIGHT_PARTS: [u32; 3] = [1, 2, 4];
 /// Milliseconds that a pixel may take before one has been timed.
 const UNKNOWN_MS: f64 = 1e-3;
 /// Side of a draft, as a part of full resolution, at least.
@@ -48,6 +53,8 @@ struct Side {
     refused: Option<Wanted>,
     /// Milliseconds that a pixel of a draft takes, once one was made.
     draft_ms: Option<f64>,
+    /// Voxels of the light volume along each axis, and the milliseconds that each voxel takes.
+    light: Option<([u32; 3], f64)>,
 }
 
 /// A picture and the texture that has it.
@@ -185,6 +192,8 @@ impl Pictures {
             Answer::Picked(why, hit) => return Some(Event::Picked(why, hit)),
             Answer::Picture(side, picture) => {
                 if let Some(flight) = self.land() {
+                    let is_software = self.adapter.as_ref().is_none_or(|a| a.1);
+                    self.sides[side].time_light(&picture, is_software);
                     self.sides[side].arrive(ctx, *picture, flight);
                 }
                 return Some(Event::Came);
@@ -252,6 +261,7 @@ impl Pictures {
                 .scene
                 .size
                 .map(|n| ((f64::from(n) * part).round() as u32).max(16));
+            self.sides[side].thin_light(&mut job.scene);
         }
         self.worker.ask(Job::Picture {
             side,
@@ -289,6 +299,36 @@ impl Side {
             Due::Quick(Some((draft_ms / full_ms).sqrt().clamp(COARSEST, 1.0)))
         } else {
             Due::Slow
+        }
+    }
+
+    /// Gives a draft a coarser light volume, where the whole one takes too long for each picture.
+    fn thin_light(&self, scene: &mut Scene) {
+        let Some((size, ms)) = self.light else { return };
+        let voxels = f64::from(size.iter().product::<u32>());
+        let fits = |part: &&u32| ms * voxels <= LIGHT_MS * f64::from(part.pow(3));
+        let part = LIGHT_PARTS.iter().find(fits).or(LIGHT_PARTS.last());
+        let part = part.copied().unwrap_or(1);
+        if part > 1 && scene.lighting.volume.light_size.is_none() {
+            scene.lighting.volume.light_size = Some(size.map(|n| n.div_ceil(part).max(2)));
+        }
+    }
+
+    /// What the light of a picture took, where one was made.
+    fn time_light(&mut self, picture: &Picture, is_software: bool) {
+        let lighting = &picture.view.lighting;
+        let size = lighting.light_size(is_software);
+        let ms = 1e3 * picture.light.volumes.as_secs_f64();
+        let is_whole = picture.wanted.scene.lighting.volume.light_size.is_none();
+        let whole = if is_whole {
+            Some(size)
+        } else {
+            self.light.map(|l| l.0)
+        };
+        if lighting.is_off() {
+            self.light = None;
+        } else if let (Some(whole), true) = (whole, ms > 0.0) {
+            self.light = Some((whole, ms / f64::from(size.iter().product::<u32>())));
         }
     }
 

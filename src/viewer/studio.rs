@@ -1,5 +1,6 @@
 //! What the thread that makes pictures keeps: the device, and for each side a grid on it.
 
+use std::collections::VecDeque;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
@@ -27,11 +28,11 @@ pub struct Studio {
     sides: [Side; 2],
 }
 
-/// A case on the device, and the scene that was resolved last.
+/// A case on the device, and the scenes that were resolved last: of a draft and of a final picture.
 #[derive(Default)]
 struct Side {
     renderer: Option<(Arc<Case>, Renderer)>,
-    resolved: Option<(Wanted, Arc<View>)>,
+    resolved: VecDeque<(Wanted, Arc<View>)>,
 }
 
 impl Studio {
@@ -173,7 +174,7 @@ impl Side {
         Ok(&mut self.renderer.insert(kept).1)
     }
 
-    /// The scene resolved; where only camera and size differ from the last one, without reading values.
+    /// The scene resolved; where only camera and size differ from a known one, without reading values.
     fn view(&mut self, wanted: &Wanted) -> Result<Arc<View>, Failure> {
         let of_scene = |e: scene::SceneError| Failure {
             sentence: e.to_string(),
@@ -187,13 +188,17 @@ impl Side {
                 ..wanted.scene.clone()
             },
         };
-        let known = self.resolved.take();
-        let view = match known.filter(|(known, _)| *known == without_camera) {
+        let known = self
+            .resolved
+            .iter()
+            .position(|(known, _)| *known == without_camera);
+        let view = match known.and_then(|n| self.resolved.remove(n)) {
             Some((_, view)) => view.seen_from(&wanted.scene.camera, wanted.scene.size),
             None => scene::resolve(&wanted.scene, &wanted.case),
         };
         let view = Arc::new(view.map_err(of_scene)?);
-        self.resolved = Some((without_camera, view.clone()));
+        self.resolved.push_front((without_camera, view.clone()));
+        self.resolved.truncate(2);
         Ok(view)
     }
 }
