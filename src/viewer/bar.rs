@@ -17,6 +17,7 @@ const MENUS: [(&str, &[Command]); 5] = [
             Command::LoadScene,
             Command::Screenshot,
             Command::Film,
+            Command::SaveTable,
             Command::CopyLine,
             Command::Close,
         ],

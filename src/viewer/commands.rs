@@ -25,6 +25,9 @@ impl Window {
                 self.dialog = Some(Dialog::save(ctx, "scene.json", Chosen::SaveScene));
             }
             Command::LoadScene => self.dialog = Some(Dialog::open(ctx, Chosen::LoadScene)),
+            Command::SaveTable => {
+                self.dialog = Some(Dialog::save(ctx, "cells.csv", Chosen::SaveTable));
+            }
             Command::Screenshot => self.sheets.export = Some(false),
             Command::Film => self.sheets.export = Some(true),
             Command::CopyLine => self.copy_command(ctx),
@@ -78,6 +81,10 @@ impl Window {
             }
             Chosen::SaveScene(path) => {
                 let told = self.save_scene(&path);
+                self.answer(told);
+            }
+            Chosen::SaveTable(path) => {
+                let told = self.save_table(&path);
                 self.answer(told);
             }
             Chosen::Export(spec, path) => {

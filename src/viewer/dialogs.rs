@@ -15,6 +15,8 @@ pub enum Chosen {
     LoadScene(PathBuf),
     /// Where to save the scene.
     SaveScene(PathBuf),
+    /// Where to save the values of the selected cells.
+    SaveTable(PathBuf),
     /// Where to write a picture or film.
     Export(Box<ExportSpec>, PathBuf),
 }

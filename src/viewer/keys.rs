@@ -41,6 +41,8 @@ pub enum Command {
     Close,
     /// Saves a film.
     Film,
+    /// Saves the values of the selected cells.
+    SaveTable,
     /// A second picture, or none.
     Compare,
     /// Selects no cell.
@@ -59,7 +61,7 @@ const CTRL_ALT: Modifiers = Modifiers::COMMAND.plus(Modifiers::ALT);
 const NONE: Modifiers = Modifiers::NONE;
 
 /// Every shortcut, with what it says in the sheet.
-pub const SHORTCUTS: [(Modifiers, Key, Command, &str); 32] = [
+pub const SHORTCUTS: [(Modifiers, Key, Command, &str); 33] = [
     (CTRL, Key::O, Command::Open, "Open a case"),
     (NONE, Key::F5, Command::Reload, "Read the case again"),
     (CTRL, Key::S, Command::SaveScene, "Save the scene"),
@@ -86,6 +88,12 @@ pub const SHORTCUTS: [(Modifiers, Key, Command, &str); 32] = [
     (CTRL, Key::D, Command::Theme, "Dark or light"),
     (CTRL, Key::W, Command::Close, "Close the case"),
     (CTRL, Key::F12, Command::Film, "Save a film"),
+    (
+        CTRL_SHIFT,
+        Key::S,
+        Command::SaveTable,
+        "Save the values of the selected cells",
+    ),
     (NONE, Key::C, Command::Compare, "Compare two pictures"),
     (NONE, Key::Escape, Command::Deselect, "Select no cell"),
     (CTRL, Key::B, Command::Panels, "Panels or the picture alone"),
@@ -109,7 +117,16 @@ pub fn pressed(ctx: &Context) -> Vec<Command> {
         ctx.input_mut(|i| i.consume_shortcut(&shortcut))
             .then_some(*command)
     };
-    SHORTCUTS.iter().filter_map(taken).collect()
+    // A shortcut is also taken with more modifiers than it has, so those with most come first.
+    let mut shortcuts: Vec<_> = SHORTCUTS.iter().collect();
+    let count = |m: &Modifiers| {
+        [m.command, m.shift, m.alt]
+            .map(usize::from)
+            .iter()
+            .sum::<usize>()
+    };
+    shortcuts.sort_by_key(|s| std::cmp::Reverse(count(&s.0)));
+    shortcuts.into_iter().filter_map(taken).collect()
 }
 
 /// How a shortcut is written.

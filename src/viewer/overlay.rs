@@ -12,11 +12,7 @@ const TEXT: f32 = 13.0;
 
 /// Draws everything that the scene asks for.
 pub fn draw(painter: &Painter, rect: Rect, view: &View, annotations: &Annotations) {
-    let [r, g, b] = view.background;
-    let ink = match 0.2126 * r + 0.7152 * g + 0.0722 * b < 0.45 {
-        true => Color32::from_gray(235),
-        false => Color32::from_gray(30),
-    };
+    let ink = ink(view);
     let [r, g, b] = CONNECTION;
     let stroke = Stroke::new(1.0, Color32::from_rgb(r, g, b));
     for ends in view.connections.iter() {
@@ -39,6 +35,15 @@ pub fn draw(painter: &Painter, rect: Rect, view: &View, annotations: &Annotation
             15.0,
         );
         legend(painter, rect, view, annotations, ink);
+    }
+}
+
+/// A color that stands out from the background.
+fn ink(view: &View) -> Color32 {
+    let [r, g, b] = view.background;
+    match 0.2126 * r + 0.7152 * g + 0.0722 * b < 0.45 {
+        true => Color32::from_gray(235),
+        false => Color32::from_gray(30),
     }
 }
 
@@ -153,6 +158,13 @@ pub fn tip(ui: &egui::Ui, at: Pos2, text: &str) {
     let place = Rect::from_min_size(at, text.size()).expand(5.0);
     painter.rect_filled(place, 3.0, visuals.window_fill());
     painter.galley(at, text, visuals.strong_text_color());
+}
+
+/// Which strategy made a picture that is compared, below its title.
+pub fn strategy(painter: &Painter, rect: Rect, view: &View) {
+    let at = rect.left_top() + vec2(12.0, 30.0);
+    let name = view.strategy.name().to_uppercase();
+    write(painter, at, Align2::LEFT_TOP, &name, ink(view), 15.0);
 }
 
 /// What a map of differences means.

@@ -19,6 +19,8 @@ pub struct Settings {
     pub dark: bool,
     /// The picture alone, without panels.
     pub hides_panels: bool,
+    /// Size of letters and controls; 1 is the screen's own.
+    pub zoom: f32,
     /// How time plays.
     pub pace: Pace,
     /// How pictures and films are saved.
@@ -62,6 +64,7 @@ impl Default for Settings {
             recent: Vec::new(),
             dark: true,
             hides_panels: false,
+            zoom: 1.0,
             pace: Pace::default(),
             export: Export::default(),
             file: None,

@@ -128,6 +128,7 @@ impl Window {
                 }
                 _ => self.difference_map(ui, rect),
             }
+            self.name_strategies(ui, rects, [case, &other], layout);
             if self.pictures.are_final() {
                 self.pictures.compare();
             }
@@ -204,6 +205,27 @@ impl Window {
         Some(f64::from(
             ((pointer.x - rect.left()) / rect.width()).clamp(0.0, 1.0),
         ))
+    }
+
+    /// Writes which strategy made which picture, where both are seen.
+    fn name_strategies(
+        &self,
+        ui: &Ui,
+        rects: [Option<Rect>; 2],
+        cases: [&Arc<Case>; 2],
+        layout: Option<Layout>,
+    ) {
+        for (n, (rect, case)) in rects.into_iter().zip(cases).enumerate() {
+            let (Some(mut rect), Some(shown)) = (rect, self.pictures.shown(n, case)) else {
+                continue;
+            };
+            match (layout, n) {
+                (Some(Layout::Difference), _) => continue,
+                (Some(Layout::Wipe(at)), 1) => rect.min.x += at as f32 * rect.width(),
+                _ => {}
+            }
+            overlay::strategy(&ui.painter_at(rect), rect, &shown.picture.view);
+        }
     }
 
     /// The map of differences over the first picture, once it is known.

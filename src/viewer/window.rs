@@ -20,7 +20,7 @@ use super::sides::Sides;
 use super::state::{Setup, State};
 use super::watch::{Change, Watch};
 use super::worker::{Difference, Picture, Wanted, Why};
-use super::{bar, command};
+use super::{bar, command, panels};
 use crate::case::Case;
 use crate::picking::Hit;
 use crate::scene::{LightingSpec, Scene};
@@ -43,6 +43,8 @@ pub struct Window {
     watches: bool,
     /// What the reader was asked for last.
     asked: Asked,
+    /// The size of letters that is remembered has been set.
+    is_zoomed: bool,
 }
 
 /// What the reader was asked for last.
@@ -73,6 +75,7 @@ impl Window {
             message: None,
             watches,
             asked: Asked::default(),
+            is_zoomed: false,
         };
         for case in cases {
             window.open(ctx, case);
@@ -386,6 +389,21 @@ impl Window {
         self.asked = asked;
     }
 
+    /// Remembers the size of letters and the pace of time as they were chosen last.
+    fn remember(&mut self, ctx: &Context) {
+        if !self.is_zoomed {
+            self.is_zoomed = true;
+            ctx.set_zoom_factor(self.settings.zoom.clamp(0.3, 4.0));
+            return;
+        }
+        let pace = self.document().map_or(self.settings.pace, |d| d.state.pace);
+        let chosen = (ctx.zoom_factor(), pace);
+        if chosen != (self.settings.zoom, self.settings.pace) {
+            (self.settings.zoom, self.settings.pace) = chosen;
+            self.keep_settings();
+        }
+    }
+
     /// Goes to the next step where time plays and the picture of this one is there.
     fn play(&mut self, ctx: &Context) {
         let has_picture = self.pictures.on_its_way().is_none();
@@ -437,12 +455,25 @@ impl Window {
         Ok(format!("the scene is in {}", path.display()))
     }
 
+    /// Saves the values of the selected cells, and their curves, as comma-separated text.
+    ///
+    /// # Errors
+    /// When none is selected, or the file cannot be written; the sentence names it.
+    pub fn save_table(&self, path: &Path) -> Result<String, String> {
+        let document = self.document().ok_or("open a case first")?;
+        let table = document.table.as_ref().ok_or("select a cell first")?;
+        let text = panels::csv(table, document.curves.as_ref());
+        std::fs::write(path, text).map_err(|e| format!("{}: {e}", path.display()))?;
+        Ok(format!("the values are in {}", path.display()))
+    }
+
     /// A frame.
     fn show(&mut self, ui: &mut Ui, ctx: &Context) {
         ctx.set_theme(match self.settings.dark {
             true => egui::Theme::Dark,
             false => egui::Theme::Light,
         });
+        self.remember(ctx);
         self.listen(ctx);
         for command in keys::pressed(ctx) {
             self.perform(ctx, command);

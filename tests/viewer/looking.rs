@@ -46,7 +46,7 @@ fn keys_look_from_all_sides() {
     let mut driven = Driven::showing(sample());
     let ctrl_alt = Modifiers::COMMAND.plus(Modifiers::ALT);
     let mut seen = Vec::new();
-    for key in [Key::N, Key::E, Key::T, Key::I] {
+    for key in [Key::N, Key::S, Key::E, Key::W, Key::T, Key::I] {
         driven.press(ctrl_alt, key);
         assert!(matches!(driven.scene().camera, CameraSpec::Framing(_)));
         driven.wait_final();

@@ -29,7 +29,7 @@ use crate::picking::Hit;
 use crate::scene::Scene;
 
 pub use player::{Asked, player};
-pub use selection::part as hover_text;
+pub use selection::{csv, part as hover_text};
 
 /// What a panel knows.
 pub struct About<'a> {

@@ -120,7 +120,7 @@ fn values(ui: &mut Ui, table: &Table) {
 
 fn buttons(ui: &mut Ui, about: &About<'_>, table: &Table, actions: &mut Vec<Action>) {
     ui.horizontal(|ui| {
-        let copy = ui.button("Copy").on_hover_text("All of it as CSV, to the clipboard");
+        let copy = ui.button("Copy").on_hover_text("All of it as CSV, to the clipboard; Ctrl + Shift + S saves it in a file");
         if copy.clicked() {
             ui.ctx().copy_text(csv(table, about.curves));
         }
