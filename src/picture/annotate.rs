@@ -80,7 +80,7 @@ mod tests {
 
     use super::*;
     use crate::model::{CellField, Spaces};
-    use crate::scene::{Camera, Interpolation};
+    use crate::scene::{Camera, Interpolation, Projection};
     use crate::strategies::StrategyKind;
     use crate::transfer::{TransferFunction, presets};
 
@@ -96,7 +96,8 @@ mod tests {
         View {
             size,
             background: [background; 3],
-            camera: Camera::framing(&box_corners, 3.6, 0.6, 1.0, aspect).unwrap(),
+            camera: Camera::framing(&box_corners, 3.6, 0.6, 1.0, aspect, Projection::Perspective)
+                .unwrap(),
             spaces,
             vertical_exaggeration: 2.0,
             world_bounds: [DVec3::new(0.0, 0.0, -4.0), DVec3::new(10.0, 9.0, 0.0)],

@@ -41,16 +41,13 @@ pub fn draw_box(pen: &mut Pen, image: &Image, view: &View) {
     }
 }
 
-/// Edges, by their corners, of those sides of the box that the eye sees from within.
+/// Edges, by their corners, of those sides of the box that the viewer sees from within.
 pub fn far_edges(view: &View) -> Vec<(usize, usize)> {
-    let grid = |p: DVec3| view.spaces.grid_from_world.transform_point3(p);
-    let [eye, low, high] = [view.camera.eye, view.box_corners[0], view.box_corners[7]].map(grid);
+    let to_grid = |v: DVec3| view.spaces.grid_from_world.transform_vector3(v);
     let is_far = |axis: usize, corner: usize| {
-        let (here, there) = match corner >> axis & 1 {
-            0 => (low[axis], high[axis]),
-            _ => (high[axis], low[axis]),
-        };
-        (eye[axis] - here) * (there - here) >= 0.0
+        let here = view.box_corners[corner];
+        let inward = to_grid(view.box_corners[corner ^ 1 << axis] - here)[axis];
+        to_grid(view.camera.to_viewer(here).0)[axis] * inward >= 0.0
     };
     let mut edges = Vec::new();
     for axis in 0..3usize {
@@ -67,7 +64,7 @@ pub fn far_edges(view: &View) -> Vec<(usize, usize)> {
 /// An edge in pixels, cut where it passes the eye.
 fn on_screen(camera: &Camera, [a, b]: [DVec3; 2], size: [f64; 2]) -> Option<[[f64; 2]; 2]> {
     let nearest = 1e-4 * a.distance(b).max(1e-3);
-    let [depth_a, depth_b] = [a, b].map(|p| (p - camera.eye).dot(camera.forward));
+    let [depth_a, depth_b] = [a, b].map(|p| camera.depth(p));
     let cut = |p: DVec3, depth: f64| {
         if depth >= nearest {
             p

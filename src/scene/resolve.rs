@@ -85,7 +85,7 @@ pub struct View {
     pub interpolation: Interpolation,
     /// Value to color and extinction.
     pub transfer: TransferFunction,
-    /// Samples lie at distances `(n + 1/2) * sampling_step` from the eye.
+    /// Samples lie at distances `(n + 1/2) * sampling_step` from where rays start.
     pub sampling_step: f64,
     /// Transmittance at which a ray ends.
     pub early_termination: f64,
@@ -453,7 +453,8 @@ fn camera(spec: &CameraSpec, size: [u32; 2], corners: &[DVec3; 8]) -> Result<Cam
                 return Err(wrong("camera.fovy_degrees", "must be between 0 and 180"));
             }
             let [eye, target, up] = [c.eye, c.target, c.up].map(DVec3::from_array);
-            Camera::look_at(eye, target, up, c.fovy_degrees.to_radians())
+            let camera = Camera::look_at(eye, target, up, c.fovy_degrees.to_radians());
+            camera.map(|camera| camera.with(c.projection, target))
         }
         CameraSpec::Framing(c) => {
             let (azimuth, elevation) = (
@@ -466,6 +467,7 @@ fn camera(spec: &CameraSpec, size: [u32; 2], corners: &[DVec3; 8]) -> Result<Cam
                 elevation,
                 positive("camera.zoom", c.zoom)?,
                 aspect,
+                c.projection,
             )
         }
     };

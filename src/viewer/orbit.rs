@@ -2,21 +2,27 @@
 
 use glam::{DQuat, DVec2, DVec3};
 
-use crate::scene::{Camera, CameraSpec, ExplicitCamera, FramingCamera};
+use crate::scene::{Camera, CameraSpec, ExplicitCamera, FramingCamera, Projection};
 
 /// Radians that a drag across the height of the picture turns.
 const TURN: f64 = 3.0;
 /// The camera never looks closer to straight up or down than this.
 const LEAST_TILT: f64 = 0.01;
 
-/// A scene's camera from one in the window.
-pub fn spec(camera: &Camera) -> CameraSpec {
-    let target = camera.eye + camera.forward;
+/// A scene's camera from one in the window. Its target lies as deep as `middle`; of a parallel one where the
+/// field of view is as high as the picture.
+pub fn spec(camera: &Camera, middle: DVec3) -> CameraSpec {
+    let depth = match camera.parallel {
+        None => camera.depth(middle).max(1.0),
+        Some(half_height) => half_height / camera.tan_half_fovy,
+    };
+    let target = camera.eye + depth * camera.forward;
     CameraSpec::Explicit(ExplicitCamera {
         eye: camera.eye.to_array(),
         target: target.to_array(),
         up: camera.up.to_array(),
         fovy_degrees: 2.0 * camera.tan_half_fovy.atan().to_degrees(),
+        projection: camera.projection(),
     })
 }
 
@@ -45,8 +51,7 @@ fn level(camera: Camera) -> Camera {
 
 /// Moves such that what lies at the distance of `around` follows the pointer.
 pub fn pan(camera: &Camera, around: DVec3, drag: DVec2) -> Camera {
-    let distance = (around - camera.eye).dot(camera.forward).max(1e-6);
-    let height = 2.0 * distance * camera.tan_half_fovy;
+    let height = 2.0 * camera.half_height(camera.depth(around).max(1e-6));
     Camera {
         eye: camera.eye + height * (drag.y * camera.up - drag.x * camera.right),
         ..*camera
@@ -55,25 +60,15 @@ pub fn pan(camera: &Camera, around: DVec3, drag: DVec2) -> Camera {
 
 /// Comes closer to a point by a factor above 1, or goes away by one below.
 pub fn zoom(camera: &Camera, to: DVec3, factor: f64) -> Camera {
-    Camera {
-        eye: to + (camera.eye - to) / factor.clamp(0.1, 10.0),
-        ..*camera
-    }
-}
-
-/// Direction in world space through a place in the picture (x right, y down, 0 to 1).
-pub fn direction(camera: &Camera, at: DVec2, aspect: f64) -> DVec3 {
-    let x = (2.0 * at.x - 1.0) * camera.tan_half_fovy * aspect;
-    let y = (1.0 - 2.0 * at.y) * camera.tan_half_fovy;
-    (camera.forward + x * camera.right + y * camera.up).normalize()
+    camera.closer(to, factor.clamp(0.1, 10.0))
 }
 
 /// Where a ray through a place in the picture passes nearest to the middle of a box, or the middle.
 pub fn point_under(camera: &Camera, at: DVec2, aspect: f64, corners: &[DVec3; 8]) -> DVec3 {
     let middle = corners.iter().sum::<DVec3>() / 8.0;
-    let direction = direction(camera, at, aspect);
-    let along = (middle - camera.eye).dot(direction);
-    let point = camera.eye + along.max(1e-6) * direction;
+    let (origin, direction) = camera.ray(at, aspect);
+    let along = (middle - origin).dot(direction);
+    let point = origin + along.max(1e-6) * direction;
     let low = corners.iter().copied().fold(DVec3::INFINITY, DVec3::min);
     let high = corners
         .iter()
@@ -102,6 +97,7 @@ pub fn framing(azimuth_degrees: f64, elevation_degrees: f64) -> CameraSpec {
         azimuth_degrees,
         elevation_degrees,
         zoom: 1.0,
+        projection: Projection::Perspective,
     })
 }
 
@@ -140,12 +136,5 @@ mod tests {
         let (a, b) = (camera().project(point, 1.5), near.project(point, 1.5));
         assert!((a.unwrap() - b.unwrap()).length() < 1e-9);
         assert!((near.eye.distance(point) * 2.0 - camera().eye.distance(point)).abs() < 1e-9);
-    }
-
-    #[test]
-    fn directions_and_projections_agree() {
-        let at = DVec2::new(0.2, 0.7);
-        let point = camera().eye + 7.0 * direction(&camera(), at, 1.6);
-        assert!((camera().project(point, 1.6).unwrap() - at).length() < 1e-9);
     }
 }

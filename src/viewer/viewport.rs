@@ -9,6 +9,7 @@ use super::action::Action;
 use super::{orbit, overlay};
 use crate::case::Case;
 use crate::picture::Annotations;
+use crate::scene::camera::middle;
 use crate::scene::{Camera, Scene, View};
 
 /// What the viewport keeps from frame to frame.
@@ -63,7 +64,10 @@ impl Viewport {
         overlay::draw(&painter, rect, &now, &Annotations::of(case, &now));
         let input = Input::of(ui, &response, rect);
         if let Some(camera) = self.moved(&input, &now) {
-            touched.actions.push(Action::Camera(orbit::spec(&camera)));
+            touched.actions.push(Action::Camera(orbit::spec(
+                &camera,
+                middle(&now.box_corners),
+            )));
         }
         if response.clicked() {
             touched.pick = input.at;

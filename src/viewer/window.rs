@@ -23,6 +23,7 @@ use super::worker::{Difference, Picture, Wanted, Why};
 use super::{bar, command};
 use crate::case::Case;
 use crate::picking::Hit;
+use crate::scene::camera::middle;
 use crate::scene::{LightingSpec, Scene};
 use crate::strategies::StrategyKind;
 
@@ -330,7 +331,10 @@ impl Window {
         let size = picture.view.size;
         let camera = picture.view.seen_from(&scene.camera, size);
         Scene {
-            camera: camera.map_or_else(|_| scene.camera.clone(), |v| super::orbit::spec(&v.camera)),
+            camera: camera.map_or_else(
+                |_| scene.camera.clone(),
+                |v| super::orbit::spec(&v.camera, middle(&v.box_corners)),
+            ),
             vertical_exaggeration: scene
                 .vertical_exaggeration
                 .or(Some(picture.view.vertical_exaggeration)),
