@@ -126,6 +126,7 @@ fn view(grid: &Grid, field: CellField, extinction: f64, sampling_step: f64) -> V
         drawn: vec![true; grid.active_cells().len()].into(),
         clip: Vec::new(),
         ghosts: None,
+        connections: std::sync::Arc::default(),
         lighting: scene_lighting::resolve(&LightingSpec::default(), DVec3::ONE, 1).unwrap(),
         libc: crate::scene::LibcSettings::default(),
         srg: crate::scene::SrgSettings::default(),

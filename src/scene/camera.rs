@@ -49,8 +49,10 @@ pub struct Camera {
     pub parallel: Option<f64>,
 }
 
-/// Room around what is framed, as a factor on its size.
+/// Room around what is framed, as a factor on its size: in perspective its nearest corner alone comes so close
+/// to the rim.
 const FRAME: f64 = 1.08;
+const PARALLEL_FRAME: f64 = 1.2;
 
 impl Camera {
     /// A perspective camera at `eye` that looks at `target`; `None` where the three do not span a frame.
@@ -120,10 +122,10 @@ impl Camera {
         let needs = corners.iter().map(|corner| {
             let corner = corner - center;
             let (x, y) = (corner.dot(self.right).abs(), corner.dot(self.up).abs());
-            let half_height = FRAME * (x / aspect).max(y);
+            let half_height = (x / aspect).max(y);
             match self.parallel {
-                None => half_height / self.tan_half_fovy - corner.dot(self.forward),
-                Some(_) => half_height,
+                None => FRAME * half_height / self.tan_half_fovy - corner.dot(self.forward),
+                Some(_) => PARALLEL_FRAME * half_height,
             }
         });
         needs.fold(1e-9, f64::max)
@@ -286,8 +288,7 @@ mod tests {
             let camera = framing(projection, 1.0);
             let away = corners().map(|c| (camera.project(c, 1.5).unwrap() - 0.5).abs());
             let most = away.iter().fold(0.0, |m: f64, a| m.max(a.max_element()));
-            assert!((most - 0.5 / FRAME).abs() < 1e-3 || projection.is_default() && most < 0.5);
-            assert!(most > 0.4);
+            assert!(most > 0.4 && most < 0.5, "{most}");
             // The twin: a closer one does not hold it.
             let near = framing(projection, 1.3);
             let out = |c: &DVec3| (near.project(*c, 1.5).unwrap() - 0.5).abs().max_element() > 0.5;

@@ -273,7 +273,7 @@ pub struct Show {
     pub wells: bool,
     /// Edges of the cells on hull, faults and opaque sections.
     pub cell_edges: bool,
-    /// Box around the model with orientation axes.
+    /// Box around the model with map coordinates, scale bar and orientation axes.
     pub r#box: bool,
     /// Legend and title.
     pub legend: bool,
