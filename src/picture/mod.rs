@@ -15,6 +15,8 @@ mod plot;
 mod sheet;
 mod ticks;
 
+#[cfg(test)]
+pub(crate) use annotate::tests::view as test_view;
 pub use annotate::{Annotations, annotate, finished};
 pub use axes::CONNECTION;
 pub use difference::{difference_colors, difference_picture};

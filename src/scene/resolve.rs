@@ -13,7 +13,7 @@ use super::{
 };
 use crate::case::{Case, CaseError};
 use crate::gpu::volume::Shape;
-use crate::model::{CellField, Dims, FaultFaces, Ijk, Spaces};
+use crate::model::{CellField, Dims, FaultFaces, Grid, Ijk, Spaces};
 use crate::strategies::StrategyKind;
 use crate::transfer::{TransferFunction, presets};
 
@@ -125,6 +125,20 @@ impl View {
             camera,
             ..self.clone()
         })
+    }
+
+    /// Smallest and largest corner in grid space of the drawn cells of `grid` (the case's), ghosts aside; `None`
+    /// where none is drawn.
+    pub fn drawn_bounds(&self, grid: &Grid) -> Option<[DVec3; 2]> {
+        let drawn = self.drawn_active(grid);
+        let cells = grid.active_cells().par_iter().zip(drawn);
+        grid.bounds_of(cells.filter_map(|(cell, drawn)| drawn.then(|| grid.dims().ijk(*cell))))
+    }
+
+    /// Corners in world space of a box given by its smallest and largest corner in grid space; bit n of the
+    /// index is the end along axis n.
+    pub fn corners_of(&self, bounds: [DVec3; 2]) -> [DVec3; 8] {
+        box_corners(&self.spaces, bounds)
     }
 
     /// Width over height.

@@ -23,7 +23,6 @@ use super::worker::{Difference, Picture, Wanted, Why};
 use super::{bar, command};
 use crate::case::Case;
 use crate::picking::Hit;
-use crate::scene::camera::middle;
 use crate::scene::{LightingSpec, Scene};
 use crate::strategies::StrategyKind;
 
@@ -333,7 +332,7 @@ impl Window {
         Scene {
             camera: camera.map_or_else(
                 |_| scene.camera.clone(),
-                |v| super::orbit::spec(&v.camera, middle(&v.box_corners)),
+                |v| super::orbit::spec(&v.camera, &v.box_corners),
             ),
             vertical_exaggeration: scene
                 .vertical_exaggeration

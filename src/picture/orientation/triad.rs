@@ -51,7 +51,7 @@ pub fn add(layout: &mut Layout<'_>, camera: &Camera) {
     });
     // Far ones first.
     arrows.sort_by(|a, b| b.0.total_cmp(&a.0));
-    let mut taken: Vec<[DVec2; 2]> = arrows.iter().map(|a| [center, a.1]).collect();
+    let mut taken: Vec<Taken> = arrows.iter().map(|a| ([center, a.1], ARROW)).collect();
     let mut covered = [center, center];
     for (_, tip, direction) in arrows {
         layout.made.arrows.push(Arrow {
@@ -61,7 +61,7 @@ pub fn add(layout: &mut Layout<'_>, camera: &Camera) {
         });
         let height = direction.size.max(1.0) * unit;
         let middle = free_place(center, tip, &taken, height);
-        taken.push([middle, middle]);
+        taken.push(([middle, middle], NAME));
         let half = layout.half(direction.name, height);
         covered = [
             covered[0].min(tip).min(middle - half),
@@ -76,13 +76,20 @@ pub fn add(layout: &mut Layout<'_>, camera: &Camera) {
     layout.paper.taken.push(covered);
 }
 
+/// A line that is there already, and what distances from it count.
+type Taken = ([DVec2; 2], f64);
+
+/// What distances from arrows count, and those from the middles of names, which are wider.
+const ARROW: f64 = 1.0;
+const NAME: f64 = 0.55;
+
 /// A place for a label near an arrow's tip, as far from all else as it can be.
-fn free_place(center: DVec2, tip: DVec2, taken: &[[DVec2; 2]], unit: f64) -> DVec2 {
+fn free_place(center: DVec2, tip: DVec2, taken: &[Taken], unit: f64) -> DVec2 {
     let ahead = (tip - center).try_normalize().unwrap_or(DVec2::X);
     let room = |place: DVec2| {
-        // Names, which are points here, are wider than arrows.
-        let part = |[a, b]: [DVec2; 2]| if a == b { 0.55 } else { 1.0 };
-        let distances = taken.iter().map(|&s| part(s) * distance(place, s));
+        let distances = taken
+            .iter()
+            .map(|&(line, part)| part * distance(place, line));
         distances.fold(0.85 * unit, f64::min)
     };
     // The first of the best: straight ahead, unless something is there.
@@ -111,9 +118,16 @@ mod tests {
     fn labels_keep_away_from_arrows_ahead() {
         let (center, tip) = (DVec2::ZERO, DVec2::new(0.0, -20.0));
         let own = [center, tip];
-        assert!(free_place(center, tip, &[own], 10.0).abs_diff_eq(DVec2::new(0.0, -28.5), 1e-9));
+        assert!(
+            free_place(center, tip, &[(own, ARROW)], 10.0)
+                .abs_diff_eq(DVec2::new(0.0, -28.5), 1e-9)
+        );
         let longer = [center, DVec2::new(0.0, -40.0)];
-        let place = free_place(center, tip, &[own, longer], 10.0);
+        let place = free_place(center, tip, &[(own, ARROW), (longer, ARROW)], 10.0);
         assert!(distance(place, longer) > 5.0);
+        // Of an arrow that points at the viewer, beside one that does not.
+        let east = [center, DVec2::new(20.0, 0.0)];
+        let place = free_place(center, center, &[([center; 2], ARROW), (east, ARROW)], 10.0);
+        assert!(distance(place, east) > 8.0);
     }
 }
