@@ -3,6 +3,7 @@
 
 mod common;
 
+use glam::{DVec2, DVec3};
 use strataray::metrics::{fraction_within, psnr_8bit, ssim_8bit};
 use strataray::model::CellIndex;
 use strataray::picture::Image;
@@ -12,7 +13,7 @@ use strataray::scene::{
     LightingSpec, Projection, Scene, View,
 };
 use strataray::strategies::StrategyKind;
-use strataray::{case::Case, load, reference};
+use strataray::{case::Case, load, picking, reference};
 
 fn scene(azimuth: f64, elevation: f64, interpolation: Interpolation) -> Scene {
     Scene {
@@ -179,7 +180,7 @@ fn parallel_pictures_agree_with_the_reference() {
             parallel(&mut scene);
             let mut view = scene::resolve(&scene, &case).unwrap();
             let middle = 0.5 * (view.world_bounds[0] + view.world_bounds[1]);
-            let ahead = |c: &glam::DVec3| view.camera.depth(*c) > 0.0;
+            let ahead = |c: &DVec3| view.camera.depth(*c) > 0.0;
             assert!(view.box_corners.iter().all(ahead));
             if inside {
                 // The plane of the eye cuts the model.
@@ -216,6 +217,32 @@ fn parallel_pictures_agree_with_the_reference() {
                 assert!(found >= least(strategy)[0] && twin + gain < found, "{what}");
             }
         }
+    }
+}
+
+#[test]
+fn what_is_picked_in_parallel_lies_under_the_pointer() {
+    let Some(gpu) = common::gpu() else { return };
+    let case = load::open(&common::sample()).unwrap();
+    let mut renderer = Renderer::new(gpu, &case.grid).unwrap();
+    let mut scene = scene(205.0, 35.0, Interpolation::Vertex);
+    let perspective = scene::resolve(&scene, &case).unwrap();
+    parallel(&mut scene);
+    let view = scene::resolve(&scene, &case).unwrap();
+    for at in [DVec2::new(0.5, 0.5), DVec2::new(0.42, 0.55)] {
+        let hit = picking::pick(&mut renderer, &case, &view, at);
+        let hit = hit.unwrap().unwrap();
+        let projected = view.camera.project(hit.world, view.aspect()).unwrap();
+        assert!(projected.distance(at) < 1e-9);
+        let cell = view.corners_of(case.grid.hexahedron(hit.ijk).bounds());
+        let low = cell.iter().copied().reduce(DVec3::min).unwrap();
+        let high = cell.iter().copied().reduce(DVec3::max).unwrap();
+        assert!(hit.world.cmpge(low - 1e-3).all() && hit.world.cmple(high + 1e-3).all());
+        let other = perspective
+            .camera
+            .project(hit.world, view.aspect())
+            .unwrap();
+        assert!(other.distance(at) > 1e-3);
     }
 }
 

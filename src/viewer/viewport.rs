@@ -19,8 +19,15 @@ use crate::scene::{Camera, Scene, View};
 pub struct Viewport {
     /// The point that the drag in progress turns around.
     pivot: Option<DVec3>,
-    /// Cells that are drawn, and their box in grid space.
-    drawn: Option<(Arc<Vec<bool>>, Option<[DVec3; 2]>)>,
+    drawn: Option<Drawn>,
+}
+
+/// The box of the cells that are drawn, kept while these are the same.
+struct Drawn {
+    /// By active index: true where the cell is drawn.
+    cells: Arc<Vec<bool>>,
+    /// Smallest and largest corner in grid space; `None` where none is drawn.
+    bounds: Option<[DVec3; 2]>,
 }
 
 /// What the pointer did.
@@ -101,9 +108,12 @@ impl Viewport {
     /// A point of world space under a place in the picture.
     fn under(&mut self, view: &View, grid: &Grid, at: DVec2) -> DVec3 {
         let known = self.drawn.take();
-        let known = known.filter(|(drawn, _)| Arc::ptr_eq(drawn, &view.drawn));
-        let (_, bounds) = known.unwrap_or_else(|| (view.drawn.clone(), view.drawn_bounds(grid)));
-        self.drawn = Some((view.drawn.clone(), bounds));
+        let known = known.filter(|d| Arc::ptr_eq(&d.cells, &view.drawn));
+        let drawn = known.unwrap_or_else(|| Drawn {
+            cells: view.drawn.clone(),
+            bounds: view.drawn_bounds(grid),
+        });
+        let bounds = self.drawn.insert(drawn).bounds;
         orbit::point_under(view, bounds, at)
     }
 }
