@@ -27,8 +27,7 @@ fn vertex(@builtin(vertex_index) index: u32) -> Corner {
 @fragment
 fn fragment(in: Corner, @builtin(front_facing) is_front: bool) -> Met {
     let in_tile = vec2u(in.position.xy);
-    let slant = length(view_direction(tile.origin + in_tile));
-    let distance = in.depth * slant;
+    let distance = in.depth * pixel_ray(tile.origin + in_tile).slant;
     var out: Met;
     out.met = vec2u(in.face + 1u, bitcast<u32>(distance));
     out.depth = clamp(distance / frame.farthest, 0.0, 1.0);

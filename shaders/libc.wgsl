@@ -64,7 +64,7 @@ struct Walk {
     phase: u32,
     column: u32,
     layer: u32,
-    // Distance from the eye and parameters at which the current cell was entered.
+    // Distance along the ray and parameters at which the current cell was entered.
     t: f32,
     uvw: vec3f,
     // Face through which the last cell was left.
@@ -84,7 +84,7 @@ struct Walk {
     passed: u32,
 }
 
-// Corners of a cell relative to the ray: two coordinates across it and the distance from the eye.
+// Corners of a cell relative to the ray: two coordinates across it and the distance along it.
 struct Projected {
     p0: vec3f, p1: vec3f, p2: vec3f, p3: vec3f,
     p4: vec3f, p5: vec3f, p6: vec3f, p7: vec3f,
@@ -99,7 +99,7 @@ struct Exit {
 
 fn frame_of(ray: Ray) -> RayFrame {
     let t = max(ray.enter, 0.0);
-    return frame_at(frame.eye + t * ray.direction, ray.direction, t);
+    return frame_at(ray.origin + t * ray.direction, ray.direction, t);
 }
 
 fn project_cell(r: RayFrame, column: u32, layer: u32) -> Projected {
@@ -337,7 +337,7 @@ fn store_walk(number: u32, walk: Walk) {
 
 // Locates the ray at its distance; it walks on in its cell, or needs an entry where there is none.
 fn locate_again(walk: ptr<function, Walk>, ray: Ray, tally: ptr<function, Tally>) {
-    let point = frame.eye + (*walk).t * ray.direction;
+    let point = ray.origin + (*walk).t * ray.direction;
     let location = locate(Query(point, vec3f(0.0), SECTION_ENOUGH, frame.interpolation), vec3f(0.0));
     (*tally).fallbacks += 1u;
     (*tally).iterations += location.iterations;
@@ -550,11 +550,11 @@ fn integrate(walk: ptr<function, Walk>, sum: ptr<function, Accumulated>, layers:
     return is_whole;
 }
 
-// The color and extinction of a sample at a distance from the eye, shaded.
+// The color and extinction of a sample at a distance along the ray, shaded.
 fn lit(entry: vec4f, ray: Ray, t: f32, is_ghost: bool, tally: ptr<function, Tally>) -> vec4f {
     if LIT && entry.w > 0.0 {
         (*tally).work += lighting.work;
-        return vec4f(shade(entry.rgb, frame.eye + t * ray.direction, is_ghost), entry.w);
+        return vec4f(shade(entry.rgb, ray.origin + t * ray.direction, is_ghost), entry.w);
     }
     return entry;
 }

@@ -34,15 +34,16 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         ray_states[place] = vec4u(bitcast<u32>(NO_LAYER), 0u, 0u, 0u);
         return;
     }
-    let color = color_of(point.x - 1u, bitcast<f32>(point.y), ray_direction(tile.origin + in_part));
+    let color = color_of(point.x - 1u, bitcast<f32>(point.y), pixel_ray(tile.origin + in_part));
     ray_states[place] = vec4u(point.y, bitcast<vec3u>(color));
     count(COUNT_WORK, PAINT_WORK + lighting.work);
 }
 
-fn color_of(face: u32, distance: f32, direction: vec3f) -> vec3f {
+fn color_of(face: u32, distance: f32, ray: PixelRay) -> vec3f {
     let column = face / 6u / grid.nk;
     let layer = face / 6u % grid.nk;
-    let place = frame.eye + distance * direction;
+    let direction = ray.direction;
+    let place = ray.origin + distance * direction;
     let spot = spot_on(column, layer, face % 6u, frame_at(place, direction, distance), pixel_steps(direction, distance));
     var color = fault_color(face);
     if HULL {

@@ -27,8 +27,9 @@ fn vertex(@builtin(vertex_index) index: u32) -> Corner {
 fn fragment(in: Corner, @builtin(front_facing) is_front: bool) -> Met {
     let in_part = vec2u(in.position.xy);
     let pixel = tile.origin + in_part;
-    let distance = in.depth * length(view_direction(pixel));
-    if !is_kept(frame.eye + distance * ray_direction(pixel)) {
+    let ray = pixel_ray(pixel);
+    let distance = in.depth * ray.slant;
+    if !is_kept(ray.origin + distance * ray.direction) {
         discard;
     }
     if peel.layer > 0u {

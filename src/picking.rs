@@ -68,7 +68,7 @@ pub fn pick(
 ) -> Result<Option<Hit>, GpuError> {
     let ray = Ray::through(view, at);
     let mut found: Vec<(f64, Ijk, Part)> = Vec::new();
-    if let Some((world, located)) = renderer.first_seen(&case.grid, view, ray.direction, SEEN)? {
+    if let Some((world, located)) = renderer.first_seen(&case.grid, view, at, SEEN)? {
         found.push((ray.distance(world), located.ijk, Part::Inside));
     }
     if let Some(distance) = section(view, &ray) {
@@ -98,13 +98,8 @@ struct Ray {
 
 impl Ray {
     fn through(view: &View, at: DVec2) -> Self {
-        let camera = &view.camera;
-        let x = (2.0 * at.x - 1.0) * camera.tan_half_fovy * view.aspect();
-        let y = (1.0 - 2.0 * at.y) * camera.tan_half_fovy;
-        Self {
-            origin: camera.eye,
-            direction: (camera.forward + x * camera.right + y * camera.up).normalize(),
-        }
+        let (origin, direction) = view.camera.ray(at, view.aspect());
+        Self { origin, direction }
     }
 
     fn at(&self, distance: f64) -> DVec3 {

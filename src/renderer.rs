@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use crate::gpu::faces::{BoundaryFaces, FaceList};
 use crate::gpu::illumination::{Illumination, LightTimes};
@@ -177,7 +177,8 @@ impl Renderer {
         &self.light
     }
 
-    /// Where a ray from the eye has gathered an opacity of `seen` or more, in world space, and the cell there.
+    /// Where the ray through a place in the picture (x right, y down, 0 to 1) has gathered an opacity of `seen`
+    /// or more, in world space, and the cell there.
     ///
     /// # Errors
     /// When the device reports an error.
@@ -185,17 +186,18 @@ impl Renderer {
         &mut self,
         grid: &Grid,
         view: &View,
-        direction: DVec3,
+        at: DVec2,
         seen: f64,
     ) -> Result<Option<(DVec3, Located)>, GpuError> {
         self.show(grid, view)?;
         let grid = shown_grid(grid, view.ghosts.as_ref());
-        let eye = view.camera.eye;
-        let distances = view.box_corners.iter().map(|c| (*c - eye).dot(direction));
+        let (origin, direction) = view.camera.ray(at, view.aspect());
+        let distances = view.box_corners.iter();
+        let distances = distances.map(|c| (*c - origin).dot(direction));
         let far = distances.fold(0.0, f64::max);
         // On the lattice of the samples; of a long ray as many as a picture has rows of pixels, at most.
         let step = view.sampling_step.max(far / MOST_PICK_SAMPLES);
-        let place = |n: usize| eye + (n as f64 + 0.5) * step * direction;
+        let place = |n: usize| origin + (n as f64 + 0.5) * step * direction;
         let kept = |p: &DVec3| {
             let planes = &view.clip;
             planes.iter().all(|c| (*p - c.point).dot(c.normal) >= 0.0)

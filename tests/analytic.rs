@@ -11,7 +11,7 @@ use strataray::model::VertexField;
 use strataray::picture::Image;
 use strataray::reference::{self, Locator};
 use strataray::renderer::Renderer;
-use strataray::scene::{self, CameraSpec, FramingCamera, Interpolation, Scene, View};
+use strataray::scene::{self, CameraSpec, FramingCamera, Interpolation, Projection, Scene, View};
 use strataray::strategies::StrategyKind;
 
 fn scene(azimuth: f64, elevation: f64, opacity: &[[f64; 2]]) -> Scene {
@@ -21,6 +21,7 @@ fn scene(azimuth: f64, elevation: f64, opacity: &[[f64; 2]]) -> Scene {
             azimuth_degrees: azimuth,
             elevation_degrees: elevation,
             zoom: 1.1,
+            projection: Projection::Perspective,
         }),
         property: Some("VALUE".into()),
         range: Some([0.0, 1.0]),

@@ -14,7 +14,7 @@ use strataray::compare::{Compared, Comparer, Plan, Reference, Report, Row, Setti
 use strataray::load;
 use strataray::metrics::Comparison;
 use strataray::scene::{
-    self, CameraSpec, ExplicitCamera, NamedView, Scene, TurnAxis, View, half_turns,
+    self, CameraSpec, ExplicitCamera, NamedView, Projection, Scene, TurnAxis, View, half_turns,
 };
 use strataray::strategies::StrategyKind;
 
@@ -231,6 +231,7 @@ fn the_camera_turns_at_constant_distance() {
         target: (camera.eye + camera.forward + 0.05 * camera.right).to_array(),
         up: camera.up.to_array(),
         fovy_degrees: 30.0,
+        projection: Projection::Perspective,
     };
     for spec in [scene.camera.clone(), CameraSpec::Explicit(explicit)] {
         scene.camera = spec;

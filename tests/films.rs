@@ -16,7 +16,8 @@ use strataray::picture::{Annotations, finished};
 use strataray::renderer::Renderer;
 use strataray::scene::film::steps;
 use strataray::scene::{
-    CameraSpec, ExplicitCamera, FramingCamera, Scene, Sequence, StepSpec, Turn, View, resolve,
+    CameraSpec, ExplicitCamera, FramingCamera, Projection, Scene, Sequence, StepSpec, Turn, View,
+    resolve,
 };
 
 fn scene(property: &str) -> Scene {
@@ -200,6 +201,7 @@ fn a_turn_keeps_its_distance_and_the_model_in_the_picture() {
         azimuth_degrees: 65.0,
         elevation_degrees: 20.0,
         zoom: 1.0,
+        projection: Projection::Perspective,
     });
     let sequence = Sequence::around(&scene, &case, turn(360.0, 24)).unwrap();
     let still = resolve(&scene, &case).unwrap();
@@ -235,6 +237,7 @@ fn a_turn_begins_at_the_scenes_camera_and_goes_around_the_middle() {
         target: (middle + DVec3::new(50.0, 20.0, 0.0)).to_array(),
         up: [0.0, 0.0, 1.0],
         fovy_degrees: 30.0,
+        projection: Projection::Perspective,
     });
     let still = resolve(&scene, &case).unwrap();
     let quarter = Sequence::around(&scene, &case, turn(90.0, 4)).unwrap();

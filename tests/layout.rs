@@ -73,6 +73,10 @@ fn structs_agree() {
         world_handedness,
         view_z,
         grid_handedness,
+        origin_right,
+        is_parallel,
+        origin_up,
+        reserved,
         ghost,
         clip_planes
     );

@@ -10,7 +10,7 @@ use strataray::picture::Image;
 use strataray::renderer::Renderer;
 use strataray::scene::{
     self, CameraSpec, ExplicitCamera, FramingCamera, Integration, Interpolation, LibcSettings,
-    Scene, View,
+    Projection, Scene, View,
 };
 use strataray::strategies::StrategyKind;
 use strataray::{case::Case, load, reference};
@@ -23,6 +23,7 @@ fn scene(azimuth: f64, elevation: f64) -> Scene {
             azimuth_degrees: azimuth,
             elevation_degrees: elevation,
             zoom: 1.2,
+            projection: Projection::Perspective,
         }),
         ..Scene::default()
     }
@@ -143,6 +144,7 @@ fn an_eye_inside_the_model_sees_what_is_ahead() {
             target: (eye + DVec3::new(1.0, 2.0, -0.1)).to_array(),
             up: [0.0, 0.0, 1.0],
             fovy_degrees: 70.0,
+            projection: Projection::Perspective,
         });
         let view = scene::resolve(&scene, &case).unwrap();
         let truth = reference::render(&case.grid, &view, &|_| true).unwrap();

@@ -50,6 +50,7 @@ type Change = (&'static str, Value, [u64; 3]);
 
 fn changes() -> Vec<Change> {
     let camera = json!({"azimuth_degrees": 100, "elevation_degrees": 30});
+    let parallel = |zoom: f64| json!({"azimuth_degrees": 100, "elevation_degrees": 30, "zoom": zoom, "projection": "parallel"});
     let clip = json!([{"point": [0, 0, -15400], "normal": [0, 0, -1]}]);
     vec![
         ("/camera", camera, [0, 0, 1]),
@@ -63,6 +64,9 @@ fn changes() -> Vec<Change> {
             json!([4e5, 6e6, -5e3]),
             [0, 0, 1],
         ),
+        // Of a parallel camera only the direction counts.
+        ("/camera", parallel(1.0), [0, 0, 1]),
+        ("/camera", parallel(2.5), [0; 3]),
         // What is applied to samples is in no volume.
         ("/lighting/lights/1/direction", json!([0.3, 0, -1]), [0; 3]),
         ("/lighting/lights/1/opening_degrees", json!(20), [0; 3]),

@@ -3,15 +3,17 @@
 
 mod common;
 
+use glam::{DVec2, DVec3};
 use strataray::metrics::{fraction_within, psnr_8bit, ssim_8bit};
 use strataray::model::CellIndex;
 use strataray::picture::Image;
 use strataray::renderer::Renderer;
 use strataray::scene::{
-    self, CameraSpec, ClipSpec, CutFace, FramingCamera, Inactive, Interpolation, Scene, View,
+    self, CameraSpec, ClipSpec, CutFace, FramingCamera, Inactive, Interpolation, LightMode,
+    LightingSpec, Projection, Scene, View,
 };
 use strataray::strategies::StrategyKind;
-use strataray::{case::Case, load, reference};
+use strataray::{case::Case, load, picking, reference};
 
 fn scene(azimuth: f64, elevation: f64, interpolation: Interpolation) -> Scene {
     Scene {
@@ -20,6 +22,7 @@ fn scene(azimuth: f64, elevation: f64, interpolation: Interpolation) -> Scene {
             azimuth_degrees: azimuth,
             elevation_degrees: elevation,
             zoom: 1.2,
+            projection: Projection::Perspective,
         }),
         interpolation,
         ..Scene::default()
@@ -151,6 +154,155 @@ fn filters_and_cancel_work() {
         ) < 40.0
     );
     assert!(reference::render(&case.grid, &view, &|_| false).is_none());
+}
+
+/// The camera of a scene in parallel.
+fn parallel(scene: &mut Scene) {
+    if let CameraSpec::Framing(camera) = &mut scene.camera {
+        camera.projection = Projection::Parallel;
+    }
+}
+
+#[test]
+fn parallel_pictures_agree_with_the_reference() {
+    let Some(gpu) = common::gpu() else { return };
+    for model in common::models() {
+        let case = load::open(&model).unwrap();
+        let mut renderer = Renderer::new(gpu.clone(), &case.grid).unwrap();
+        for (azimuth, elevation, inside) in [
+            (205.0, 35.0, false),
+            (90.0, 0.0, false),
+            (20.0, 60.0, true),
+            (0.0, 90.0, false),
+        ] {
+            let mut scene = scene(azimuth, elevation, Interpolation::Vertex);
+            let perspective = scene::resolve(&scene, &case).unwrap();
+            parallel(&mut scene);
+            let mut view = scene::resolve(&scene, &case).unwrap();
+            let middle = 0.5 * (view.world_bounds[0] + view.world_bounds[1]);
+            let ahead = |c: &DVec3| view.camera.depth(*c) > 0.0;
+            assert!(view.box_corners.iter().all(ahead));
+            if inside {
+                // The plane of the eye cuts the model.
+                view.camera.eye = middle;
+                view.clip = scene::resolve(
+                    &Scene {
+                        clip: vec![clip(&view, [1.0, 0.3, 0.2], CutFace::Opaque)],
+                        ..scene.clone()
+                    },
+                    &case,
+                )
+                .unwrap()
+                .clip;
+            }
+            let truth = reference::render(&case.grid, &view, &|_| true).unwrap();
+            let least_seen = if inside { 0.05 } else { 0.3 };
+            assert!(truth.pixels.iter().any(|p| p[3] > least_seen));
+            let twin = reference::render(&case.grid, &perspective, &|_| true).unwrap();
+            let twin = psnr(&twin, &truth, &view);
+            for strategy in StrategyKind::ALL {
+                let image = on_gpu(&mut renderer, &case, &view, strategy);
+                let found = psnr(&image, &truth, &view);
+                let what = format!(
+                    "{} {} {azimuth}: {found:.1} dB, {twin:.1} dB in perspective",
+                    case.about.name,
+                    strategy.name()
+                );
+                println!("{what}");
+                // From above a flat model looks alike in both, up to what resampling it changes.
+                let gain = match strategy {
+                    StrategyKind::Srg if elevation == 90.0 => f64::NEG_INFINITY,
+                    _ => 3.0,
+                };
+                assert!(found >= least(strategy)[0] && twin + gain < found, "{what}");
+            }
+        }
+    }
+}
+
+#[test]
+fn what_is_picked_in_parallel_lies_under_the_pointer() {
+    let Some(gpu) = common::gpu() else { return };
+    let case = load::open(&common::sample()).unwrap();
+    let mut renderer = Renderer::new(gpu, &case.grid).unwrap();
+    let mut scene = scene(205.0, 35.0, Interpolation::Vertex);
+    let perspective = scene::resolve(&scene, &case).unwrap();
+    parallel(&mut scene);
+    let view = scene::resolve(&scene, &case).unwrap();
+    for at in [DVec2::new(0.5, 0.5), DVec2::new(0.42, 0.55)] {
+        let hit = picking::pick(&mut renderer, &case, &view, at);
+        let hit = hit.unwrap().unwrap();
+        let projected = view.camera.project(hit.world, view.aspect()).unwrap();
+        assert!(projected.distance(at) < 1e-9);
+        let cell = view.corners_of(case.grid.hexahedron(hit.ijk).bounds());
+        let low = cell.iter().copied().reduce(DVec3::min).unwrap();
+        let high = cell.iter().copied().reduce(DVec3::max).unwrap();
+        assert!(hit.world.cmpge(low - 1e-3).all() && hit.world.cmple(high + 1e-3).all());
+        let other = perspective
+            .camera
+            .project(hit.world, view.aspect())
+            .unwrap();
+        assert!(other.distance(at) > 1e-3);
+    }
+}
+
+#[test]
+fn occlusion_in_parallel_agrees_with_the_reference() {
+    let Some(gpu) = common::gpu() else { return };
+    let case = load::open(&common::sample()).unwrap();
+    let mut renderer = Renderer::new(gpu, &case.grid).unwrap();
+    for (mode, inside, least) in [
+        (LightMode::MonteCarlo, false, 45.0),
+        (LightMode::MonteCarlo, true, 45.0),
+        (LightMode::Image, false, 42.0),
+        (LightMode::Preilluminated, false, 42.0),
+    ] {
+        let mut scene = Scene {
+            size: [24, 18],
+            ..scene(205.0, 35.0, Interpolation::Vertex)
+        };
+        scene.lighting = LightingSpec::preset("strong").unwrap();
+        scene.lighting.occlusion.as_mut().unwrap().mode = mode;
+        scene.lighting.rays = 14;
+        let perspective = scene::resolve(&scene, &case).unwrap();
+        parallel(&mut scene);
+        let mut view = scene::resolve(&scene, &case).unwrap();
+        if inside {
+            view.camera.eye = 0.5 * (view.world_bounds[0] + view.world_bounds[1]);
+        }
+        let truth = reference::render(&case.grid, &view, &|_| true).unwrap();
+        let dark = View {
+            lighting: scene::resolve(
+                &Scene {
+                    lighting: LightingSpec::default(),
+                    ..scene
+                },
+                &case,
+            )
+            .unwrap()
+            .lighting,
+            ..view.clone()
+        };
+        for strategy in StrategyKind::ALL {
+            let found = psnr(
+                &on_gpu(&mut renderer, &case, &view, strategy),
+                &truth,
+                &view,
+            );
+            // The twins: no occlusion, and that of another camera.
+            let [unlit, other] = [&dark, &perspective]
+                .map(|v| psnr(&on_gpu(&mut renderer, &case, v, strategy), &truth, &view));
+            let what = format!(
+                "{mode:?} {} {inside}: {found:.1} dB, {unlit:.1} dB without, {other:.1} dB in perspective",
+                strategy.name()
+            );
+            println!("{what}");
+            assert!(
+                found > least && unlit + 4.0 < found && other + 4.0 < found,
+                "{what}"
+            );
+        }
+    }
 }
 
 /// A plane through the middle of the model that keeps its northern or its eastern half.

@@ -11,7 +11,7 @@ use strataray::case::Case;
 use strataray::picture::Image;
 use strataray::reference::Ray;
 use strataray::renderer::Renderer;
-use strataray::scene::{CameraSpec, ColorSpec, FramingCamera, View};
+use strataray::scene::{CameraSpec, ColorSpec, FramingCamera, Projection, View};
 use strataray::strategies::StrategyKind;
 
 /// The bar's corners and the floor's height, in world space.
@@ -61,6 +61,7 @@ fn picture(
         azimuth_degrees: 205.0,
         elevation_degrees: 50.0,
         zoom: 1.1,
+        projection: Projection::Perspective,
     });
     let (view, frame) = render(renderer, case, &scene);
     (view, frame.image)

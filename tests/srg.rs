@@ -27,7 +27,7 @@ use strataray::reference::{self, Locator};
 use strataray::renderer::{Frame, Renderer};
 use strataray::scene::{
     self, CameraSpec, ClipSpec, CutFace, ExplicitCamera, FramingCamera, Inactive, Interpolation,
-    Scene, SrgSettings, View,
+    Projection, Scene, SrgSettings, View,
 };
 use strataray::strategies::srg::Srg;
 use strataray::strategies::{Preparation, RenderStrategy, StrategyKind};
@@ -56,6 +56,7 @@ fn scene(size: [u32; 2], srg: SrgSettings) -> Scene {
             azimuth_degrees: 205.0,
             elevation_degrees: 35.0,
             zoom: 1.2,
+            projection: Projection::Perspective,
         }),
         strategy: StrategyKind::Srg.name().into(),
         srg,
@@ -288,6 +289,7 @@ fn the_volume_is_filled_anew_when_it_must_and_only_then() {
             azimuth_degrees: 20.0,
             elevation_degrees: 60.0,
             zoom: 2.0,
+            projection: Projection::Perspective,
         });
     };
     let kept: [&dyn Fn(&mut Scene); 7] = [
@@ -608,6 +610,7 @@ fn an_eye_inside_the_model_sees_what_is_ahead() {
             target: target.to_array(),
             up: [0.0, 0.0, 1.0],
             fovy_degrees: 60.0,
+            projection: Projection::Perspective,
         });
         scene::resolve(&scene, &case).unwrap()
     };

@@ -13,7 +13,7 @@ use strataray::scene::lighting::LightSpec;
 use strataray::scene::surfaces::{EDGE_DARKNESS, EDGE_WIDTH, PALETTE, SHEET_OPACITY, UNNAMED};
 use strataray::scene::{
     self, CameraSpec, ClipSpec, CutFace, FramingCamera, Inactive, Interpolation, LightMode,
-    LightingSpec, Scene, Surfaces, View,
+    LightingSpec, Projection, Scene, Surfaces, View,
 };
 use strataray::strategies::StrategyKind;
 use strataray::transfer::function::linear_from_srgb;
@@ -40,6 +40,7 @@ fn camera(azimuth_degrees: f64, elevation_degrees: f64, zoom: f64) -> CameraSpec
         azimuth_degrees,
         elevation_degrees,
         zoom,
+        projection: Projection::Perspective,
     })
 }
 
@@ -141,7 +142,7 @@ struct Look {
     change: fn(&mut Scene),
 }
 
-const LOOKS: [Look; 6] = [
+const LOOKS: [Look; 8] = [
     Look {
         name: "hull",
         shown: HULL,
@@ -196,7 +197,32 @@ const LOOKS: [Look; 6] = [
         cut: None,
         change: |scene| scene.show.inactive = Inactive::Ghost,
     },
+    Look {
+        name: "hull and edges in parallel",
+        shown: edges(HULL),
+        other: HULL,
+        camera: [150.0, 40.0, 3.0],
+        interpolation: Interpolation::Vertex,
+        cut: Some(CutFace::Opaque),
+        change: parallel,
+    },
+    Look {
+        name: "faults in parallel",
+        shown: edges(FAULTS),
+        other: NONE,
+        camera: [120.0, 20.0, 1.2],
+        interpolation: Interpolation::Cell,
+        cut: None,
+        change: parallel,
+    },
 ];
+
+/// The camera of a scene in parallel.
+fn parallel(scene: &mut Scene) {
+    if let CameraSpec::Framing(camera) = &mut scene.camera {
+        camera.projection = Projection::Parallel;
+    }
+}
 
 impl Look {
     fn view(&self, case: &Case) -> View {

@@ -15,44 +15,55 @@ const NO_CUT: u32 = 31u;
 
 struct Ray {
     // Sample n of the ray lies at `base + n * advance`, grid space relative to the origin, and at
-    // distance `(first + n + 1/2) * frame.step` from the eye.
+    // distance `(first + n + 1/2) * frame.step` from the origin.
     base: vec3f,
     advance: vec3f,
     first: f32,
     // Number of samples inside the model's box and the kept side of all clip planes.
     count: f32,
+    // The eye, or in parallel a point of the plane through it.
+    origin: vec3f,
     // Grid-space displacement per world-space length.
     direction: vec3f,
-    // Distances from the eye between which the ray is kept; none where `leave <= enter`.
+    // Distances from the origin between which the ray is kept; none where `leave <= enter`.
     enter: f32,
     leave: f32,
     // The clip plane through which it enters, or NO_CUT, and whether its section is opaque.
     cut: u32,
     opaque_cut: bool,
-    // The ray starts inside the box: the eye is there, or a clip plane opens it.
+    // The ray starts inside the box: its origin is there, or a clip plane opens it.
     starts_inside: bool,
 }
 
-// Direction through the middle of a pixel in world space, 1 along the camera's axis.
-fn view_direction(pixel: vec2u) -> vec3f {
-    let x = 2.0 * (f32(pixel.x) + 0.5) / f32(frame.width) - 1.0;
-    let y = 1.0 - 2.0 * (f32(pixel.y) + 0.5) / f32(frame.height);
-    return frame.forward + x * frame.right + y * frame.up;
+// The ray through the middle of a pixel.
+struct PixelRay {
+    origin: vec3f,
+    // Grid-space displacement per world-space length.
+    direction: vec3f,
+    // World-space length a unit along the camera's axis.
+    slant: f32,
 }
 
-// Grid-space displacement of a pixel's ray per world-space length.
-fn ray_direction(pixel: vec2u) -> vec3f {
-    let world = normalize(view_direction(pixel));
-    return world.x * frame.grid_from_world_x + world.y * frame.grid_from_world_y + world.z * frame.grid_from_world_z;
+fn pixel_ray(pixel: vec2u) -> PixelRay {
+    let x = 2.0 * (f32(pixel.x) + 0.5) / f32(frame.width) - 1.0;
+    let y = 1.0 - 2.0 * (f32(pixel.y) + 0.5) / f32(frame.height);
+    let world = frame.forward + x * frame.right + y * frame.up;
+    let slant = length(world);
+    let origin = frame.eye + x * frame.origin_right + y * frame.origin_up;
+    return PixelRay(origin, to_grid() * (world / slant), slant);
+}
+
+// From world-space displacements to those of grid space.
+fn to_grid() -> mat3x3f {
+    return mat3x3f(frame.grid_from_world_x, frame.grid_from_world_y, frame.grid_from_world_z);
 }
 
 // How a point of a ray moves from a pixel to the next one to the right, and to the one below: grid space.
 fn pixel_steps(direction: vec3f, distance: f32) -> mat2x3f {
     let depth = distance * dot(frame.view_z, direction);
-    let right = 2.0 * depth / f32(frame.width) * frame.right;
-    let down = -2.0 * depth / f32(frame.height) * frame.up;
-    let to_grid = mat3x3f(frame.grid_from_world_x, frame.grid_from_world_y, frame.grid_from_world_z);
-    return mat2x3f(to_grid * right, to_grid * down);
+    let right = frame.origin_right + to_grid() * (depth * frame.right);
+    let up = frame.origin_up + to_grid() * (depth * frame.up);
+    return mat2x3f(2.0 / f32(frame.width) * right, -2.0 / f32(frame.height) * up);
 }
 
 // True on the kept side of all clip planes.
@@ -68,10 +79,12 @@ fn is_kept(point: vec3f) -> bool {
 
 // The ray of a pixel, cut to the model's box and the clip planes.
 fn ray_of(pixel: vec2u) -> Ray {
-    let direction = ray_direction(pixel);
+    let through = pixel_ray(pixel);
+    let origin = through.origin;
+    let direction = through.direction;
     let safe = select(direction, vec3f(1e-12), abs(direction) < vec3f(1e-12));
-    let a = (frame.box_low - frame.eye) / safe;
-    let b = (frame.box_high - frame.eye) / safe;
+    let a = (frame.box_low - origin) / safe;
+    let b = (frame.box_high - origin) / safe;
     let near = min(a, b);
     let far = max(a, b);
     let box_enter = max(near.x, max(near.y, near.z));
@@ -81,7 +94,7 @@ fn ray_of(pixel: vec2u) -> Ray {
     var cut = NO_CUT;
     for (var n = 0u; n < frame.clip_count; n++) {
         let plane = frame.clip_planes[n];
-        let height = dot(plane.xyz, frame.eye) + plane.w;
+        let height = dot(plane.xyz, origin) + plane.w;
         let rate = dot(plane.xyz, direction);
         if abs(rate) < 1e-12 {
             clip_leave = select(clip_leave, -1.0, height < 0.0);
@@ -93,6 +106,7 @@ fn ray_of(pixel: vec2u) -> Ray {
         }
     }
     var ray: Ray;
+    ray.origin = origin;
     ray.direction = direction;
     ray.enter = max(box_enter, clip_enter);
     ray.leave = min(box_leave, clip_leave);
@@ -103,7 +117,7 @@ fn ray_of(pixel: vec2u) -> Ray {
     ray.starts_inside = ray.leave > ray.enter && clip_enter >= box_enter;
     ray.cut = cut;
     ray.opaque_cut = ray.starts_inside && cut != NO_CUT && (frame.opaque_cuts >> cut & 1u) == 1u;
-    ray.base = frame.eye + (ray.first + 0.5) * frame.step * direction;
+    ray.base = origin + (ray.first + 0.5) * frame.step * direction;
     ray.advance = frame.step * direction;
     return ray;
 }

@@ -9,7 +9,7 @@ struct Frame {
     eye: vec3f,
     // World-space distance of samples.
     step: f32,
-    // Ray basis in world space; `right` and `up` are scaled to half the picture.
+    // How the rays' directions vary over half the picture, in world space: not at all in parallel.
     forward: vec3f,
     early_termination: f32,
     right: vec3f,
@@ -30,9 +30,10 @@ struct Frame {
     box_high: vec3f,
     // Bit n: where plane n opens the model to the eye, its section is drawn opaque.
     opaque_cuts: u32,
-    // Rows of the transform from grid space relative to the eye to x, y and distance along the axis.
+    // Rows of the transform from grid space relative to the eye to x, y and distance along the axis; x and y
+    // are those of the picture, in perspective times that distance.
     view_x: vec3f,
-    // Distance from the eye of the model's farthest corner.
+    // Distance of the model's farthest corner.
     farthest: f32,
     view_y: vec3f,
     // +1 where cells are right-handed in world space, else -1.
@@ -40,6 +41,12 @@ struct Frame {
     view_z: vec3f,
     // The same in grid space.
     grid_handedness: f32,
+    // How the rays' origins vary over half the picture, in grid space: not at all in perspective.
+    origin_right: vec3f,
+    // 1 where rays are parallel, else 0.
+    is_parallel: f32,
+    origin_up: vec3f,
+    reserved: f32,
     // Linear color and extinction of inactive cells.
     ghost: vec4f,
     // Kept is where dot(xyz, point) + w >= 0, grid space relative to the origin.
@@ -180,7 +187,7 @@ struct Emitter {
     // Where it is, or for a directional light the unit vector toward it.
     at: vec3f,
     kind: u32,
-    // Axis of a spot.
+    // Axis of a spot; of directional light a point of the plane that it comes from.
     axis: vec3f,
     // Cosines of the angle at which a spot's light ends, and at which it begins to fade.
     cos_outer: f32,

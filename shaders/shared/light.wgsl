@@ -39,7 +39,7 @@ fn in_light(point: vec3f) -> vec3f {
 // Unit vector toward an emitter, and the distance to it.
 fn toward(emitter: Emitter, p: vec3f) -> vec4f {
     if emitter.kind == EMITTER_DIRECTIONAL {
-        return vec4f(emitter.at, 1e30);
+        return vec4f(emitter.at, dot(emitter.at, emitter.axis - p));
     }
     let away = emitter.at - p;
     let distance = max(length(away), 1e-6);

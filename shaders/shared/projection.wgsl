@@ -22,7 +22,7 @@ fn frame_at(origin: vec3f, direction: vec3f, t: f32) -> RayFrame {
     return r;
 }
 
-// A corner: two coordinates across the ray and the distance from the eye.
+// A corner: two coordinates across the ray and the distance along it.
 fn project(r: RayFrame, pillar: Pillar, depth: f32) -> vec3f {
     let from_origin = vec3f((pillar.at - r.origin.xy) + (pillar.low_bits + pillar.slope * depth), depth - r.origin.z);
     return vec3f(dot(r.across_x, from_origin), dot(r.across_y, from_origin), r.t_origin + dot(r.along, from_origin));

@@ -10,7 +10,7 @@ struct Corner {
     @location(1) @interpolate(flat) face: u32,
 }
 
-// What a pixel gets: face number + 1 and the bits of the distance from the eye, nearest first by the
+// What a pixel gets: face number + 1 and the bits of the distance along its ray, nearest first by the
 // fragment's depth.
 struct Met {
     @builtin(frag_depth) depth: f32,
@@ -33,7 +33,8 @@ fn face_vertex(face: u32, vertex: u32) -> Corner {
     let pillar = load_pillar(pillars_of[corner & 3u]);
     let depth = depths[list_entry(lists[corner & 3u], layer, corner >> 2u)];
     let from_eye = vec3f((pillar.at - frame.eye.xy) + (pillar.low_bits + pillar.slope * depth), depth - frame.eye.z);
-    let w = dot(frame.view_z, from_eye);
+    let depth_in_view = dot(frame.view_z, from_eye);
+    let w = mix(depth_in_view, 1.0, frame.is_parallel);
     // The picture's clip space, then the tile's.
     let scale = vec2f(f32(frame.width), f32(frame.height)) / vec2f(tile.size);
     let shift = scale - vec2f(1.0) - 2.0 * vec2f(tile.origin) / vec2f(tile.size);
@@ -41,10 +42,11 @@ fn face_vertex(face: u32, vertex: u32) -> Corner {
     out.position = vec4f(
         scale.x * dot(frame.view_x, from_eye) + shift.x * w,
         scale.y * dot(frame.view_y, from_eye) - shift.y * w,
-        0.5 * w,
+        // From 0 at the eye or its plane to 1/2; fragments have a depth of their own.
+        0.5 * depth_in_view / mix(1.0, max(frame.farthest, 1e-20), frame.is_parallel),
         w,
     );
-    out.depth = w;
+    out.depth = depth_in_view;
     out.face = face;
     return out;
 }

@@ -12,7 +12,7 @@ fn section_color(ray: Ray) -> vec4f {
     if !ray.opaque_cut {
         return vec4f(0.0);
     }
-    let point = frame.eye + ray.enter * ray.direction;
+    let point = ray.origin + ray.enter * ray.direction;
     let location = locate(Query(point, vec3f(0.0), SECTION_ENOUGH, frame.interpolation), vec3f(0.0));
     if !location.found || is_ghost(location.cell.column, location.cell.layer) {
         return vec4f(0.0);

@@ -9,7 +9,7 @@ use strataray::gpu::Gpu;
 use strataray::load;
 use strataray::scene::lighting::PRESETS;
 use strataray::scene::{
-    CameraSpec, FramingCamera, Interpolation, LightMode, LightingSpec, Scene, StepSpec,
+    CameraSpec, FramingCamera, Interpolation, LightMode, LightingSpec, Projection, Scene, StepSpec,
 };
 
 use super::progress::Reporter;
@@ -95,7 +95,11 @@ impl SceneOptions {
                 .with_context(|| format!("--size {size}: give width and height like 1000x800"))?;
         }
         if let Some(camera) = &self.camera {
-            scene.camera = CameraSpec::Framing(framing(camera)?);
+            let projection = scene.camera.projection();
+            scene.camera = CameraSpec::Framing(FramingCamera {
+                projection,
+                ..framing(camera)?
+            });
         }
         if self.exaggeration.is_some() {
             scene.vertical_exaggeration = self.exaggeration;
@@ -157,6 +161,7 @@ fn framing(text: &str) -> anyhow::Result<FramingCamera> {
             azimuth_degrees: *azimuth,
             elevation_degrees: *elevation,
             zoom: rest.first().copied().unwrap_or(1.0),
+            projection: Projection::default(),
         }),
         _ => anyhow::bail!(
             "--camera {text}: give azimuth and elevation in degrees and perhaps a zoom, like 220,35,1.2"

@@ -22,7 +22,7 @@ pub enum FaceMode {
 
 const MODES: u32 = 3;
 
-/// Face number + 1 (0 for none) and the bits of the distance from the eye as f32.
+/// Face number + 1 (0 for none) and the bits of the distance along the ray as f32.
 pub(super) const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Uint;
 
 /// Faces by number on the device.

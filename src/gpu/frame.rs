@@ -376,16 +376,19 @@ fn frame_uniform(grid: &GpuGrid, view: &View) -> Frame {
     let f32s = |v: DVec3| v.as_vec3().to_array();
     let linear = view.spaces.grid_from_world.matrix3;
     let eye = view.spaces.grid_from_world.transform_point3(camera.eye) - grid.origin;
-
+    // Half the picture at a depth of one.
+    let half_height = camera.half_height(1.0);
+    let [half_right, half_up] = [aspect * camera.right, camera.up].map(|v| half_height * v);
+    let is_parallel = f64::from(u8::from(camera.parallel.is_some()));
     let to_camera = view.spaces.world_from_grid.matrix3.transpose();
     Frame {
         eye: f32s(eye),
         step: view.sampling_step as f32,
         forward: f32s(camera.forward),
         early_termination: view.early_termination as f32,
-        right: f32s(camera.right * camera.tan_half_fovy * aspect),
+        right: f32s((1.0 - is_parallel) * half_right),
         value_low: view.transfer.range[0] as f32,
-        up: f32s(camera.up * camera.tan_half_fovy),
+        up: f32s((1.0 - is_parallel) * half_up),
         value_scale: layout::per_unit(view.transfer.range),
         grid_from_world_x: f32s(linear.x_axis),
         width: view.size[0],
@@ -400,12 +403,16 @@ fn frame_uniform(grid: &GpuGrid, view: &View) -> Frame {
             .zip(&view.clip)
             .map(|(n, plane)| u32::from(plane.opaque) << n)
             .sum(),
-        view_x: f32s(to_camera * (camera.right / (camera.tan_half_fovy * aspect))),
+        view_x: f32s(to_camera * (camera.right / (half_height * aspect))),
         farthest: farthest(view) as f32,
-        view_y: f32s(to_camera * (camera.up / camera.tan_half_fovy)),
+        view_y: f32s(to_camera * (camera.up / half_height)),
         world_handedness: grid.handedness * linear.determinant().signum() as f32,
         view_z: f32s(to_camera * camera.forward),
         grid_handedness: grid.handedness,
+        origin_right: f32s(linear * (is_parallel * half_right)),
+        is_parallel: is_parallel as f32,
+        origin_up: f32s(linear * (is_parallel * half_up)),
+        reserved: 0.0,
         ghost: ghost(view),
         clip_planes: clip_planes(grid, view),
     }
@@ -417,9 +424,10 @@ pub(super) fn ghost(view: &View) -> [f32; 4] {
     [r, g, b, view.transfer.extinction_of(ghosts::OPACITY) as f32]
 }
 
-/// Distance from the eye to the farthest corner of the model's box.
+/// Distance of the farthest corner of the model's box.
 fn farthest(view: &View) -> f64 {
-    let distances = view.box_corners.iter().map(|c| c.distance(view.camera.eye));
+    let distances = view.box_corners.iter();
+    let distances = distances.map(|c| view.camera.to_viewer(*c).1);
     distances.fold(0.0, f64::max)
 }
 

@@ -420,15 +420,7 @@ impl Illumination {
             let emitter = emitters.emitters[at];
             let lit = Lit {
                 pyramid: self.made.pyramids,
-                // Color and a spot's cone are applied to samples.
-                emitter: Emitter {
-                    first: 0,
-                    color: [0.0; 3],
-                    axis: [0.0; 3],
-                    cos_outer: 0.0,
-                    cos_inner: 0.0,
-                    ..emitter
-                },
+                emitter: emitter.for_cones(),
                 sections: emitters.of(at).to_vec(),
             };
             if lights.size == size && lights.made[n].as_ref() == Some(&lit) {
@@ -659,13 +651,10 @@ fn emitters(grid: &GpuGrid, view: &View, software: bool) -> Result<Emitters, Gpu
         volumes: Vec::new(),
         work: 0,
     };
-    let viewer = Source::Point {
-        position: view.camera.eye,
-    };
     let occlusion = lighting.occlusion;
     let off = LightMode::Off;
     all.add(
-        Emitter::at(&viewer, DVec3::ONE, grid, view, &space),
+        Emitter::viewer(grid, view, &space),
         occlusion.map_or(off, |o| o.mode),
         occlusion.map(|o| o.cone),
         lighting,
@@ -746,17 +735,61 @@ fn cone_work(emitter: &Emitter) -> u32 {
     counts.iter().zip(SECTION_WORK).map(|(n, w)| n * w).sum()
 }
 
+/// Distance from which directional light comes, in the units of its space.
+const FAR: f32 = 1e30;
+
 impl Emitter {
+    /// The viewer: the eye, or what sees along the axis of a parallel camera. Nothing behind the plane of
+    /// that one is in the way; where all of the model is before it, moving it changes nothing.
+    fn viewer(grid: &GpuGrid, view: &View, space: &LightSpace) -> Self {
+        let camera = &view.camera;
+        if camera.parallel.is_none() {
+            let position = camera.eye;
+            return Self::at(&Source::Point { position }, DVec3::ONE, grid, view, space);
+        }
+        let toward = -camera.forward;
+        let viewer = Self::at(
+            &Source::Directional { toward },
+            DVec3::ONE,
+            grid,
+            view,
+            space,
+        );
+        let cuts = view.box_corners.iter().any(|c| camera.depth(*c) < 0.0);
+        let plane = cuts.then(|| space.point(grid, view, camera.eye).to_array());
+        Self {
+            axis: plane.unwrap_or(viewer.axis),
+            ..viewer
+        }
+    }
+
+    /// What cones to it depend on: color and a spot's own cone are applied to samples.
+    fn for_cones(self) -> Self {
+        let is_directional = self.kind == layout::EMITTER_DIRECTIONAL;
+        Self {
+            first: 0,
+            color: [0.0; 3],
+            axis: if is_directional { self.axis } else { [0.0; 3] },
+            cos_outer: 0.0,
+            cos_inner: 0.0,
+            ..self
+        }
+    }
+
     fn at(source: &Source, color: DVec3, grid: &GpuGrid, view: &View, space: &LightSpace) -> Self {
         let none: Self = bytemuck::Zeroable::zeroed();
         let color = color.as_vec3().to_array();
         match *source {
-            Source::Directional { toward } => Self {
-                kind: layout::EMITTER_DIRECTIONAL,
-                at: space.direction(view, toward).to_array(),
-                color,
-                ..none
-            },
+            Source::Directional { toward } => {
+                let toward = space.direction(view, toward);
+                Self {
+                    kind: layout::EMITTER_DIRECTIONAL,
+                    at: toward.to_array(),
+                    axis: (FAR * toward).to_array(),
+                    color,
+                    ..none
+                }
+            }
             Source::Point { position } => Self {
                 kind: layout::EMITTER_POINT,
                 at: space.point(grid, view, position).to_array(),

@@ -33,6 +33,10 @@ pub struct Frame {
     pub world_handedness: f32,
     pub view_z: [f32; 3],
     pub grid_handedness: f32,
+    pub origin_right: [f32; 3],
+    pub is_parallel: f32,
+    pub origin_up: [f32; 3],
+    pub reserved: f32,
     pub ghost: [f32; 4],
     pub clip_planes: [[f32; 4]; MAX_CLIP_PLANES],
 }

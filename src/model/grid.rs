@@ -301,8 +301,13 @@ impl Grid {
 
     /// Smallest and largest corner of the active cells in grid space; `None` without any.
     pub fn bounds(&self) -> Option<[DVec3; 2]> {
-        self.active_by_column()
-            .map(|ijk| self.hexahedron(ijk).bounds())
+        self.bounds_of(self.active_by_column())
+    }
+
+    /// Smallest and largest corner of some cells in grid space; `None` of none.
+    pub fn bounds_of(&self, cells: impl IntoParallelIterator<Item = Ijk>) -> Option<[DVec3; 2]> {
+        let each = cells.into_par_iter();
+        each.map(|ijk| self.hexahedron(ijk).bounds())
             .reduce_with(|a, b| [a[0].min(b[0]), a[1].max(b[1])])
     }
 }

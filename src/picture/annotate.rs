@@ -1,6 +1,9 @@
 //! Title, legend, orientation axes and the model's box, drawn into the 8-bit picture.
 
+use glam::DVec2;
+
 use super::canvas::Canvas;
+use super::orientation::{Orientation, Paper};
 use super::pen::Pen;
 use super::{Image, axes, legend};
 use crate::case::Case;
@@ -17,9 +20,11 @@ pub struct Annotations {
     pub property: String,
     /// Unit behind the name; may be empty.
     pub unit: String,
+    /// Unit of lengths; may be empty.
+    pub length_unit: String,
     /// Draw title and legend.
     pub show_legend: bool,
-    /// Draw the box, the axes and the vertical exaggeration.
+    /// Draw the box with coordinates, the directions, a scale bar and the vertical exaggeration.
     pub show_box: bool,
 }
 
@@ -35,9 +40,19 @@ impl Annotations {
             }),
             property: view.property.clone(),
             unit: case.unit(&view.property).to_owned(),
+            length_unit: short_unit(&case.about.length_unit),
             show_legend: view.show_legend,
             show_box: view.show_box,
         }
+    }
+}
+
+/// A length unit of a grid file as it is written behind numbers.
+fn short_unit(name: &str) -> String {
+    match name {
+        "METRES" => "m".into(),
+        "FEET" => "ft".into(),
+        other => other.to_lowercase(),
     }
 }
 
@@ -62,30 +77,49 @@ pub fn annotate(rgb: &mut [[u8; 3]], image: &Image, view: &View, annotations: &A
     }
     let canvas = Canvas::new(image.size, rgb);
     let mut pen = Pen::new(canvas, view.background, Pen::unit_of(image.size));
-    axes::draw_connections(&mut pen, view);
+    let size = DVec2::from_array(image.size.map(f64::from));
+    axes::draw_connections(&mut pen, view, size);
     if annotations.show_box {
-        axes::draw_box(&mut pen, image, view);
-        axes::draw_axes(&mut pen, view);
+        axes::draw_edges(&mut pen, image, &Orientation::box_edges(view, size));
     }
+    let mut taken = Vec::new();
     if annotations.show_legend {
-        pen.title_until(&annotations.title, &annotations.when);
+        taken.push(pen.title_until(&annotations.title, &annotations.when));
         let heading = [&annotations.property, &annotations.unit];
-        legend::draw(&mut pen, &view.transfer, heading.map(String::as_str));
+        taken.push(legend::draw(
+            &mut pen,
+            &view.transfer,
+            heading.map(String::as_str),
+        ));
+    }
+    if annotations.show_box {
+        let orientation = Orientation::of(
+            view,
+            &annotations.length_unit,
+            Paper {
+                size,
+                unit: pen.unit,
+                width: &|text| pen.canvas.text_width(text, pen.unit),
+                is_dark: pen.dark_paper,
+                taken,
+            },
+        );
+        axes::draw_marks(&mut pen, &orientation);
     }
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use glam::DVec3;
 
     use super::*;
     use crate::model::{CellField, Spaces};
-    use crate::scene::{Camera, Interpolation};
+    use crate::scene::{Camera, Interpolation, Projection};
     use crate::strategies::StrategyKind;
     use crate::transfer::{TransferFunction, presets};
 
     /// A view from the southwest on a box of 10 by 9 by 4.
-    fn view(size: [u32; 2], background: f64) -> View {
+    pub fn view(size: [u32; 2], background: f64) -> View {
         let spaces = Spaces::new(None, 2.0);
         let box_corners = std::array::from_fn(|c| {
             let pick = |axis: usize, length: f64| if c >> axis & 1 == 1 { length } else { 0.0 };
@@ -96,7 +130,8 @@ mod tests {
         View {
             size,
             background: [background; 3],
-            camera: Camera::framing(&box_corners, 3.6, 0.6, 1.0, aspect).unwrap(),
+            camera: Camera::framing(&box_corners, 3.6, 0.6, 1.0, aspect, Projection::Perspective)
+                .unwrap(),
             spaces,
             vertical_exaggeration: 2.0,
             world_bounds: [DVec3::new(0.0, 0.0, -4.0), DVec3::new(10.0, 9.0, 0.0)],
@@ -139,6 +174,7 @@ mod tests {
             when: String::new(),
             property: "SWAT".into(),
             unit: "m3".into(),
+            length_unit: "m".into(),
             show_legend,
             show_box,
         }

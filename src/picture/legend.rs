@@ -1,5 +1,8 @@
 //! The legend: a bar of the transfer function's colors with round values and the opacity curve.
 
+use glam::DVec2;
+
+use super::orientation::Area;
 use super::pen::Pen;
 use super::srgb_8bit;
 use super::ticks::labels;
@@ -39,8 +42,8 @@ impl Bar {
     }
 }
 
-/// Draws the legend at the right edge; empty lines of the heading take no room.
-pub fn draw(pen: &mut Pen, transfer: &TransferFunction, heading: [&str; 2]) {
+/// Draws the legend at the right edge and says what it covers; empty lines of the heading take no room.
+pub fn draw(pen: &mut Pen, transfer: &TransferFunction, heading: [&str; 2]) -> Area {
     let [w, h] = pen.canvas.size.map(f64::from);
     let unit = pen.unit;
     let height = (0.5 * h).min(20.0 * unit);
@@ -68,16 +71,18 @@ pub fn draw(pen: &mut Pen, transfer: &TransferFunction, heading: [&str; 2]) {
         .fold(bar.left, f64::min);
     let first_line = bar.top - 0.4 * unit - 1.2 * unit * heading.len() as f64;
     let plate_left = heading_left.min(bar.left - 1.5 * unit) - 0.5 * unit;
-    pen.plate(
+    let covered = [
         [plate_left, first_line - 0.4 * unit],
         [w, bar.bottom + unit],
-    );
+    ];
+    pen.plate(covered[0], covered[1]);
     for (n, line) in heading.iter().enumerate() {
         pen.write(line, [heading_left, first_line + 1.2 * unit * n as f64]);
     }
     colors(pen, &bar, transfer);
     opacity(pen, &bar, transfer);
     values(pen, &bar, transfer, &labels);
+    covered.map(DVec2::from_array)
 }
 
 fn colors(pen: &mut Pen, bar: &Bar, transfer: &TransferFunction) {

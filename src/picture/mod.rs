@@ -9,15 +9,19 @@ mod draft;
 mod files;
 pub mod film;
 mod legend;
+mod orientation;
 mod pen;
 mod plot;
 mod sheet;
 mod ticks;
 
+#[cfg(test)]
+pub(crate) use annotate::tests::view as test_view;
 pub use annotate::{Annotations, annotate, finished};
-pub use axes::{CONNECTION, far_edges};
+pub use axes::CONNECTION;
 pub use difference::{difference_colors, difference_picture};
 pub use files::{Format, PictureError, write_exr, write_png};
+pub use orientation::{Arrow, Orientation, Paper, Text, on_screen};
 pub use plot::{Plot, Series};
 pub use sheet::{SheetError, Tile, contact_sheet};
 pub use ticks::labels as legend_labels;

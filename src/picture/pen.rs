@@ -1,6 +1,9 @@
 //! What all drawings share: a canvas with ink, paper and sizes, title and thin lines.
 
+use glam::DVec2;
+
 use super::canvas::Canvas;
+use super::orientation::Area;
 use super::srgb_8bit;
 use crate::transfer::function::linear_from_srgb;
 
@@ -74,8 +77,8 @@ impl<'a> Pen<'a> {
         self.title_until(title, "");
     }
 
-    /// The same, of two parts: only the first one becomes shorter where there is no room.
-    pub fn title_until(&mut self, title: &str, end: &str) {
+    /// The same, of two parts: only the first one becomes shorter where there is no room. Says what it covers.
+    pub fn title_until(&mut self, title: &str, end: &str) -> Area {
         let margin = self.unit;
         let room = f64::from(self.canvas.size[0]) - 2.0 * margin;
         let wanted = 1.25 * self.unit;
@@ -87,10 +90,12 @@ impl<'a> Pen<'a> {
         let title = self.canvas.cut(title, height, left) + end;
         let end = margin + self.canvas.text_width(&title, height);
         let top = 0.7 * margin;
-        self.plate(
+        let covered = [
             [0.5 * margin, 0.5 * top],
             [end + 0.5 * margin, top + 1.2 * height],
-        );
+        ];
+        self.plate(covered[0], covered[1]);
         self.canvas.text(&title, [margin, top], height, self.ink);
+        covered.map(DVec2::from_array)
     }
 }

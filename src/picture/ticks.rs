@@ -15,6 +15,16 @@ pub fn labels(range: [f64; 2], wanted: usize) -> Vec<(f64, String)> {
     values.into_iter().map(named).collect()
 }
 
+/// The same, never with an exponent: coordinates are long numbers whose last digits count.
+pub fn plain_labels(range: [f64; 2], wanted: usize) -> Vec<(f64, String)> {
+    let values = ticks(range, wanted);
+    let step = values.get(1).map_or(1.0, |v| v - values[0]);
+    let decimals = (-step.log10().floor()).clamp(0.0, 12.0) as usize;
+    let is_short = |v: f64| v == 0.0 || (1e-9..1e12).contains(&v.abs());
+    let named = |v: f64| is_short(v).then(|| (v, format!("{v:.decimals$}")));
+    values.into_iter().filter_map(named).collect()
+}
+
 /// Powers of ten within a range, twice and five times them too where there are few, each with its
 /// label; those of [`labels`] where the range is less than a decade or not positive.
 pub fn log_labels([low, high]: [f64; 2], wanted: usize) -> Vec<(f64, String)> {
@@ -136,6 +146,21 @@ mod tests {
             texts.dedup();
             assert!(texts.len() == all && all > 2, "{range:?} {texts:?}");
         }
+    }
+
+    #[test]
+    fn coordinates_have_all_their_digits() {
+        let texts = |range| -> Vec<String> {
+            let labels = plain_labels(range, 4).into_iter();
+            labels.map(|l| l.1).collect()
+        };
+        assert_eq!(
+            texts([5_930_210.0, 5_933_500.0]),
+            ["5931000", "5932000", "5933000"]
+        );
+        assert_eq!(texts([0.1, 0.9]), ["0.2", "0.4", "0.6", "0.8"]);
+        assert_eq!(texts([-2.0, 2.0]), ["-2", "-1", "0", "1", "2"]);
+        assert!(texts([f64::NAN, 1.0]).is_empty() && texts([1e300, 2e300]).is_empty());
     }
 
     #[test]

@@ -26,12 +26,16 @@ impl Ray {
         let camera = &view.camera;
         let right = (2.0 * (f64::from(x) + 0.5) / width - 1.0) * width / height;
         let up = 1.0 - 2.0 * (f64::from(y) + 0.5) / height;
-        let direction = camera.forward
-            + right * camera.tan_half_fovy * camera.right
-            + up * camera.tan_half_fovy * camera.up;
-        Self {
-            origin: camera.eye,
-            direction: direction.normalize(),
+        let across = right * camera.right + up * camera.up;
+        match camera.parallel {
+            None => Self {
+                origin: camera.eye,
+                direction: (camera.forward + camera.tan_half_fovy * across).normalize(),
+            },
+            Some(half_height) => Self {
+                origin: camera.eye + half_height * across,
+                direction: camera.forward,
+            },
         }
     }
 

@@ -47,7 +47,7 @@ impl Integrator<'_> {
         }
         let mut random = random(lighting.seed, point);
         let surface = self.surface(valued);
-        let viewer = (self.view.camera.eye - point).normalize_or_zero();
+        let (viewer, _) = self.viewer(point);
         let mut diffuse = DVec3::splat(lighting.ambient * self.occlusion(point, &mut random));
         let mut specular = DVec3::ZERO;
         for light in &lighting.lights {
@@ -59,10 +59,20 @@ impl Integrator<'_> {
         (DVec3::from_array(color) * diffuse + specular).to_array()
     }
 
+    /// Unit vector from a point to the viewer, and the distance to where rays begin.
+    fn viewer(&self, point: DVec3) -> (DVec3, f64) {
+        let camera = &self.view.camera;
+        let from_eye = point - camera.eye;
+        match camera.parallel {
+            None => (-from_eye).normalize_and_length(),
+            Some(_) => (-camera.forward, from_eye.dot(camera.forward)),
+        }
+    }
+
     /// Part of the ambient light that occlusion leaves.
     fn occlusion(&self, point: DVec3, random: &mut fastrand::Rng) -> f64 {
         self.view.lighting.occlusion.map_or(1.0, |occlusion| {
-            let (axis, reach) = (self.view.camera.eye - point).normalize_and_length();
+            let (axis, reach) = self.viewer(point);
             let seen = self.transmittance(point, axis, &occlusion.cone, reach, random);
             1.0 - occlusion.strength * (1.0 - seen)
         })

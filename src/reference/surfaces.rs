@@ -40,7 +40,7 @@ struct SurfaceFace {
 /// What a ray meets of the surfaces.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Layer {
-    /// Distance from the eye.
+    /// Distance along the ray.
     pub distance: f64,
     /// Linear color, shaded.
     pub color: DVec3,
@@ -292,11 +292,17 @@ impl Integrator<'_> {
     /// Rays half a pixel to the left and right, and half a pixel above and below.
     fn neighbors(&self, ray: Ray) -> [[Ray; 2]; 2] {
         let View { camera, size, .. } = self.view;
-        let pixel = camera.tan_half_fovy / f64::from(size[1]);
+        let height = f64::from(size[1]);
         let ahead = ray.direction / ray.direction.dot(camera.forward);
-        let beside = |way: DVec3| Ray {
-            direction: (ahead + pixel * way).normalize(),
-            ..ray
+        let beside = |way: DVec3| match camera.parallel {
+            None => Ray {
+                direction: (ahead + camera.tan_half_fovy / height * way).normalize(),
+                ..ray
+            },
+            Some(half_height) => Ray {
+                origin: ray.origin + half_height / height * way,
+                ..ray
+            },
         };
         [camera.right, -camera.up].map(|way| [beside(-way), beside(way)])
     }

@@ -126,6 +126,7 @@ fn view(grid: &Grid, field: CellField, extinction: f64, sampling_step: f64) -> V
         drawn: vec![true; grid.active_cells().len()].into(),
         clip: Vec::new(),
         ghosts: None,
+        connections: std::sync::Arc::default(),
         lighting: scene_lighting::resolve(&LightingSpec::default(), DVec3::ONE, 1).unwrap(),
         libc: crate::scene::LibcSettings::default(),
         srg: crate::scene::SrgSettings::default(),
@@ -337,6 +338,31 @@ fn ray_through_a_box_is_beer_lambert() {
 }
 
 #[test]
+fn a_slab_has_the_same_transmittance_everywhere_in_parallel() {
+    let grid = Shape::default().grid();
+    let (extinction, step) = (0.07, 0.3);
+    let mut view = view(&grid, constant(&grid), extinction, step);
+    let center = 0.5 * (view.world_bounds[0] + view.world_bounds[1]);
+    let perspective = render(&grid, &view, &|_| true).unwrap();
+    view.camera = view.camera.with(crate::scene::Projection::Parallel, center);
+    // A picture as high as the slab is 12 high, and as wide as it is 40 wide.
+    view.camera.parallel = Some(5.9);
+    view.camera.right *= 3.0;
+    let parallel = render(&grid, &view, &|_| true).unwrap();
+    // Samples as on the central ray in perspective, which all others take on a longer way.
+    let expected = (-extinction * step * 67.0).exp();
+    let error = |p: &[f32; 4]| (1.0 - f64::from(p[3]) - expected).abs();
+    assert!(parallel.pixels.iter().all(|p| error(p) < 1e-6));
+    assert!(perspective.pixels.iter().any(|p| error(p) > 1e-3));
+    // From the middle of the slab on, half as many.
+    view.camera.eye = center;
+    let half = render(&grid, &view, &|_| true).unwrap();
+    let expected = (-extinction * step * 33.0).exp();
+    let error = |p: &[f32; 4]| (1.0 - f64::from(p[3]) - expected).abs();
+    assert!(half.pixels.iter().all(|p| error(p) < 1e-6));
+}
+
+#[test]
 fn hidden_and_undefined_cells_are_empty() {
     let grid = Shape::default().grid();
     // The central ray runs along the edge of four pairs of cells, which the first pair has.
@@ -382,7 +408,15 @@ fn picture_does_not_depend_on_where_the_model_is_nor_on_its_axes() {
         let mut view = view(grid, field, 0.01, 3.0);
         view.transfer.opacity = vec![(0.0, 0.0), (1.0, 0.05)];
         view.interpolation = Interpolation::Vertex;
-        view.camera = Camera::framing(&view.box_corners, 1.0, 0.5, 1.0, 1.0).unwrap();
+        view.camera = Camera::framing(
+            &view.box_corners,
+            1.0,
+            0.5,
+            1.0,
+            1.0,
+            crate::scene::Projection::Perspective,
+        )
+        .unwrap();
         render(grid, &view, &|_| true).unwrap()
     };
     let at_home = picture(&near);

@@ -1,8 +1,38 @@
-//! A perspective camera in world space.
+//! A camera in world space, perspective or parallel.
 
 use glam::{DQuat, DVec2, DVec3};
+use serde::{Deserialize, Serialize};
 
-/// A pinhole camera with an orthonormal frame.
+/// How a camera maps the world to its picture.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Projection {
+    /// Rays go out from the eye: what is far is small.
+    #[default]
+    Perspective,
+    /// Rays start on the plane through the eye at right angles to the viewing direction and all run along
+    /// that: equal lengths look equal.
+    Parallel,
+}
+
+impl Projection {
+    /// True for what scenes need not say.
+    pub fn is_default(&self) -> bool {
+        *self == Self::default()
+    }
+
+    /// The other one.
+    #[must_use]
+    pub fn other(self) -> Self {
+        match self {
+            Self::Perspective => Self::Parallel,
+            Self::Parallel => Self::Perspective,
+        }
+    }
+}
+
+/// A camera with an orthonormal frame. Distances of samples count from the eye, or in parallel from the
+/// plane through it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Camera {
     /// Position in world space.
@@ -15,10 +45,17 @@ pub struct Camera {
     pub up: DVec3,
     /// Tangent of half the vertical field of view.
     pub tan_half_fovy: f64,
+    /// Half the height of a parallel picture, in world space; `None` in perspective.
+    pub parallel: Option<f64>,
 }
 
+/// Room around what is framed, as a factor on its size: in perspective its nearest corner alone comes so close
+/// to the rim.
+const FRAME: f64 = 1.08;
+const PARALLEL_FRAME: f64 = 1.2;
+
 impl Camera {
-    /// A camera at `eye` that looks at `target`; `None` where the three do not span a frame.
+    /// A perspective camera at `eye` that looks at `target`; `None` where the three do not span a frame.
     pub fn look_at(eye: DVec3, target: DVec3, up: DVec3, fovy_radians: f64) -> Option<Self> {
         let forward = (target - eye).try_normalize()?;
         let right = forward.cross(up).try_normalize()?;
@@ -28,6 +65,7 @@ impl Camera {
             right,
             up: right.cross(forward),
             tan_half_fovy: (0.5 * fovy_radians).tan(),
+            parallel: None,
         })
     }
 
@@ -41,9 +79,10 @@ impl Camera {
         elevation_radians: f64,
         zoom: f64,
         aspect: f64,
+        projection: Projection,
     ) -> Option<Self> {
         let fovy = 30f64.to_radians();
-        let center = corners.iter().sum::<DVec3>() / 8.0;
+        let center = middle(corners);
         let (sin_a, cos_a) = azimuth_radians.sin_cos();
         let (sin_e, cos_e) = elevation_radians.sin_cos();
         let towards_eye = DVec3::new(sin_a * cos_e, cos_a * cos_e, sin_e);
@@ -53,36 +92,56 @@ impl Camera {
         } else {
             DVec3::Z
         };
-        let mut camera = Self::look_at(center + towards_eye, center, up, fovy)?;
-        camera.eye = center + towards_eye * (camera.framing_distance(corners, aspect) / zoom);
-        Some(camera)
+        let camera = Self::look_at(center + towards_eye, center, up, fovy)?;
+        let camera = camera.with(projection, center).framed(corners, aspect);
+        Some(camera.closer(center, zoom))
     }
 
-    /// The nearest distance from the middle of a box, given by its corners, at which all of them are
-    /// inside the picture of a camera that looks there in this one's direction.
-    pub fn framing_distance(&self, corners: &[DVec3; 8], aspect: f64) -> f64 {
-        let center = corners.iter().sum::<DVec3>() / 8.0;
-        let tan = DVec2::new(self.tan_half_fovy * aspect, self.tan_half_fovy) / 1.08;
-        let distances = corners.iter().map(|corner| {
+    /// The camera that looks at the middle of a box, given by its corners, in this one's direction, and has
+    /// all of them in its picture. The plane of a parallel one does not cut the box, however it is turned
+    /// about its middle.
+    #[must_use]
+    pub fn framed(self, corners: &[DVec3; 8], aspect: f64) -> Self {
+        let center = middle(corners);
+        let need = self.need(corners, aspect);
+        let distance = match self.parallel {
+            None => need,
+            Some(_) => (need / self.tan_half_fovy).max(1.01 * corners[0].distance(center)),
+        };
+        Self {
+            eye: center - distance * self.forward,
+            parallel: self.parallel.map(|_| need),
+            ..self
+        }
+    }
+
+    /// What a camera in this one's direction that looks at the middle of a box needs to have all corners in
+    /// its picture: in perspective the distance, in parallel half the height.
+    fn need(&self, corners: &[DVec3; 8], aspect: f64) -> f64 {
+        let center = middle(corners);
+        let needs = corners.iter().map(|corner| {
             let corner = corner - center;
             let (x, y) = (corner.dot(self.right).abs(), corner.dot(self.up).abs());
-            (x / tan.x).max(y / tan.y) - corner.dot(self.forward)
+            let half_height = (x / aspect).max(y);
+            match self.parallel {
+                None => FRAME * half_height / self.tan_half_fovy - corner.dot(self.forward),
+                Some(_) => PARALLEL_FRAME * half_height,
+            }
         });
-        distances.fold(1e-9, f64::max)
+        needs.fold(1e-9, f64::max)
     }
 
     /// Takes cameras that look at the middle of a box, each from as far as the first one, as far away as
     /// the one that needs the most: with one distance the box does not shrink and grow between them. How
-    /// close the first one is (its zoom) counts for all.
+    /// close the first one is (its zoom) counts for all. Of parallel ones it is the height that counts.
     pub fn stand_back(cameras: &mut [Self], corners: &[DVec3; 8], aspect: f64) {
-        let needs = |camera: &Self| camera.framing_distance(corners, aspect);
+        let needs = |camera: &Self| camera.need(corners, aspect);
         let Some(first) = cameras.first().map(needs) else {
             return;
         };
         let most = cameras.iter().map(needs).fold(0.0, f64::max);
-        let middle = corners.iter().sum::<DVec3>() / 8.0;
         for camera in cameras {
-            camera.eye += (most / first - 1.0) * (camera.eye - middle);
+            *camera = camera.closer(middle(corners), first / most);
         }
     }
 
@@ -100,14 +159,212 @@ impl Camera {
         }
     }
 
+    /// This camera closer to a point by a factor above 1, or farther by one below; the point keeps its place
+    /// in the picture. In parallel the picture's height changes, and no distance.
+    #[must_use]
+    pub fn closer(self, to: DVec3, factor: f64) -> Self {
+        let way = to - self.eye;
+        let moved = match self.parallel {
+            None => way,
+            Some(_) => way - self.depth(to) * self.forward,
+        };
+        Self {
+            // Written such that a factor of 1 is exactly no change.
+            eye: self.eye + (1.0 - 1.0 / factor) * moved,
+            parallel: self.parallel.map(|half_height| half_height / factor),
+            ..self
+        }
+    }
+
+    /// Its projection.
+    pub fn projection(&self) -> Projection {
+        match self.parallel {
+            None => Projection::Perspective,
+            Some(_) => Projection::Parallel,
+        }
+    }
+
+    /// This camera in a projection; what lies as deep as `at` keeps its size in the picture.
+    #[must_use]
+    pub fn with(self, projection: Projection, at: DVec3) -> Self {
+        let depth = self.depth(at);
+        match (projection, self.parallel) {
+            (Projection::Parallel, None) => Self {
+                parallel: Some(depth.max(1e-9) * self.tan_half_fovy),
+                ..self
+            },
+            (Projection::Perspective, Some(half_height)) => Self {
+                eye: self.eye + (depth - half_height / self.tan_half_fovy) * self.forward,
+                parallel: None,
+                ..self
+            },
+            _ => self,
+        }
+    }
+
+    /// A parallel camera moved back until a box lies before the plane of its eye, which changes nothing else
+    /// in the picture; a perspective one as it is.
+    #[must_use]
+    pub fn before(self, corners: &[DVec3; 8]) -> Self {
+        let depths = corners.iter().map(|c| self.depth(*c));
+        let behind = -depths.fold(f64::INFINITY, f64::min);
+        if self.parallel.is_none() || behind < 0.0 {
+            return self;
+        }
+        let back = behind + 0.01 * corners[0].distance(corners[7]);
+        Self {
+            eye: self.eye - back * self.forward,
+            ..self
+        }
+    }
+
+    /// Distance of a point from the plane through the eye, along the viewing direction.
+    pub fn depth(&self, point: DVec3) -> f64 {
+        (point - self.eye).dot(self.forward)
+    }
+
+    /// Half the height of the picture at a depth, in world space.
+    pub fn half_height(&self, depth: f64) -> f64 {
+        self.parallel.unwrap_or(depth * self.tan_half_fovy)
+    }
+
+    /// Origin and unit direction of the ray through a place in the picture (x right, y down, 0..1).
+    pub fn ray(&self, at: DVec2, aspect: f64) -> (DVec3, DVec3) {
+        let half_height = self.half_height(1.0);
+        let across = (2.0 * at.x - 1.0) * half_height * aspect * self.right
+            + (1.0 - 2.0 * at.y) * half_height * self.up;
+        match self.parallel {
+            None => (self.eye, (self.forward + across).normalize()),
+            Some(_) => (self.eye + across, self.forward),
+        }
+    }
+
+    /// Unit vector from a point to the viewer, whom in parallel all points see in the same direction, and the
+    /// distance at which the point's ray comes to it.
+    pub fn to_viewer(&self, point: DVec3) -> (DVec3, f64) {
+        match self.parallel {
+            None => (self.eye - point).normalize_and_length(),
+            Some(_) => (-self.forward, self.depth(point)),
+        }
+    }
+
     /// Picture position (x right, y down, 0..1) of a world point in front of the camera.
     pub fn project(&self, point: DVec3, aspect: f64) -> Option<DVec2> {
         let v = point - self.eye;
-        let depth = v.dot(self.forward);
+        let depth = self.depth(point);
         (depth > 1e-9).then(|| {
-            let x = v.dot(self.right) / (depth * self.tan_half_fovy * aspect);
-            let y = v.dot(self.up) / (depth * self.tan_half_fovy);
+            let half_height = self.half_height(depth);
+            let x = v.dot(self.right) / (half_height * aspect);
+            let y = v.dot(self.up) / half_height;
             DVec2::new(0.5 + 0.5 * x, 0.5 - 0.5 * y)
         })
+    }
+}
+
+/// Middle of a box, given by its corners.
+pub fn middle(corners: &[DVec3; 8]) -> DVec3 {
+    corners.iter().sum::<DVec3>() / 8.0
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "tests")]
+mod tests {
+    use super::*;
+
+    fn corners() -> [DVec3; 8] {
+        std::array::from_fn(|c| {
+            let pick = |axis: usize, far: f64| far * (c >> axis & 1) as f64;
+            DVec3::new(pick(0, 40.0), pick(1, 30.0), pick(2, 10.0))
+        })
+    }
+
+    fn framing(projection: Projection, zoom: f64) -> Camera {
+        Camera::framing(&corners(), 2.0, 0.5, zoom, 1.5, projection).unwrap()
+    }
+
+    #[test]
+    fn framed_boxes_fill_the_picture_in_both_projections() {
+        for projection in [Projection::Perspective, Projection::Parallel] {
+            let camera = framing(projection, 1.0);
+            let away = corners().map(|c| (camera.project(c, 1.5).unwrap() - 0.5).abs());
+            let most = away.iter().fold(0.0, |m: f64, a| m.max(a.max_element()));
+            assert!(most > 0.4 && most < 0.5, "{most}");
+            // The twin: a closer one does not hold it.
+            let near = framing(projection, 1.3);
+            let out = |c: &DVec3| (near.project(*c, 1.5).unwrap() - 0.5).abs().max_element() > 0.5;
+            assert!(corners().iter().any(out));
+        }
+    }
+
+    #[test]
+    fn scenes_name_a_projection_only_where_it_is_parallel() {
+        use crate::scene::CameraSpec;
+        for plain in [
+            r#"{"eye":[1.0,2.0,3.0],"target":[0.0,0.0,0.0],"up":[0.0,0.0,1.0],"fovy_degrees":30.0}"#,
+            r#"{"azimuth_degrees":1.0,"elevation_degrees":2.0,"zoom":1.0}"#,
+        ] {
+            let parallel = plain.replace('}', r#","projection":"parallel"}"#);
+            for (text, projection) in [
+                (plain, Projection::Perspective),
+                (&parallel, Projection::Parallel),
+            ] {
+                let spec: CameraSpec = serde_json::from_str(text).unwrap();
+                assert_eq!(spec.projection(), projection);
+                assert_eq!(serde_json::to_string(&spec).unwrap(), text);
+            }
+            let wrong = plain.replace('}', r#","projection":"fisheye"}"#);
+            assert!(serde_json::from_str::<CameraSpec>(&wrong).is_err());
+        }
+    }
+
+    #[test]
+    fn switching_keeps_the_size_of_what_is_at_the_target() {
+        let target = DVec3::new(20.0, 15.0, 5.0);
+        let beside = |camera: &Camera, depth: f64| {
+            let point = target + depth * camera.forward + 3.0 * camera.up;
+            camera.project(point, 1.5).unwrap()
+        };
+        let perspective = framing(Projection::Perspective, 1.0);
+        let parallel = perspective.with(Projection::Parallel, target);
+        assert!(beside(&perspective, 0.0).distance(beside(&parallel, 0.0)) < 1e-12);
+        assert!(beside(&perspective, 9.0).distance(beside(&parallel, 9.0)) > 1e-3);
+        let back = parallel.with(Projection::Perspective, target);
+        assert!(back.eye.distance(perspective.eye) < 1e-9 && back.parallel.is_none());
+    }
+
+    #[test]
+    fn rays_pass_through_what_is_projected() {
+        let at = DVec2::new(0.2, 0.7);
+        for projection in [Projection::Perspective, Projection::Parallel] {
+            let camera = framing(projection, 1.0);
+            let (origin, direction) = camera.ray(at, 1.5);
+            for distance in [1.0, 70.0] {
+                let seen = camera.project(origin + distance * direction, 1.5).unwrap();
+                assert!(seen.distance(at) < 1e-12);
+            }
+            let other = framing(projection.other(), 1.0).project(origin + 70.0 * direction, 1.5);
+            assert!(other.unwrap().distance(at) > 1e-3);
+        }
+    }
+
+    #[test]
+    fn the_plane_of_a_framing_camera_never_cuts_the_box() {
+        for zoom in [0.5, 1.0, 30.0] {
+            let camera = framing(Projection::Parallel, zoom);
+            for degrees in (0..360).step_by(20) {
+                let turn = DQuat::from_rotation_z(f64::from(degrees).to_radians());
+                let turned = camera.turned(middle(&corners()), turn);
+                assert!(corners().iter().all(|c| turned.depth(*c) > 0.0));
+                assert_eq!(turned.before(&corners()), turned);
+            }
+            // The twin: one moved into it, which is moved out again along its axis.
+            let inside = Camera {
+                eye: middle(&corners()),
+                ..camera
+            };
+            let before = inside.before(&corners());
+            assert!(corners().iter().all(|c| before.depth(*c) > 0.0) && before != inside);
+            assert!((before.eye - inside.eye).cross(camera.forward).length() < 1e-9);
+        }
     }
 }

@@ -1,7 +1,8 @@
 //! The views that make a film: over time steps, or once around the model.
 
-use glam::{DQuat, DVec3};
+use glam::DQuat;
 
+use super::camera::middle;
 use super::resolve::default_property;
 use super::{Camera, CameraSpec, Scene, SceneError, StepSpec, View, resolve};
 use crate::case::{Case, CaseError};
@@ -114,8 +115,11 @@ impl Sequence {
             return Err(SceneError::Turn);
         }
         let view = resolve(scene, case)?;
-        let middle = view.box_corners.iter().sum::<DVec3>() / 8.0;
-        let turned = |a: f64| view.camera.turned(middle, DQuat::from_rotation_z(-a));
+        let middle = middle(&view.box_corners);
+        let turned = |a: f64| {
+            let turned = view.camera.turned(middle, DQuat::from_rotation_z(-a));
+            turned.before(&view.box_corners)
+        };
         let mut cameras: Vec<Camera> = turn.radians().map(turned).collect();
         if matches!(scene.camera, CameraSpec::Framing(_)) {
             Camera::stand_back(&mut cameras, &view.box_corners, view.aspect());

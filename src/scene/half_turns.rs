@@ -4,6 +4,7 @@ use std::f64::consts::PI;
 
 use glam::{DQuat, DVec3};
 
+use super::camera::middle;
 use super::{Camera, CameraSpec, Scene, View};
 
 /// A view of a row of them.
@@ -86,13 +87,14 @@ impl TurnAxis {
 /// after another, lead back to the start, which is not shown again. A camera that frames the model
 /// stands as far away as the view that needs the most.
 pub fn half_turns(scene: &Scene, view: &View, about: TurnAxis, count: usize) -> Vec<NamedView> {
-    let middle = view.box_corners.iter().sum::<DVec3>() / 8.0;
+    let middle = middle(&view.box_corners);
     let placed: Vec<_> = (0..count).map(|n| about.place(n, count)).collect();
     let camera = |&(at, angle): &(usize, f64)| {
         let done = about.axes()[..at].iter().map(|axis| axis.turn(PI));
         let done = done.fold(DQuat::IDENTITY, |before, turn| turn * before);
         view.camera
             .turned(middle, about.axes()[at].turn(angle) * done)
+            .before(&view.box_corners)
     };
     let mut cameras: Vec<Camera> = placed.iter().map(camera).collect();
     if matches!(scene.camera, CameraSpec::Framing(_)) {

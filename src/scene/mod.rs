@@ -11,7 +11,7 @@ pub mod surfaces;
 
 use serde::{Deserialize, Serialize};
 
-pub use camera::Camera;
+pub use camera::{Camera, Projection};
 pub use film::{Sequence, Turn};
 pub use half_turns::{NamedView, TurnAxis, half_turns};
 pub use lighting::{LightMode, Lighting, LightingSpec};
@@ -113,6 +113,10 @@ pub struct ExplicitCamera {
     /// Vertical field of view.
     #[serde(default = "default_fovy")]
     pub fovy_degrees: f64,
+    /// A parallel picture is as high as the field of view is at the target, so that switching keeps the size
+    /// of what is there. Nothing behind the plane through the eye is seen.
+    #[serde(default, skip_serializing_if = "Projection::is_default")]
+    pub projection: Projection,
 }
 
 /// A camera that looks at the middle of the model from a direction.
@@ -126,6 +130,19 @@ pub struct FramingCamera {
     /// Above 1 comes closer.
     #[serde(default = "one")]
     pub zoom: f64,
+    /// Perspective or parallel; either frames the model.
+    #[serde(default, skip_serializing_if = "Projection::is_default")]
+    pub projection: Projection,
+}
+
+impl CameraSpec {
+    /// Its projection.
+    pub fn projection(&self) -> Projection {
+        match self {
+            Self::Explicit(camera) => camera.projection,
+            Self::Framing(camera) => camera.projection,
+        }
+    }
 }
 
 impl Default for CameraSpec {
@@ -134,6 +151,7 @@ impl Default for CameraSpec {
             azimuth_degrees: 205.0,
             elevation_degrees: 35.0,
             zoom: 1.0,
+            projection: Projection::Perspective,
         })
     }
 }
@@ -255,7 +273,7 @@ pub struct Show {
     pub wells: bool,
     /// Edges of the cells on hull, faults and opaque sections.
     pub cell_edges: bool,
-    /// Box around the model with orientation axes.
+    /// Box around the model with map coordinates, scale bar and orientation axes.
     pub r#box: bool,
     /// Legend and title.
     pub legend: bool,

@@ -13,7 +13,7 @@ use super::{
 };
 use crate::case::{Case, CaseError};
 use crate::gpu::volume::Shape;
-use crate::model::{CellField, Dims, FaultFaces, Ijk, Spaces};
+use crate::model::{CellField, Dims, FaultFaces, Grid, Ijk, Spaces};
 use crate::strategies::StrategyKind;
 use crate::transfer::{TransferFunction, presets};
 
@@ -85,7 +85,7 @@ pub struct View {
     pub interpolation: Interpolation,
     /// Value to color and extinction.
     pub transfer: TransferFunction,
-    /// Samples lie at distances `(n + 1/2) * sampling_step` from the eye.
+    /// Samples lie at distances `(n + 1/2) * sampling_step` from where rays start.
     pub sampling_step: f64,
     /// Transmittance at which a ray ends.
     pub early_termination: f64,
@@ -125,6 +125,20 @@ impl View {
             camera,
             ..self.clone()
         })
+    }
+
+    /// Smallest and largest corner in grid space of the drawn cells of `grid` (the case's), ghosts aside; `None`
+    /// where none is drawn.
+    pub fn drawn_bounds(&self, grid: &Grid) -> Option<[DVec3; 2]> {
+        let drawn = self.drawn_active(grid);
+        let cells = grid.active_cells().par_iter().zip(drawn);
+        grid.bounds_of(cells.filter_map(|(cell, drawn)| drawn.then(|| grid.dims().ijk(*cell))))
+    }
+
+    /// Corners in world space of a box given by its smallest and largest corner in grid space; bit n of the
+    /// index is the end along axis n.
+    pub fn corners_of(&self, bounds: [DVec3; 2]) -> [DVec3; 8] {
+        box_corners(&self.spaces, bounds)
     }
 
     /// Width over height.
@@ -453,7 +467,8 @@ fn camera(spec: &CameraSpec, size: [u32; 2], corners: &[DVec3; 8]) -> Result<Cam
                 return Err(wrong("camera.fovy_degrees", "must be between 0 and 180"));
             }
             let [eye, target, up] = [c.eye, c.target, c.up].map(DVec3::from_array);
-            Camera::look_at(eye, target, up, c.fovy_degrees.to_radians())
+            let camera = Camera::look_at(eye, target, up, c.fovy_degrees.to_radians());
+            camera.map(|camera| camera.with(c.projection, target))
         }
         CameraSpec::Framing(c) => {
             let (azimuth, elevation) = (
@@ -466,6 +481,7 @@ fn camera(spec: &CameraSpec, size: [u32; 2], corners: &[DVec3; 8]) -> Result<Cam
                 elevation,
                 positive("camera.zoom", c.zoom)?,
                 aspect,
+                c.projection,
             )
         }
     };

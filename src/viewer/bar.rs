@@ -3,6 +3,7 @@
 use eframe::egui::{self, Color32, Context, Ui};
 
 use super::keys::{self, Command};
+use super::looking::Look;
 use super::panels::{self, Asked};
 use super::window::Window;
 
@@ -26,13 +27,17 @@ const MENUS: [(&str, &[Command]); 5] = [
     (
         "Look",
         &[
-            Command::FrameAll,
-            Command::View(0),
-            Command::View(1),
-            Command::View(2),
-            Command::View(3),
-            Command::View(4),
-            Command::View(5),
+            Command::Look(Look::FrameAll),
+            Command::Look(Look::FrameSelection),
+            Command::Look(Look::From(0)),
+            Command::Look(Look::From(1)),
+            Command::Look(Look::From(2)),
+            Command::Look(Look::From(3)),
+            Command::Look(Look::From(4)),
+            Command::Look(Look::From(6)),
+            Command::Look(Look::From(5)),
+            Command::Look(Look::Projection),
+            Command::Mouse,
             Command::Panels,
             Command::Theme,
         ],
@@ -68,7 +73,7 @@ pub fn top(window: &mut Window, ui: &mut Ui, ctx: &Context) {
                 ("Open", Command::Open),
                 ("Undo", Command::Undo),
                 ("Redo", Command::Redo),
-                ("Frame all", Command::FrameAll),
+                ("Frame all", Command::Look(Look::FrameAll)),
                 ("Picture", Command::Screenshot),
                 ("Keys", Command::Help),
             ] {

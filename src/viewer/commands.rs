@@ -5,13 +5,14 @@ use std::time::Instant;
 use eframe::egui::Context;
 
 use super::action::Action;
+use super::command;
 use super::dialogs::{Chosen, Dialog};
 use super::document::Document;
 use super::export::Export;
 use super::keys::Command;
+use super::settings::Mouse;
 use super::state::{Comparison, next_strategy};
 use super::window::Window;
-use super::{command, orbit};
 use crate::scene::LightingSpec;
 
 impl Window {
@@ -38,6 +39,15 @@ impl Window {
             Command::Panels => {
                 self.settings.hides_panels = !self.settings.hides_panels;
                 self.keep_settings();
+            }
+            Command::Look(look) => self.look(look),
+            Command::Mouse => {
+                self.settings.mouse = self.settings.mouse.next();
+                self.keep_settings();
+                self.tell(match self.settings.mouse {
+                    Mouse::Standard => "left drag turns, middle moves, right zooms",
+                    Mouse::Rms => "left drag zooms, middle turns, right moves",
+                });
             }
             Command::Help => self.sheets.keys = !self.sheets.keys,
             Command::Notes => self.sheets.notes = !self.sheets.notes,
@@ -117,11 +127,6 @@ fn change(document: &mut Document, command: Command) -> Option<String> {
         Command::End(last) => {
             document.move_step(if last { isize::MAX / 2 } else { isize::MIN / 2 }, false);
         }
-        Command::View(n) => {
-            let (_, azimuth, elevation) = orbit::VIEWS[n];
-            document.apply(Action::Camera(orbit::framing(azimuth, elevation)));
-        }
-        Command::FrameAll => document.apply(Action::Camera(orbit::framing(205.0, 35.0))),
         Command::NextStrategy => {
             let next = next_strategy(&document.state.setup.scene.strategy);
             document.apply(Action::Strategy(next.name().into()));

@@ -51,8 +51,8 @@ pub fn show(ui: &mut Ui, rect: Rect, shown: &View, scene: &Scene) -> Option<Vec<
             changed = true;
         }
         if let Some(drag) = handle(ui, (n, "lean"), end, LEAN) {
-            let depth = (tip - view.camera.eye).dot(view.camera.forward).max(1e-9);
-            let unit = 2.0 * depth * view.camera.tan_half_fovy / f64::from(rect.height());
+            let depth = view.camera.depth(tip).max(1e-9);
+            let unit = 2.0 * view.camera.half_height(depth) / f64::from(rect.height());
             let moved = tip
                 + unit
                     * (f64::from(drag.x) * view.camera.right - f64::from(drag.y) * view.camera.up);

@@ -2,6 +2,8 @@
 
 use eframe::egui::{Context, Key, KeyboardShortcut, Modifiers};
 
+use super::looking::Look;
+
 /// What a shortcut does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Command {
@@ -27,10 +29,10 @@ pub enum Command {
     Step(isize),
     /// To the first step, or the last.
     End(bool),
-    /// One of the standard views.
-    View(usize),
-    /// Frames the model from where the camera is.
-    FrameAll,
+    /// Changes the camera.
+    Look(Look),
+    /// The next preset of the mouse's buttons.
+    Mouse,
     /// The next strategy.
     NextStrategy,
     /// Lighting off, or soft.
@@ -58,10 +60,19 @@ pub enum Command {
 const CTRL: Modifiers = Modifiers::COMMAND;
 const CTRL_SHIFT: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
 const CTRL_ALT: Modifiers = Modifiers::COMMAND.plus(Modifiers::ALT);
+const SHIFT: Modifiers = Modifiers::SHIFT;
 const NONE: Modifiers = Modifiers::NONE;
 
+const fn turn(right: i8, up: i8) -> Command {
+    Command::Look(Look::Turn(right, up))
+}
+
+const fn from(view: usize) -> Command {
+    Command::Look(Look::From(view))
+}
+
 /// Every shortcut, with what it says in the sheet.
-pub const SHORTCUTS: [(Modifiers, Key, Command, &str); 33] = [
+pub const SHORTCUTS: [(Modifiers, Key, Command, &str); 48] = [
     (CTRL, Key::O, Command::Open, "Open a case"),
     (NONE, Key::F5, Command::Reload, "Read the case again"),
     (CTRL, Key::S, Command::SaveScene, "Save the scene"),
@@ -72,17 +83,43 @@ pub const SHORTCUTS: [(Modifiers, Key, Command, &str); 33] = [
     (CTRL, Key::Z, Command::Undo, "Undo"),
     (CTRL, Key::Y, Command::Redo, "Redo"),
     (NONE, Key::Space, Command::Play, "Play or pause"),
+    // Keys with Shift first: without it they would fit too.
+    (SHIFT, Key::ArrowRight, turn(1, 0), "Turn right"),
+    (SHIFT, Key::ArrowLeft, turn(-1, 0), "Turn left"),
+    (SHIFT, Key::ArrowUp, turn(0, 1), "Turn up"),
+    (SHIFT, Key::ArrowDown, turn(0, -1), "Turn down"),
     (NONE, Key::ArrowRight, Command::Step(1), "Step forward"),
     (NONE, Key::ArrowLeft, Command::Step(-1), "Step back"),
     (NONE, Key::Home, Command::End(false), "First step"),
     (NONE, Key::End, Command::End(true), "Last step"),
-    (CTRL_ALT, Key::N, Command::View(0), "Look north"),
-    (CTRL_ALT, Key::S, Command::View(1), "Look south"),
-    (CTRL_ALT, Key::E, Command::View(2), "Look east"),
-    (CTRL_ALT, Key::W, Command::View(3), "Look west"),
-    (CTRL_ALT, Key::T, Command::View(4), "Look down"),
-    (CTRL_ALT, Key::I, Command::View(5), "Look from a corner"),
-    (NONE, Key::F, Command::FrameAll, "Frame all"),
+    (CTRL_ALT, Key::N, from(0), "Look north"),
+    (CTRL_ALT, Key::S, from(1), "Look south"),
+    (CTRL_ALT, Key::E, from(2), "Look east"),
+    (CTRL_ALT, Key::W, from(3), "Look west"),
+    (CTRL_ALT, Key::T, from(4), "Look down"),
+    (CTRL_ALT, Key::I, from(5), "Look from a corner"),
+    (CTRL_ALT, Key::B, from(6), "Look up"),
+    (NONE, Key::Num1, from(0), "Look north"),
+    (NONE, Key::Num3, from(3), "Look west"),
+    (NONE, Key::Num7, from(4), "Look down"),
+    (NONE, Key::Num9, from(5), "Look from a corner"),
+    (
+        NONE,
+        Key::Num5,
+        Command::Look(Look::Projection),
+        "Perspective or parallel",
+    ),
+    (NONE, Key::F, Command::Look(Look::FrameAll), "Frame all"),
+    (
+        NONE,
+        Key::Z,
+        Command::Look(Look::FrameSelection),
+        "Frame what is selected or drawn",
+    ),
+    (NONE, Key::Plus, Command::Look(Look::Zoom(true)), "Closer"),
+    (NONE, Key::Equals, Command::Look(Look::Zoom(true)), "Closer"),
+    (NONE, Key::Minus, Command::Look(Look::Zoom(false)), "Away"),
+    (CTRL, Key::M, Command::Mouse, "Mouse as usual or as in RMS"),
     (NONE, Key::S, Command::NextStrategy, "Next strategy"),
     (NONE, Key::Q, Command::Light, "Occlusion on or off"),
     (CTRL, Key::D, Command::Theme, "Dark or light"),

@@ -14,6 +14,8 @@ mod handles;
 mod history;
 mod keys;
 mod loading;
+mod looking;
+mod mouse;
 mod orbit;
 mod overlay;
 mod panels;

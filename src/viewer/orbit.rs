@@ -2,21 +2,30 @@
 
 use glam::{DQuat, DVec2, DVec3};
 
-use crate::scene::{Camera, CameraSpec, ExplicitCamera, FramingCamera};
+use crate::scene::camera::middle;
+use crate::scene::{Camera, CameraSpec, ExplicitCamera, FramingCamera, Projection, View};
 
 /// Radians that a drag across the height of the picture turns.
 const TURN: f64 = 3.0;
 /// The camera never looks closer to straight up or down than this.
 const LEAST_TILT: f64 = 0.01;
 
-/// A scene's camera from one in the window.
-pub fn spec(camera: &Camera) -> CameraSpec {
-    let target = camera.eye + camera.forward;
+/// A scene's camera from one in the window, given the corners of the model's box. Its target lies as deep as
+/// the middle of that; of a parallel one where the field of view is as high as the picture. The plane of a
+/// parallel one is put before the model.
+pub fn spec(camera: &Camera, corners: &[DVec3; 8]) -> CameraSpec {
+    let camera = camera.before(corners);
+    let depth = match camera.parallel {
+        None => camera.depth(middle(corners)).max(1.0),
+        Some(half_height) => half_height / camera.tan_half_fovy,
+    };
+    let target = camera.eye + depth * camera.forward;
     CameraSpec::Explicit(ExplicitCamera {
         eye: camera.eye.to_array(),
         target: target.to_array(),
         up: camera.up.to_array(),
         fovy_degrees: 2.0 * camera.tan_half_fovy.atan().to_degrees(),
+        projection: camera.projection(),
     })
 }
 
@@ -45,8 +54,7 @@ fn level(camera: Camera) -> Camera {
 
 /// Moves such that what lies at the distance of `around` follows the pointer.
 pub fn pan(camera: &Camera, around: DVec3, drag: DVec2) -> Camera {
-    let distance = (around - camera.eye).dot(camera.forward).max(1e-6);
-    let height = 2.0 * distance * camera.tan_half_fovy;
+    let height = 2.0 * camera.half_height(camera.depth(around).max(1e-6));
     Camera {
         eye: camera.eye + height * (drag.y * camera.up - drag.x * camera.right),
         ..*camera
@@ -55,54 +63,91 @@ pub fn pan(camera: &Camera, around: DVec3, drag: DVec2) -> Camera {
 
 /// Comes closer to a point by a factor above 1, or goes away by one below.
 pub fn zoom(camera: &Camera, to: DVec3, factor: f64) -> Camera {
-    Camera {
-        eye: to + (camera.eye - to) / factor.clamp(0.1, 10.0),
-        ..*camera
-    }
+    camera.closer(to, factor.clamp(0.1, 10.0))
 }
 
-/// Direction in world space through a place in the picture (x right, y down, 0 to 1).
-pub fn direction(camera: &Camera, at: DVec2, aspect: f64) -> DVec3 {
-    let x = (2.0 * at.x - 1.0) * camera.tan_half_fovy * aspect;
-    let y = (1.0 - 2.0 * at.y) * camera.tan_half_fovy;
-    (camera.forward + x * camera.right + y * camera.up).normalize()
+/// A drag that turns by angles in radians, to the right and down.
+pub fn drag_of(angles: DVec2) -> DVec2 {
+    angles / TURN
 }
 
-/// Where a ray through a place in the picture passes nearest to the middle of a box, or the middle.
-pub fn point_under(camera: &Camera, at: DVec2, aspect: f64, corners: &[DVec3; 8]) -> DVec3 {
-    let middle = corners.iter().sum::<DVec3>() / 8.0;
-    let direction = direction(camera, at, aspect);
-    let along = (middle - camera.eye).dot(direction);
-    let point = camera.eye + along.max(1e-6) * direction;
-    let low = corners.iter().copied().fold(DVec3::INFINITY, DVec3::min);
-    let high = corners
-        .iter()
-        .copied()
-        .fold(DVec3::NEG_INFINITY, DVec3::max);
-    if along > 0.0 && point.cmpge(low).all() && point.cmple(high).all() {
-        point
-    } else {
-        middle
+/// What lies under a place in the picture (x right, y down, 0 to 1): the middle of the way of its ray through
+/// the box of the drawn cells, whose bounds in grid space are given; the middle of that, or of the model where
+/// nothing is drawn, where the ray passes by.
+pub fn point_under(view: &View, drawn: Option<[DVec3; 2]>, at: DVec2) -> DVec3 {
+    let Some([low, high]) = drawn else {
+        return middle(&view.box_corners);
+    };
+    let (origin, direction) = view.camera.ray(at, view.aspect());
+    // The box lies along the axes of grid space, and lengths along a ray are the same there.
+    let to_grid = &view.spaces.grid_from_world;
+    let start = to_grid.transform_point3(origin);
+    let way = to_grid.transform_vector3(direction);
+    let (a, b) = ((low - start) / way, (high - start) / way);
+    let (enter, leave) = (a.min(b).max_element().max(0.0), a.max(b).min_element());
+    match enter < leave && leave.is_finite() {
+        true => origin + 0.5 * (enter + leave) * direction,
+        false => middle(&view.corners_of([low, high])),
     }
 }
 
 /// The standard views: name, compass direction of the camera and its height, in degrees.
-pub const VIEWS: [(&str, f64, f64); 6] = [
+pub const VIEWS: [(&str, f64, f64); 7] = [
     ("North", 180.0, 0.0),
     ("South", 0.0, 0.0),
     ("East", 270.0, 0.0),
     ("West", 90.0, 0.0),
     ("Top", 180.0, 90.0),
     ("Isometric", 205.0, 35.0),
+    ("Bottom", 180.0, -90.0),
 ];
 
-/// A camera that frames the model from a direction.
-pub fn framing(azimuth_degrees: f64, elevation_degrees: f64) -> CameraSpec {
+/// A camera that frames the model in one of the standard views.
+pub fn standard(view: usize, projection: Projection) -> CameraSpec {
+    let (_, azimuth_degrees, elevation_degrees) = VIEWS[view.min(VIEWS.len() - 1)];
     CameraSpec::Framing(FramingCamera {
         azimuth_degrees,
         elevation_degrees,
         zoom: 1.0,
+        projection,
     })
+}
+
+/// A camera that frames the model, whose corners are given, from where a scene's camera looks.
+pub fn frame_all(
+    scene: &CameraSpec,
+    camera: &Camera,
+    corners: &[DVec3; 8],
+    aspect: f64,
+) -> CameraSpec {
+    let [x, y, z] = camera.forward.to_array();
+    let is_level = camera.right.z.abs() < 1e-6 && camera.up.z > 1e-6;
+    match scene {
+        CameraSpec::Framing(framing) => CameraSpec::Framing(FramingCamera {
+            zoom: 1.0,
+            ..framing.clone()
+        }),
+        CameraSpec::Explicit(_) if is_level => CameraSpec::Framing(FramingCamera {
+            azimuth_degrees: (-x).atan2(-y).to_degrees().rem_euclid(360.0),
+            elevation_degrees: (-z).clamp(-1.0, 1.0).asin().to_degrees(),
+            zoom: 1.0,
+            projection: camera.projection(),
+        }),
+        CameraSpec::Explicit(_) => spec(&camera.framed(corners, aspect), corners),
+    }
+}
+
+/// A scene's camera in the other projection; the middle of the model keeps its size, or the model is framed
+/// where it was.
+pub fn switched(scene: &CameraSpec, camera: &Camera, corners: &[DVec3; 8]) -> CameraSpec {
+    let other = camera.projection().other();
+    match scene {
+        CameraSpec::Framing(framing) => CameraSpec::Framing(FramingCamera {
+            projection: other,
+            ..framing.clone()
+        }),
+        CameraSpec::Explicit(_) => spec(&camera.with(other, middle(corners)), corners),
+    }
 }
 
 #[cfg(test)]
@@ -112,6 +157,128 @@ mod tests {
 
     fn camera() -> Camera {
         Camera::look_at(DVec3::new(0.0, -10.0, 5.0), DVec3::ZERO, DVec3::Z, 0.5).unwrap()
+    }
+
+    /// A camera on a box of 4 by 3 by 2 around the origin, as a scene's explicit one.
+    fn seen(spec: &CameraSpec) -> View {
+        let mut view = crate::picture::test_view([300, 200], 1.0);
+        view.spaces = crate::model::Spaces::new(None, 2.0);
+        view.box_corners = view.corners_of(BOUNDS);
+        view.seen_from(spec, [300, 200]).unwrap()
+    }
+
+    const BOUNDS: [DVec3; 2] = [DVec3::new(-2.0, -1.5, -0.5), DVec3::new(2.0, 1.5, 0.5)];
+
+    fn explicit(projection: Projection) -> CameraSpec {
+        let corners = seen(&standard(0, projection)).box_corners;
+        let camera = camera().with(projection, DVec3::ZERO);
+        spec(&camera, &corners)
+    }
+
+    #[test]
+    fn cameras_come_back_from_their_scenes() {
+        for projection in [Projection::Perspective, Projection::Parallel] {
+            let view = seen(&explicit(projection));
+            let again = seen(&spec(&view.camera, &view.box_corners)).camera;
+            assert!(again.eye.distance(view.camera.eye) < 1e-9);
+            assert_eq!(again.parallel.is_some(), projection == Projection::Parallel);
+            let heights = [again, view.camera].map(|c| c.half_height(c.depth(DVec3::ZERO)));
+            assert!((heights[0] - heights[1]).abs() < 1e-9);
+            // The plane of a parallel one that has come into the model is put before it.
+            let inside = Camera {
+                eye: DVec3::ZERO,
+                ..view.camera
+            };
+            let moved = seen(&spec(&inside, &view.box_corners)).camera;
+            let is_before = view.box_corners.iter().all(|c| moved.depth(*c) > 0.0);
+            assert_eq!(is_before, projection == Projection::Parallel);
+        }
+    }
+
+    #[test]
+    fn framing_all_keeps_the_direction() {
+        for projection in [Projection::Perspective, Projection::Parallel] {
+            for start in [explicit(projection), standard(3, projection)] {
+                let view = seen(&start);
+                let near = zoom(&view.camera, DVec3::new(1.0, 1.0, 0.0), 5.0);
+                let all = seen(&frame_all(
+                    &spec(&near, &view.box_corners),
+                    &near,
+                    &view.box_corners,
+                    1.5,
+                ));
+                assert!(all.camera.forward.distance(view.camera.forward) < 1e-9);
+                assert_eq!(all.camera.projection(), projection);
+                let is_in = |c: &DVec3| {
+                    let at = all.camera.project(*c, 1.5).unwrap();
+                    at.min_element() > 0.0 && at.max_element() < 1.0
+                };
+                assert!(view.box_corners.iter().all(is_in));
+                let outside = |c: &DVec3| {
+                    near.project(*c, 1.5)
+                        .is_none_or(|at| (at - 0.5).abs().max_element() > 0.5)
+                };
+                assert!(view.box_corners.iter().any(outside));
+            }
+        }
+    }
+
+    #[test]
+    fn switching_there_and_back_changes_nothing() {
+        for start in [
+            explicit(Projection::Perspective),
+            standard(5, Projection::Perspective),
+        ] {
+            let view = seen(&start);
+            let parallel = switched(&start, &view.camera, &view.box_corners);
+            assert_eq!(parallel.projection(), Projection::Parallel);
+            let there = seen(&parallel);
+            let back = seen(&switched(&parallel, &there.camera, &there.box_corners)).camera;
+            assert!(back.eye.distance(view.camera.eye) < 1e-9 && back.parallel.is_none());
+        }
+    }
+
+    #[test]
+    fn the_point_under_the_pointer_is_half_way_through_what_is_drawn() {
+        for projection in [Projection::Perspective, Projection::Parallel] {
+            let view = seen(&explicit(projection));
+            let at = view.camera.project(DVec3::new(0.5, 0.2, 0.1), 1.5).unwrap();
+            // The eastern half of the model.
+            let drawn = [BOUNDS[0].with_x(0.0), BOUNDS[1]];
+            let point = point_under(&view, Some(drawn), at);
+            assert!(view.camera.project(point, 1.5).unwrap().distance(at) < 1e-9);
+            let [low, high] = drawn.map(|p| view.spaces.world_from_grid.transform_point3(p));
+            assert!(point.cmpge(low.min(high)).all() && point.cmple(low.max(high)).all());
+            // Beside it and with nothing drawn: the middles.
+            let beside = point_under(&view, Some(drawn), DVec2::new(0.01, 0.01));
+            assert!(beside.distance(DVec3::X) < 1e-9);
+            assert!(point_under(&view, None, at).length() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn a_parallel_camera_zooms_by_its_height() {
+        let parallel = camera().with(Projection::Parallel, DVec3::ZERO);
+        let point = DVec3::new(1.0, 2.0, 0.5);
+        let near = zoom(&parallel, point, 2.0);
+        let (a, b) = (parallel.project(point, 1.5), near.project(point, 1.5));
+        assert!((a.unwrap() - b.unwrap()).length() < 1e-9);
+        assert_eq!(near.parallel, parallel.parallel.map(|h| 0.5 * h));
+        assert!((near.depth(point) - parallel.depth(point)).abs() < 1e-9);
+        let moved = pan(&parallel, point, DVec2::new(0.25, -0.1));
+        let by = moved.project(point, 1.0).unwrap() - parallel.project(point, 1.0).unwrap();
+        assert!((by - DVec2::new(0.25, -0.1)).length() < 1e-9);
+    }
+
+    #[test]
+    fn keys_turn_by_their_angle() {
+        let angle = 10f64.to_radians();
+        let turned = rotate(&camera(), DVec3::ZERO, drag_of(DVec2::new(angle, 0.0)));
+        let [a, b] = [camera(), turned].map(|c| c.forward.truncate());
+        assert!((a.angle_to(b).abs() - angle).abs() < 1e-9);
+        let up = rotate(&camera(), DVec3::ZERO, drag_of(DVec2::new(0.0, angle)));
+        assert!((up.forward.angle_between(camera().forward) - angle).abs() < 1e-9);
+        assert!(up.eye.z > camera().eye.z);
     }
 
     #[test]
@@ -140,12 +307,5 @@ mod tests {
         let (a, b) = (camera().project(point, 1.5), near.project(point, 1.5));
         assert!((a.unwrap() - b.unwrap()).length() < 1e-9);
         assert!((near.eye.distance(point) * 2.0 - camera().eye.distance(point)).abs() < 1e-9);
-    }
-
-    #[test]
-    fn directions_and_projections_agree() {
-        let at = DVec2::new(0.2, 0.7);
-        let point = camera().eye + 7.0 * direction(&camera(), at, 1.6);
-        assert!((camera().project(point, 1.6).unwrap() - at).length() < 1e-9);
     }
 }

@@ -1,11 +1,13 @@
-//! What the viewport draws over the picture: title, legend, box, axes.
+//! What the viewport draws over the picture: title, legend, box, what is for orientation.
 
 use eframe::egui::{self, Align2, Color32, FontId, Painter, Pos2, Rect, Stroke, pos2, vec2};
-use glam::DVec3;
+use glam::DVec2;
 
 use super::studio::DIFFERENCE_SCALE;
 use crate::metrics::Comparison;
-use crate::picture::{Annotations, CONNECTION, far_edges, legend_labels};
+use crate::picture::{
+    Annotations, Arrow, CONNECTION, Orientation, Paper, legend_labels, on_screen,
+};
 use crate::scene::View;
 
 const TEXT: f32 = 13.0;
@@ -16,25 +18,28 @@ pub fn draw(painter: &Painter, rect: Rect, view: &View, annotations: &Annotation
     let [r, g, b] = CONNECTION;
     let stroke = Stroke::new(1.0, Color32::from_rgb(r, g, b));
     for ends in view.connections.iter() {
-        if let [Some(a), Some(b)] = ends.map(|p| on_screen(view, rect, p)) {
-            painter.line_segment([a, b], stroke);
+        if let Some(line) = on_screen(view, *ends, size(rect)) {
+            painter.line_segment(line.map(|at| place(rect, at)), stroke);
         }
     }
     if annotations.show_box {
         model_box(painter, rect, view, ink);
-        axes(painter, rect, view, ink);
     }
+    let mut taken = Vec::new();
     if annotations.show_legend {
         let title = format!("{}{}", annotations.title, annotations.when);
-        write(
+        taken.push(write(
             painter,
             rect.left_top() + vec2(12.0, 10.0),
             Align2::LEFT_TOP,
             &title,
             ink,
             15.0,
-        );
-        legend(painter, rect, view, annotations, ink);
+        ));
+        taken.push(legend(painter, rect, view, annotations, ink));
+    }
+    if annotations.show_box {
+        orientation(painter, rect, view, annotations, ink, &taken);
     }
 }
 
@@ -51,53 +56,92 @@ fn write(painter: &Painter, at: Pos2, align: Align2, text: &str, ink: Color32, s
     painter.text(at, align, text, FontId::proportional(size), ink)
 }
 
-fn on_screen(view: &View, rect: Rect, point: DVec3) -> Option<Pos2> {
-    let aspect = f64::from(rect.width()) / f64::from(rect.height());
-    let at = view.camera.project(point, aspect)?;
-    Some(rect.lerp_inside(vec2(at.x as f32, at.y as f32)))
+fn place(rect: Rect, at: DVec2) -> Pos2 {
+    rect.left_top() + vec2(at.x as f32, at.y as f32)
 }
 
 fn model_box(painter: &Painter, rect: Rect, view: &View, ink: Color32) {
     let stroke = Stroke::new(1.0, ink.gamma_multiply(0.35));
-    for (a, b) in far_edges(view) {
-        let ends = [a, b].map(|c| on_screen(view, rect, view.box_corners[c]));
-        if let [Some(a), Some(b)] = ends {
-            painter.line_segment([a, b], stroke);
-        }
+    for line in Orientation::box_edges(view, size(rect)) {
+        painter.line_segment(line.map(|at| place(rect, at)), stroke);
     }
 }
 
-fn axes(painter: &Painter, rect: Rect, view: &View, ink: Color32) {
-    let center = rect.left_bottom() + vec2(58.0, -64.0);
-    let axes = [
-        (DVec3::X, "E", Color32::from_rgb(200, 60, 50)),
-        (DVec3::Y, "N", Color32::from_rgb(40, 140, 60)),
-        (DVec3::Z, "Up", Color32::from_rgb(60, 90, 200)),
-    ];
-    for (axis, name, color) in axes {
-        let along = vec2(
-            axis.dot(view.camera.right) as f32,
-            -axis.dot(view.camera.up) as f32,
-        );
-        painter.arrow(center, 34.0 * along, Stroke::new(2.0, color));
-        write(
-            painter,
-            center + 46.0 * along,
-            Align2::CENTER_CENTER,
-            name,
-            ink,
-            TEXT,
-        );
+fn size(rect: Rect) -> DVec2 {
+    DVec2::new(f64::from(rect.width()), f64::from(rect.height()))
+}
+
+/// Coordinates, scale bar, directions and exaggeration, where nothing else is.
+fn orientation(
+    painter: &Painter,
+    rect: Rect,
+    view: &View,
+    annotations: &Annotations,
+    ink: Color32,
+    taken: &[Rect],
+) {
+    let width = |text: &str| {
+        let font = FontId::proportional(TEXT);
+        let galley = painter.layout_no_wrap(text.to_owned(), font, ink);
+        f64::from(galley.size().x)
+    };
+    let area = |taken: &Rect| {
+        [taken.min, taken.max].map(|p| {
+            let at = p - rect.min;
+            DVec2::new(f64::from(at.x), f64::from(at.y))
+        })
+    };
+    let made = Orientation::of(
+        view,
+        &annotations.length_unit,
+        Paper {
+            size: size(rect),
+            unit: f64::from(TEXT),
+            width: &width,
+            is_dark: ink.r() > 128,
+            taken: taken.iter().map(area).collect(),
+        },
+    );
+    for line in &made.strokes {
+        let line = line.map(|at| place(rect, at));
+        painter.line_segment(line, Stroke::new(1.2, ink));
     }
-    let factor = view.vertical_exaggeration;
-    if factor != 1.0 {
-        let text = format!("Vertical exaggeration ×{factor}");
-        let at = rect.left_bottom() + vec2(12.0, -8.0);
-        write(painter, at, Align2::LEFT_BOTTOM, &text, ink, TEXT);
+    for one in &made.arrows {
+        arrow(painter, rect, one);
+    }
+    for text in &made.texts {
+        let at = place(rect, text.middle);
+        let height = text.height as f32;
+        write(painter, at, Align2::CENTER_CENTER, &text.text, ink, height);
     }
 }
 
-fn legend(painter: &Painter, rect: Rect, view: &View, annotations: &Annotations, ink: Color32) {
+fn arrow(painter: &Painter, rect: Rect, arrow: &Arrow) {
+    let [from, tip] = arrow.ends.map(|at| place(rect, at));
+    let [shaft, head, head_length] = arrow.shape.map(|v| v as f32);
+    let [r, g, b] = arrow.color;
+    let color = Color32::from_rgb(r, g, b);
+    let along = tip - from;
+    if along.length() < 2.0 * shaft {
+        // It points at the viewer or away.
+        painter.circle_filled(tip, 0.5 * head, color);
+        return;
+    }
+    let neck = tip - along * (head_length / along.length()).min(0.6);
+    painter.line_segment([from, neck], Stroke::new(shaft, color));
+    let side = along.normalized().rot90() * 0.5 * head;
+    let corners = vec![tip, neck + side, neck - side];
+    painter.add(egui::Shape::convex_polygon(corners, color, Stroke::NONE));
+}
+
+/// Draws the legend and says what it covers.
+fn legend(
+    painter: &Painter,
+    rect: Rect,
+    view: &View,
+    annotations: &Annotations,
+    ink: Color32,
+) -> Rect {
     let height = (0.5 * rect.height()).min(260.0);
     let top = rect.center().y - 0.5 * height;
     let right = rect.right() - 64.0;
@@ -120,6 +164,7 @@ fn legend(painter: &Painter, rect: Rect, view: &View, annotations: &Annotations,
     }
     painter.add(mesh);
     painter.rect_stroke(bar, 0.0, Stroke::new(1.0, ink), egui::StrokeKind::Outside);
+    let mut covered = bar.expand(4.0);
     let [low, high] = transfer.range;
     for (value, label) in legend_labels(transfer.range, 6) {
         let position = if high > low {
@@ -132,7 +177,7 @@ fn legend(painter: &Painter, rect: Rect, view: &View, annotations: &Annotations,
             [pos2(bar.right(), y), pos2(bar.right() + 4.0, y)],
             Stroke::new(1.0, ink),
         );
-        write(
+        covered |= write(
             painter,
             pos2(bar.right() + 7.0, y),
             Align2::LEFT_CENTER,
@@ -146,7 +191,7 @@ fn legend(painter: &Painter, rect: Rect, view: &View, annotations: &Annotations,
         false => format!("{}\n{}", annotations.property, annotations.unit),
     };
     let at = pos2(bar.center().x, top - 8.0);
-    write(painter, at, Align2::CENTER_BOTTOM, &heading, ink, TEXT);
+    covered | write(painter, at, Align2::CENTER_BOTTOM, &heading, ink, TEXT)
 }
 
 /// A short text beside the pointer.

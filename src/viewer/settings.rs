@@ -23,11 +23,35 @@ pub struct Settings {
     pub zoom: f32,
     /// How time plays.
     pub pace: Pace,
+    /// What the buttons of the mouse do.
+    pub mouse: Mouse,
     /// How pictures and films are saved.
     pub export: Export,
     /// Where they are kept; `None` where they are not.
     #[serde(skip)]
     file: Option<PathBuf>,
+}
+
+/// What the buttons of the mouse do: a preset (`src/viewer/mouse.rs` has the table).
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Mouse {
+    /// Left rotates, middle moves, right zooms.
+    #[default]
+    Standard,
+    /// As in RMS: left zooms, middle rotates, right moves.
+    Rms,
+}
+
+impl Mouse {
+    /// The other preset.
+    #[must_use]
+    pub fn next(self) -> Self {
+        match self {
+            Self::Standard => Self::Rms,
+            Self::Rms => Self::Standard,
+        }
+    }
 }
 
 /// How pictures and films are saved.
@@ -66,6 +90,7 @@ impl Default for Settings {
             hides_panels: false,
             zoom: 1.0,
             pace: Pace::default(),
+            mouse: Mouse::default(),
             export: Export::default(),
             file: None,
         }

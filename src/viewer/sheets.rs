@@ -5,7 +5,7 @@ use eframe::egui::{self, Context, Ui};
 use super::dialogs::{Chosen, Dialog};
 use super::export::{ExportSpec, Kind};
 use super::keys;
-use super::settings::Export;
+use super::settings::{Export, Mouse};
 use super::window::Window;
 use crate::scene::Scene;
 
@@ -25,8 +25,9 @@ impl Window {
     pub(super) fn show_sheets(&mut self, ctx: &Context) {
         egui::Window::new("Keys")
             .open(&mut self.sheets.keys)
+            .vscroll(true)
             .show(ctx, |ui| {
-                shortcuts(ui, ctx);
+                shortcuts(ui, ctx, self.settings.mouse);
             });
         let notes = self.document().and_then(|d| d.case.clone());
         egui::Window::new("Not loaded")
@@ -103,7 +104,7 @@ impl Window {
     }
 }
 
-fn shortcuts(ui: &mut Ui, ctx: &Context) {
+fn shortcuts(ui: &mut Ui, ctx: &Context, mouse: Mouse) {
     egui::Grid::new("keys")
         .striped(true)
         .num_columns(2)
@@ -111,6 +112,11 @@ fn shortcuts(ui: &mut Ui, ctx: &Context) {
             for (modifiers, key, _, what) in keys::SHORTCUTS {
                 ui.label(keys::text(ctx, modifiers, key));
                 ui.label(what);
+                ui.end_row();
+            }
+            for (what, does) in mouse.describe() {
+                ui.label(what);
+                ui.label(does);
                 ui.end_row();
             }
             for (what, does) in [

@@ -163,7 +163,7 @@ impl Window {
         let viewport = &mut self.sides.viewports[side];
         let builder = UiBuilder::new().id_salt(("side", side)).max_rect(rect);
         let mut child = ui.new_child(builder);
-        viewport.show(&mut child, case, scene, shown)
+        viewport.show(&mut child, case, scene, shown, self.settings.mouse)
     }
 
     /// The second picture over the first one, right of a line; where the line was dragged to.

@@ -2,12 +2,15 @@
 
 use std::sync::Arc;
 
-use eframe::egui::{self, PointerButton, Rect, Sense, TextureHandle, Ui, vec2};
+use eframe::egui::{self, Rect, Sense, TextureHandle, Ui, vec2};
 use glam::{DVec2, DVec3};
 
 use super::action::Action;
+use super::mouse::{self, Input, Motion};
+use super::settings::Mouse;
 use super::{orbit, overlay};
 use crate::case::Case;
+use crate::model::Grid;
 use crate::picture::Annotations;
 use crate::scene::{Camera, Scene, View};
 
@@ -16,6 +19,15 @@ use crate::scene::{Camera, Scene, View};
 pub struct Viewport {
     /// The point that the drag in progress turns around.
     pivot: Option<DVec3>,
+    drawn: Option<Drawn>,
+}
+
+/// The box of the cells that are drawn, kept while these are the same.
+struct Drawn {
+    /// By active index: true where the cell is drawn.
+    cells: Arc<Vec<bool>>,
+    /// Smallest and largest corner in grid space; `None` where none is drawn.
+    bounds: Option<[DVec3; 2]>,
 }
 
 /// What the pointer did.
@@ -34,9 +46,6 @@ impl Touched {
     }
 }
 
-/// Zoom of a turn of the wheel by a point.
-const WHEEL: f64 = 0.004;
-
 impl Viewport {
     /// Draws the last picture and takes the pointer's input.
     pub fn show(
@@ -45,6 +54,7 @@ impl Viewport {
         case: &Case,
         scene: &Scene,
         shown: Option<(&TextureHandle, &Arc<View>)>,
+        mouse: Mouse,
     ) -> Touched {
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
         let mut touched = Touched::default();
@@ -61,9 +71,10 @@ impl Viewport {
         let now = view.seen_from(&scene.camera, size);
         let now = now.map_or_else(|_| view.clone(), Arc::new);
         overlay::draw(&painter, rect, &now, &Annotations::of(case, &now));
-        let input = Input::of(ui, &response, rect);
-        if let Some(camera) = self.moved(&input, &now) {
-            touched.actions.push(Action::Camera(orbit::spec(&camera)));
+        let input = Input::of(ui, &response, rect, mouse);
+        if let Some(camera) = self.moved(&input, &now, &case.grid) {
+            let spec = orbit::spec(&camera, &now.box_corners);
+            touched.actions.push(Action::Camera(spec));
         }
         if response.clicked() {
             touched.pick = input.at;
@@ -72,61 +83,38 @@ impl Viewport {
     }
 
     /// The camera after what the pointer did; `None` where it did nothing to it.
-    fn moved(&mut self, input: &Input, view: &View) -> Option<Camera> {
+    fn moved(&mut self, input: &Input, view: &View, grid: &Grid) -> Option<Camera> {
         let camera = &view.camera;
-        let under = |at: DVec2| orbit::point_under(camera, at, view.aspect(), &view.box_corners);
         if input.drag.is_none() {
             self.pivot = None;
         }
-        if let (Some(drag), Some(at)) = (input.drag, input.at) {
-            let pivot = *self.pivot.get_or_insert_with(|| under(at));
-            return match drag {
-                Drag::Rotate(by) => Some(orbit::rotate(camera, pivot, by)),
-                Drag::Pan(by) => Some(orbit::pan(camera, pivot, by)),
-            }
-            .filter(|c| c != camera);
+        if let (Some((motion, by)), Some(at)) = (input.drag, input.at) {
+            let pivot = match self.pivot {
+                Some(pivot) => pivot,
+                None => self.under(view, grid, at),
+            };
+            self.pivot = Some(pivot);
+            let moved = match motion {
+                Motion::Rotate => orbit::rotate(camera, pivot, by),
+                Motion::Pan => orbit::pan(camera, pivot, by),
+                Motion::Zoom => orbit::zoom(camera, pivot, mouse::drag_zoom(by)),
+            };
+            return Some(moved).filter(|c| c != camera);
         }
         let (zoom, at) = (input.zoom?, input.at?);
-        Some(orbit::zoom(camera, under(at), zoom))
+        Some(orbit::zoom(camera, self.under(view, grid, at), zoom))
     }
-}
 
-#[derive(Clone, Copy)]
-enum Drag {
-    Rotate(DVec2),
-    Pan(DVec2),
-}
-
-/// The pointer in terms of the picture.
-struct Input {
-    at: Option<DVec2>,
-    drag: Option<Drag>,
-    zoom: Option<f64>,
-}
-
-impl Input {
-    fn of(ui: &Ui, response: &egui::Response, rect: Rect) -> Self {
-        let pointer = response.hover_pos().or(response.interact_pointer_pos());
-        let at = pointer.map(|p| {
-            let at = (p - rect.min) / rect.size();
-            DVec2::new(f64::from(at.x), f64::from(at.y))
+    /// A point of world space under a place in the picture.
+    fn under(&mut self, view: &View, grid: &Grid, at: DVec2) -> DVec3 {
+        let known = self.drawn.take();
+        let known = known.filter(|d| Arc::ptr_eq(&d.cells, &view.drawn));
+        let drawn = known.unwrap_or_else(|| Drawn {
+            cells: view.drawn.clone(),
+            bounds: view.drawn_bounds(grid),
         });
-        let shift = ui.input(|i| i.modifiers.shift);
-        let by = response.drag_delta() / rect.height().max(1.0);
-        let by = DVec2::new(f64::from(by.x), f64::from(by.y));
-        let drag = if response.dragged_by(PointerButton::Middle)
-            || (shift && response.dragged_by(PointerButton::Primary))
-        {
-            Some(Drag::Pan(by))
-        } else if response.dragged_by(PointerButton::Primary) {
-            Some(Drag::Rotate(by))
-        } else {
-            None
-        };
-        let (scroll, pinch) = ui.input(|i| (i.smooth_scroll_delta, i.zoom_delta()));
-        let factor = f64::from(pinch) * (WHEEL * f64::from(scroll.y)).exp();
-        let zoom = (response.hovered() && factor != 1.0).then_some(factor);
-        Self { at, drag, zoom }
+        let bounds = self.drawn.insert(drawn).bounds;
+        orbit::point_under(view, bounds, at)
     }
 }
 

@@ -333,7 +333,10 @@ impl Window {
         let size = picture.view.size;
         let camera = picture.view.seen_from(&scene.camera, size);
         Scene {
-            camera: camera.map_or_else(|_| scene.camera.clone(), |v| super::orbit::spec(&v.camera)),
+            camera: camera.map_or_else(
+                |_| scene.camera.clone(),
+                |v| super::orbit::spec(&v.camera, &v.box_corners),
+            ),
             vertical_exaggeration: scene
                 .vertical_exaggeration
                 .or(Some(picture.view.vertical_exaggeration)),

@@ -8,7 +8,7 @@ use strataray::case::Case;
 use strataray::gpu::cones::ConeTable;
 use strataray::renderer::Renderer;
 use strataray::scene::lighting::Cone;
-use strataray::scene::{CameraSpec, ExplicitCamera, Scene};
+use strataray::scene::{CameraSpec, ExplicitCamera, Projection, Scene};
 
 use super::light::{Block, Space, lighting, render, scene};
 use super::shape::boxes;
@@ -63,6 +63,7 @@ impl Model {
             target: [low.x, low.y, -low.z],
             up: [0.3, 1.0, 0.2],
             fovy_degrees: 0.1,
+            projection: Projection::Perspective,
         });
         let mut spec = json!({
             "attenuation": 1.0,

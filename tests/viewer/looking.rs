@@ -1,7 +1,9 @@
 //! Looking: the camera by pointer and keys.
 
 use eframe::egui::{self, Key, Modifiers, vec2};
-use strataray::scene::CameraSpec;
+use glam::DVec3;
+use strataray::scene::{Camera, CameraSpec, Filter};
+use strataray::viewer::Action;
 
 use super::common::{gpu, sample};
 use super::driven::Driven;
@@ -58,4 +60,85 @@ fn keys_look_from_all_sides() {
     driven.press(ctrl_alt, Key::N);
     driven.wait_final();
     assert!(forward(&driven).y > 0.99);
+}
+
+fn camera(driven: &Driven) -> Camera {
+    driven.harness.state().picture(0).unwrap().0.view.camera
+}
+
+#[test]
+fn keys_do_all_that_the_pointer_does() {
+    let Some(_) = gpu() else { return };
+    let mut driven = Driven::showing(sample());
+    let press = |driven: &mut Driven, modifiers, key| {
+        let before = camera(driven);
+        driven.press(modifiers, key);
+        driven.wait_final();
+        (before, camera(driven))
+    };
+    let (before, parallel) = press(&mut driven, Modifiers::NONE, Key::Num5);
+    assert!(before.parallel.is_none() && parallel.parallel.is_some());
+    let (before, turned) = press(&mut driven, Modifiers::SHIFT, Key::ArrowRight);
+    let [a, b] = [before, turned].map(|c| c.forward.truncate());
+    assert!((a.angle_to(b).abs().to_degrees() - 10.0).abs() < 1e-6);
+    let (before, above) = press(&mut driven, Modifiers::SHIFT, Key::ArrowUp);
+    assert!(above.forward.z < before.forward.z - 0.1);
+    let (before, near) = press(&mut driven, Modifiers::NONE, Key::Plus);
+    assert_eq!(near.parallel, before.parallel.map(|h| h / 1.25));
+    let (_, all) = press(&mut driven, Modifiers::NONE, Key::F);
+    assert!(all.forward.distance(near.forward) < 1e-6 && all.parallel > near.parallel);
+    let (_, perspective) = press(&mut driven, Modifiers::NONE, Key::Num5);
+    assert!(perspective.parallel.is_none());
+    let (_, below) = press(&mut driven, Modifiers::COMMAND.plus(Modifiers::ALT), Key::B);
+    assert!(below.forward.z > 0.99);
+}
+
+#[test]
+fn what_is_selected_or_drawn_is_framed_from_the_same_direction() {
+    let Some(_) = gpu() else { return };
+    let mut driven = Driven::showing(sample());
+    let whole = camera(&driven);
+    let corner = Filter {
+        i: Some([1, 4]),
+        j: Some([1, 4]),
+        ..Filter::default()
+    };
+    driven.harness.state_mut().apply(Action::Filter(corner));
+    driven.wait_final();
+    driven.press(Modifiers::NONE, Key::Z);
+    driven.wait_final();
+    let window = driven.harness.state();
+    let (view, case) = (
+        window.picture(0).unwrap().0.view.clone(),
+        driven.document().case.clone().unwrap(),
+    );
+    assert!(view.camera.forward.distance(whole.forward) < 1e-9);
+    let drawn = view.corners_of(view.drawn_bounds(&case.grid).unwrap());
+    let seen = |c: &DVec3, camera: &Camera| camera.project(*c, view.aspect()).unwrap() - 0.5;
+    let reach = |camera: &Camera| {
+        let reaches = drawn.iter().map(|c| seen(c, camera).abs().max_element());
+        reaches.fold(0.0, f64::max)
+    };
+    let (now, before) = (reach(&view.camera), reach(&whole));
+    assert!(now < 0.5 && now > 0.35, "{now} {before}");
+    let size = |camera: &Camera| seen(&drawn[0], camera).distance(seen(&drawn[7], camera));
+    assert!(size(&view.camera) > 1.5 * size(&whole));
+}
+
+#[test]
+fn buttons_do_what_the_preset_says() {
+    let Some(_) = gpu() else { return };
+    let mut driven = Driven::showing(sample());
+    let middle = driven.place("volume").center();
+    let start = camera(&driven);
+    driven.press(Modifiers::COMMAND, Key::M);
+    driven.drag(middle, middle - vec2(0.0, 60.0));
+    driven.wait_final();
+    let near = camera(&driven);
+    assert!(near.forward.distance(start.forward) < 1e-9);
+    assert!((near.eye - start.eye).dot(start.forward) > 0.0);
+    driven.press(Modifiers::COMMAND, Key::M);
+    driven.drag(middle, middle - vec2(0.0, 60.0));
+    driven.wait_final();
+    assert!(camera(&driven).forward.distance(near.forward) > 0.1);
 }

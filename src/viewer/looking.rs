@@ -1,0 +1,117 @@
+//! What keys and menus do to the camera.
+
+use std::sync::Arc;
+
+use glam::DVec2;
+
+use super::action::Action;
+use super::orbit;
+use super::window::Window;
+use crate::case::Case;
+use crate::model::Ijk;
+use crate::scene::camera::middle;
+use crate::scene::{CameraSpec, View};
+
+/// A change of the camera.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Look {
+    /// One of the standard views.
+    From(usize),
+    /// The model, from the same direction.
+    FrameAll,
+    /// The cells that are selected, or else those that are drawn, from the same direction.
+    FrameSelection,
+    /// Perspective or parallel.
+    Projection,
+    /// Turns to the right and up by steps, around the middle of the picture.
+    Turn(i8, i8),
+    /// Closer, or away.
+    Zoom(bool),
+}
+
+/// Degrees of a step of [`Look::Turn`], and factor of one of [`Look::Zoom`].
+const STEP: f64 = 10.0;
+const CLOSER: f64 = 1.25;
+/// A selected cell takes this part of the picture.
+const SELECTED: f64 = 0.3;
+
+impl Window {
+    /// Changes the camera of the document in front; nothing before there is a picture.
+    pub(super) fn look(&mut self, look: Look) {
+        let view = self.picture(0).map(|(picture, _)| picture.view.clone());
+        let document = self.document();
+        let Some((document, case)) = document.and_then(|d| Some((d, d.case.clone()?))) else {
+            return;
+        };
+        let camera = &document.state.setup.scene.camera;
+        let now = view.and_then(|v| v.seen_from(camera, v.size).ok());
+        let selected = &document.state.selected;
+        let camera = match (look, now) {
+            (Look::From(n), _) => Some(orbit::standard(n, camera.projection())),
+            (_, Some(now)) => changed(look, camera, &now, &case, selected),
+            (_, None) => None,
+        };
+        match camera {
+            Some(camera) => {
+                if let Some(document) = self.document_mut() {
+                    document.history.end_gesture();
+                }
+                self.apply(Action::Camera(camera));
+            }
+            None if look == Look::FrameSelection => self.tell("no cell is drawn"),
+            None => {}
+        }
+    }
+}
+
+fn changed(
+    look: Look,
+    spec: &CameraSpec,
+    now: &View,
+    case: &Arc<Case>,
+    selected: &[[usize; 3]],
+) -> Option<CameraSpec> {
+    let (camera, aspect) = (&now.camera, now.aspect());
+    let corners = &now.box_corners;
+    let drawn = || now.drawn_bounds(&case.grid).map(|b| now.corners_of(b));
+    let center = || orbit::point_under(now, now.drawn_bounds(&case.grid), DVec2::splat(0.5));
+    let camera = match look {
+        Look::From(n) => return Some(orbit::standard(n, spec.projection())),
+        Look::FrameAll => return Some(orbit::frame_all(spec, camera, corners, aspect)),
+        Look::Projection => return Some(orbit::switched(spec, camera, corners)),
+        Look::FrameSelection => {
+            let cells = selected.iter().filter_map(|ijk| cell(case, *ijk));
+            let cells: Vec<Ijk> = cells.collect();
+            match case.grid.bounds_of(cells) {
+                Some(bounds) => {
+                    let cells = now.corners_of(bounds);
+                    let framed = camera.framed(&cells, aspect);
+                    framed.closer(middle(&cells), SELECTED)
+                }
+                None => camera.framed(&drawn()?, aspect),
+            }
+        }
+        Look::Turn(right, up) => {
+            let steps = DVec2::new(-f64::from(right), f64::from(up));
+            orbit::rotate(camera, center(), orbit::drag_of(STEP.to_radians() * steps))
+        }
+        Look::Zoom(is_closer) => orbit::zoom(
+            camera,
+            center(),
+            if is_closer { CLOSER } else { 1.0 / CLOSER },
+        ),
+    };
+    Some(orbit::spec(&camera, corners))
+}
+
+/// A cell by I, J, K from 1, if the grid has it.
+fn cell(case: &Case, ijk: [usize; 3]) -> Option<Ijk> {
+    let dims = case.grid.dims();
+    let inside = ijk.iter().zip([dims.ni, dims.nj, dims.nk]);
+    let inside = inside.into_iter().all(|(n, most)| (1..=most).contains(n));
+    inside.then(|| Ijk {
+        i: ijk[0] - 1,
+        j: ijk[1] - 1,
+        k: ijk[2] - 1,
+    })
+}

@@ -1,0 +1,154 @@
+//! What the buttons of the mouse and a touchpad do, as a table of presets.
+
+use eframe::egui::{self, Modifiers, PointerButton, Rect, Ui};
+use glam::DVec2;
+
+use super::settings::Mouse;
+
+/// What a drag does to the camera.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Motion {
+    /// Turns it around what is under the pointer.
+    Rotate,
+    /// Moves it across.
+    Pan,
+    /// Comes closer where one drags up, to where the drag began.
+    Zoom,
+}
+
+/// A button with keys held down, and what dragging with it does.
+type Binding = (PointerButton, Modifiers, Motion);
+
+/// Left and middle, so that a touchpad needs no other button, then right.
+const STANDARD: [Binding; 5] = [
+    (PointerButton::Primary, Modifiers::SHIFT, Motion::Pan),
+    (PointerButton::Primary, Modifiers::COMMAND, Motion::Rotate),
+    (PointerButton::Primary, Modifiers::NONE, Motion::Rotate),
+    (PointerButton::Middle, Modifiers::NONE, Motion::Pan),
+    (PointerButton::Secondary, Modifiers::NONE, Motion::Zoom),
+];
+const RMS: [Binding; 5] = [
+    (PointerButton::Primary, Modifiers::SHIFT, Motion::Pan),
+    (PointerButton::Primary, Modifiers::COMMAND, Motion::Rotate),
+    (PointerButton::Primary, Modifiers::NONE, Motion::Zoom),
+    (PointerButton::Middle, Modifiers::NONE, Motion::Rotate),
+    (PointerButton::Secondary, Modifiers::NONE, Motion::Pan),
+];
+
+impl Mouse {
+    /// Its bindings; the first that fits counts.
+    fn bindings(self) -> &'static [Binding] {
+        match self {
+            Self::Standard => &STANDARD,
+            Self::Rms => &RMS,
+        }
+    }
+
+    /// What a drag with a button does while keys are held down.
+    pub fn motion(self, button: PointerButton, held: Modifiers) -> Option<Motion> {
+        let fits = |(b, m, _): &&Binding| *b == button && held.contains(*m);
+        self.bindings().iter().find(fits).map(|b| b.2)
+    }
+
+    /// Each drag and what it does, for people.
+    pub fn describe(self) -> impl Iterator<Item = (String, &'static str)> {
+        let drags = self.bindings().iter().map(|(button, held, motion)| {
+            let button = match button {
+                PointerButton::Primary => "left drag",
+                PointerButton::Middle => "middle drag",
+                _ => "right drag",
+            };
+            let keys = match (held.shift, held.command) {
+                (true, _) => "Shift + ",
+                (_, true) => "Ctrl + ",
+                _ => "",
+            };
+            let does = match motion {
+                Motion::Rotate => "Turns around what is under the pointer",
+                Motion::Pan => "Moves the picture",
+                Motion::Zoom => "Comes closer or goes away",
+            };
+            (format!("{keys}{button}"), does)
+        });
+        let wheel = "Wheel, two fingers or pinch".to_owned();
+        drags.chain([(wheel, "Comes closer to the pointer or goes away")])
+    }
+}
+
+/// Zoom of a turn of the wheel by a point.
+const WHEEL: f64 = 0.004;
+/// Zoom of a drag across the height of the picture, as a power of e.
+const DRAG: f64 = 3.0;
+
+/// The pointer in terms of the picture.
+pub struct Input {
+    /// Where it is, 0 to 1 to the right and down.
+    pub at: Option<DVec2>,
+    /// A drag: what it does, and how far it went in parts of the picture's height.
+    pub drag: Option<(Motion, DVec2)>,
+    /// Factor by which the wheel or a pinch comes closer.
+    pub zoom: Option<f64>,
+}
+
+impl Input {
+    /// What was done over the picture in this frame.
+    pub fn of(ui: &Ui, response: &egui::Response, rect: Rect, mouse: Mouse) -> Self {
+        let pointer = response.hover_pos().or(response.interact_pointer_pos());
+        let at = pointer.map(|p| {
+            let at = (p - rect.min) / rect.size();
+            DVec2::new(f64::from(at.x), f64::from(at.y))
+        });
+        let by = response.drag_delta() / rect.height().max(1.0);
+        let by = DVec2::new(f64::from(by.x), f64::from(by.y));
+        let held = ui.input(|i| i.modifiers);
+        let buttons = [
+            PointerButton::Primary,
+            PointerButton::Middle,
+            PointerButton::Secondary,
+        ];
+        let button = buttons.into_iter().find(|b| response.dragged_by(*b));
+        let motion = button.and_then(|b| mouse.motion(b, held));
+        let (scroll, pinch) = ui.input(|i| (i.smooth_scroll_delta, i.zoom_delta()));
+        let factor = f64::from(pinch) * (WHEEL * f64::from(scroll.y)).exp();
+        let zoom = (response.hovered() && factor != 1.0).then_some(factor);
+        Self {
+            at,
+            drag: motion.map(|motion| (motion, by)),
+            zoom,
+        }
+    }
+}
+
+/// Factor by which a drag comes closer.
+pub fn drag_zoom(by: DVec2) -> f64 {
+    (-DRAG * by.y).exp()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn dragging_up_comes_closer() {
+        assert!(drag_zoom(DVec2::new(0.0, -0.1)) > 1.0 && drag_zoom(DVec2::Y) < 1.0);
+    }
+
+    #[test]
+    fn every_preset_does_all_with_the_left_button() {
+        let left = PointerButton::Primary;
+        for mouse in [Mouse::Standard, Mouse::Rms] {
+            let motion = |held| mouse.motion(left, held);
+            assert_eq!(motion(Modifiers::SHIFT), Some(Motion::Pan));
+            assert_eq!(motion(Modifiers::COMMAND), Some(Motion::Rotate));
+            assert_eq!(mouse.describe().count(), 6);
+        }
+        let plain = |mouse: Mouse| {
+            [left, PointerButton::Middle, PointerButton::Secondary]
+                .map(|b| mouse.motion(b, Modifiers::NONE))
+        };
+        let all = [Motion::Rotate, Motion::Pan, Motion::Zoom].map(Some);
+        assert_eq!(plain(Mouse::Standard), all);
+        let rms = [Motion::Zoom, Motion::Rotate, Motion::Pan].map(Some);
+        assert_eq!(plain(Mouse::Rms), rms);
+    }
+}
