@@ -3,6 +3,7 @@
 use eframe::egui::accesskit::Action as Asked;
 use eframe::egui::{Key, Modifiers};
 use egui_kittest::kittest::{NodeT, Queryable};
+use strataray::metrics::Comparison;
 use strataray::scene::Scene;
 use strataray::viewer::{Action, Settings, State};
 
@@ -30,12 +31,14 @@ fn a_saved_scene_makes_the_same_picture() {
         driven.press(Modifiers::COMMAND, Key::Z);
     }
     driven.wait_final();
-    assert!(driven.picture(0) != picture);
+    let apart = Comparison::of(&driven.picture(0), &picture).unwrap();
+    assert!(apart.psnr_db < 60.0, "{apart:?}");
     driven.harness.state_mut().load_scene(&file).unwrap();
     driven.wait_final();
     assert_eq!(driven.scene(), &scene);
-    let apart = strataray::metrics::Comparison::of(&driven.picture(0), &picture).unwrap();
-    assert!(driven.picture(0) == picture, "{apart:?}");
+    // Rays pause by time, so sums may round differently, in single pixels.
+    let apart = Comparison::of(&driven.picture(0), &picture).unwrap();
+    assert!(apart.psnr_db > 90.0, "{apart:?}");
     // One that is none is refused, and changes nothing.
     std::fs::write(&file, "{\"propertee\": 1}").unwrap();
     let error = driven.harness.state_mut().load_scene(&file).unwrap_err();
