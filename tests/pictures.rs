@@ -229,7 +229,7 @@ fn what_is_picked_in_parallel_lies_under_the_pointer() {
     let perspective = scene::resolve(&scene, &case).unwrap();
     parallel(&mut scene);
     let view = scene::resolve(&scene, &case).unwrap();
-    for at in [DVec2::new(0.5, 0.5), DVec2::new(0.42, 0.55)] {
+    for at in [DVec2::new(0.6, 0.5), DVec2::new(0.42, 0.55)] {
         let hit = picking::pick(&mut renderer, &case, &view, at);
         let hit = hit.unwrap().unwrap();
         let projected = view.camera.project(hit.world, view.aspect()).unwrap();
