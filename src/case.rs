@@ -1,6 +1,7 @@
 //! A case: one grid, its properties and time steps. Values come through [`Source`], on demand.
 
 mod cache;
+mod over_steps;
 
 use std::sync::Arc;
 
@@ -8,6 +9,8 @@ pub use cache::FieldCache;
 
 use crate::model::derived::Derived;
 use crate::model::{CellField, FaultFaces, Grid, Ijk};
+
+pub use over_steps::{Categories, MAX_CATEGORIES, OverSteps, ValueRange};
 
 /// Where a property's values come from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
@@ -158,6 +161,8 @@ pub struct Case {
     pub source: Box<dyn Source>,
     /// Fields used last.
     pub cache: FieldCache,
+    /// What was found out of properties over all steps.
+    pub over_steps: OverSteps,
 }
 
 impl Case {
@@ -331,7 +336,7 @@ pub const CONNECTIONS: &str = "NNC";
 pub const POROSITY_THICKNESS: &str = "PORO_THICKNESS";
 
 /// Splits `NAME-NAME@STEP`; the base is what stands behind the last dash.
-fn difference(name: &str) -> Option<(&str, &str, &str)> {
+pub fn difference(name: &str) -> Option<(&str, &str, &str)> {
     let (names, base_step) = name.rsplit_once('@')?;
     let (now, base) = names.rsplit_once('-')?;
     Some((now, base, base_step))

@@ -15,7 +15,7 @@ use strataray_parsers::{At, ParseError, Warnings, init};
 
 use self::grids::Loaded;
 use self::source::FileSource;
-use crate::case::{About, Case, FieldCache, Step};
+use crate::case::{About, Case, FieldCache, OverSteps, Step};
 
 /// Opens the case that `path` names: any of its files, or its base name.
 ///
@@ -95,6 +95,7 @@ pub fn open_with(path: &Path, progress: &dyn Fn(&str) -> bool) -> Result<Option<
         properties,
         source: Box::new(source),
         cache: FieldCache::default(),
+        over_steps: OverSteps::default(),
     }))
 }
 

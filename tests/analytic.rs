@@ -11,7 +11,9 @@ use strataray::model::VertexField;
 use strataray::picture::Image;
 use strataray::reference::{self, Locator};
 use strataray::renderer::Renderer;
-use strataray::scene::{self, CameraSpec, FramingCamera, Interpolation, Projection, Scene, View};
+use strataray::scene::{
+    self, CameraSpec, FramingCamera, Interpolation, OpacitySpec, Projection, RangeSpec, Scene, View,
+};
 use strataray::strategies::StrategyKind;
 
 fn scene(azimuth: f64, elevation: f64, opacity: &[[f64; 2]]) -> Scene {
@@ -24,13 +26,13 @@ fn scene(azimuth: f64, elevation: f64, opacity: &[[f64; 2]]) -> Scene {
             projection: Projection::Perspective,
         }),
         property: Some("VALUE".into()),
-        range: Some([0.0, 1.0]),
+        range: RangeSpec::Fixed([0.0, 1.0]),
         vertical_exaggeration: Some(2.0),
         sampling_step: Some(0.75),
         early_termination: 0.0,
         ..Scene::default()
     };
-    scene.transfer.opacity = Some(opacity.to_vec());
+    scene.transfer.opacity = Some(OpacitySpec::Points(opacity.to_vec()));
     scene.transfer.reference_length = Some(100.0);
     scene
 }

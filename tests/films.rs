@@ -16,8 +16,8 @@ use strataray::picture::{Annotations, finished};
 use strataray::renderer::Renderer;
 use strataray::scene::film::steps;
 use strataray::scene::{
-    CameraSpec, ExplicitCamera, FramingCamera, Projection, Scene, Sequence, StepSpec, Turn, View,
-    resolve,
+    CameraSpec, ExplicitCamera, FramingCamera, Projection, RangeSpec, Scene, Sequence, StepSpec,
+    Turn, View, resolve,
 };
 
 fn scene(property: &str) -> Scene {
@@ -73,7 +73,7 @@ fn all_steps_have_one_range_and_a_given_one_wins() {
         let view = sequence.view(n, &case).unwrap();
         assert_eq!((view.step, view.transfer.range), (step, [min, max]));
     }
-    scene.range = Some([1.0, 2.0]);
+    scene.range = RangeSpec::Fixed([1.0, 2.0]);
     let sequence = over_steps(&scene, &case, &chosen);
     assert_eq!(sequence.view(1, &case).unwrap().transfer.range, [1.0, 2.0]);
 }
@@ -98,7 +98,7 @@ fn pictures_are_those_of_render_with_the_range_of_all_steps() {
         let mut still = scene.clone();
         still.step = StepSpec::Index(step);
         let own_range = picture(&resolve(&still, &case).unwrap());
-        still.range = Some(sequence.range());
+        still.range = RangeSpec::Fixed(sequence.range());
         let same_range = picture(&resolve(&still, &case).unwrap());
         assert!(same(&same_range, &film[n]), "step {step}");
         assert!(!same(&own_range, &film[n]), "step {step}");

@@ -27,7 +27,7 @@ use strataray::reference::{self, Locator};
 use strataray::renderer::{Frame, Renderer};
 use strataray::scene::{
     self, CameraSpec, ClipSpec, CutFace, ExplicitCamera, FramingCamera, Inactive, Interpolation,
-    Projection, Scene, SrgSettings, View,
+    OpacitySpec, Projection, RangeSpec, Scene, SrgSettings, View,
 };
 use strataray::strategies::srg::Srg;
 use strataray::strategies::{Preparation, RenderStrategy, StrategyKind};
@@ -281,7 +281,8 @@ fn the_volume_is_filled_anew_when_it_must_and_only_then() {
     assert!(done && fills == 1 && calls > 0, "{fills} {calls}");
     assert_eq!(bench.prepare(&first, true), (true, 0, 0));
     // Nothing of this is in the volume. The first curve that hides values asks for the bricks.
-    let hides = |scene: &mut Scene| scene.transfer.opacity = Some(UPPER_HALF.to_vec());
+    let hides =
+        |scene: &mut Scene| scene.transfer.opacity = Some(OpacitySpec::Points(UPPER_HALF.to_vec()));
     let (done, fills, calls) = bench.prepare(&view(&hides), true);
     assert!(done && fills == 0 && calls > 0);
     let turned = |scene: &mut Scene| {
@@ -295,8 +296,8 @@ fn the_volume_is_filled_anew_when_it_must_and_only_then() {
     let kept: [&dyn Fn(&mut Scene); 7] = [
         &hides,
         &turned,
-        &|scene| scene.range = Some([0.2, 0.3]),
-        &|scene| scene.transfer.opacity = Some(vec![[0.0, 0.5], [0.4, 0.0]]),
+        &|scene| scene.range = RangeSpec::Fixed([0.2, 0.3]),
+        &|scene| scene.transfer.opacity = Some(OpacitySpec::Points(vec![[0.0, 0.5], [0.4, 0.0]])),
         &|scene| scene.sampling_step = Some(20.0),
         &|scene| scene.srg.weighted = false,
         &|scene| scene.srg.even = 0.1,
@@ -426,7 +427,7 @@ fn each_switch_stays_within_its_error_of_the_plain_march() {
         let case = load::open(&model).unwrap();
         let mut renderer = Renderer::new(gpu.clone(), &case.grid).unwrap();
         let mut scene = scene([200, 150], PLAIN);
-        scene.transfer.opacity = Some(UPPER_HALF.to_vec());
+        scene.transfer.opacity = Some(OpacitySpec::Points(UPPER_HALF.to_vec()));
         let view = scene::resolve(&scene, &case).unwrap();
         // A switch, the least PSNR in dB and the most steps that it may take, and its twin that is too
         // coarse to stay within either error.
@@ -496,7 +497,7 @@ fn roulette_is_unbiased() {
     let mut renderer = Renderer::new(gpu, &case.grid).unwrap();
     let mut scene = scene([160, 120], PLAIN);
     scene.early_termination = 0.0;
-    scene.transfer.opacity = Some(vec![[0.0, 0.3], [1.0, 0.9]]);
+    scene.transfer.opacity = Some(OpacitySpec::Points(vec![[0.0, 0.3], [1.0, 0.9]]));
     let view = scene::resolve(&scene, &case).unwrap();
     let plain = render(&mut renderer, &case, &view).image;
     // Mean difference of all channels of the pixels that differ, in standard errors.
@@ -632,7 +633,7 @@ fn ghosts_are_resampled_beside_the_field() {
     let mut renderer = Renderer::new(gpu, &case.grid).unwrap();
     // Only ghosts are seen, and they are seen well.
     let mut scene = scene([120, 90], SrgSettings::default());
-    scene.transfer.opacity = Some(vec![[0.0, 0.0], [1.0, 0.0]]);
+    scene.transfer.opacity = Some(OpacitySpec::Points(vec![[0.0, 0.0], [1.0, 0.0]]));
     scene.transfer.reference_length = Some(2.0);
     let hidden = scene::resolve(&scene, &case).unwrap();
     scene.show.inactive = Inactive::Ghost;
@@ -657,7 +658,7 @@ fn undefined_values_and_hidden_cells_leave_holes() {
     .case();
     let mut scene = scene([60, 45], SrgSettings::default());
     scene.property = Some("VALUE".into());
-    scene.transfer.opacity = Some(vec![[0.0, 0.9], [1.0, 0.9]]);
+    scene.transfer.opacity = Some(OpacitySpec::Points(vec![[0.0, 0.9], [1.0, 0.9]]));
     let mut renderer = Renderer::new(gpu, &case.grid).unwrap();
     let view = scene::resolve(&scene, &case).unwrap();
     let truth = reference::render(&case.grid, &view, &|_| true).unwrap();
@@ -772,7 +773,7 @@ fn table_of_switches() {
         header += &format!(" {} |", case.about.name);
         for (upper, curve) in [None, Some(UPPER_HALF.to_vec())].into_iter().enumerate() {
             let mut scene = scene([400, 300], PLAIN);
-            scene.transfer.opacity = curve;
+            scene.transfer.opacity = curve.map(OpacitySpec::Points);
             let view = scene::resolve(&scene, &case).unwrap();
             let plain = render(&mut renderer, &case, &view);
             let time = cpu_time(&mut renderer, &case, &view);

@@ -13,7 +13,7 @@ use strataray::scene::lighting::LightSpec;
 use strataray::scene::surfaces::{EDGE_DARKNESS, EDGE_WIDTH, PALETTE, SHEET_OPACITY, UNNAMED};
 use strataray::scene::{
     self, CameraSpec, ClipSpec, CutFace, FramingCamera, Inactive, Interpolation, LightMode,
-    LightingSpec, Projection, Scene, Surfaces, View,
+    LightingSpec, OpacitySpec, Projection, RangeSpec, Scene, Surfaces, View,
 };
 use strataray::strategies::StrategyKind;
 use strataray::transfer::function::linear_from_srgb;
@@ -96,13 +96,13 @@ fn plain(camera: CameraSpec, opacity: f64) -> Scene {
         size: [80, 60],
         camera,
         property: Some("VALUE".into()),
-        range: Some([0.0, 1.0]),
+        range: RangeSpec::Fixed([0.0, 1.0]),
         vertical_exaggeration: Some(1.0),
         sampling_step: Some(0.5),
         early_termination: 0.0,
         ..Scene::default()
     };
-    scene.transfer.opacity = Some(vec![[0.0, opacity], [1.0, opacity]]);
+    scene.transfer.opacity = Some(OpacitySpec::Points(vec![[0.0, opacity], [1.0, opacity]]));
     scene.transfer.reference_length = Some(100.0);
     scene
 }

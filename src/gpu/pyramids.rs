@@ -337,6 +337,8 @@ mod tests {
             color: vec![(0.0, [1.0; 3])],
             opacity: vec![(0.0, 0.3), (0.4, 0.0), (0.7, 0.9), (1.0, 0.1)],
             range: [0.0, 1.0],
+            scale: crate::transfer::Scale::Linear,
+            bands: None,
             reference_length: 1.0,
         };
         let entries: Vec<f32> = transfer_table(&transfer).iter().map(|e| e[3]).collect();

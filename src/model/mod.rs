@@ -2,6 +2,7 @@
 
 pub mod corner_point;
 mod depth_lists;
+pub mod derivatives;
 pub mod derived;
 pub mod faults;
 pub mod fields;

@@ -145,6 +145,8 @@ pub(super) mod tests {
                 color: presets::color_map("turbo").unwrap(),
                 opacity: vec![(0.0, 0.1), (1.0, 0.5)],
                 range: [0.0, 1.0],
+                scale: crate::transfer::Scale::Linear,
+                bands: None,
                 reference_length: 1.0,
             },
             sampling_step: 1.0,

@@ -45,6 +45,8 @@ fn colors(scale: f64) -> TransferFunction {
         // No opacity curve in the legend.
         opacity: vec![(0.0, 0.0)],
         range: [0.0, scale],
+        scale: crate::transfer::Scale::Linear,
+        bands: None,
         reference_length: 1.0,
     }
 }

@@ -21,10 +21,10 @@ pub use annotate::{Annotations, annotate, finished};
 pub use axes::CONNECTION;
 pub use difference::{difference_colors, difference_picture};
 pub use files::{Format, PictureError, write_exr, write_png};
+pub use legend::marks as legend_marks;
 pub use orientation::{Arrow, Orientation, Paper, Text, on_screen};
 pub use plot::{Plot, Series};
 pub use sheet::{SheetError, Tile, contact_sheet};
-pub use ticks::labels as legend_labels;
 
 use canvas::Canvas;
 

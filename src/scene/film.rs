@@ -3,8 +3,8 @@
 use glam::DQuat;
 
 use super::camera::middle;
-use super::resolve::default_property;
-use super::{Camera, CameraSpec, Scene, SceneError, StepSpec, View, resolve};
+use super::resolve::{default_property, resolve_over};
+use super::{Camera, CameraSpec, RangeSpec, ScaleSpec, Scene, SceneError, StepSpec, View, resolve};
 use crate::case::{Case, CaseError};
 
 /// A way around the model.
@@ -73,8 +73,14 @@ impl Sequence {
         }
         let (mut range, mut used, mut left_out) = (None, Vec::new(), Vec::new());
         let mut missing = None;
+        // A step without values above 0 has a place in the range of a log scale over all of them.
+        let mut linear = scene.clone();
+        linear.transfer.scale = match scene.range {
+            RangeSpec::Fixed(_) => scene.transfer.scale,
+            RangeSpec::Own(_) => ScaleSpec::Linear,
+        };
         for (n, &step) in steps.iter().enumerate() {
-            match resolve(&at_step(scene, step), case) {
+            match resolve(&at_step(&linear, step), case) {
                 Ok(view) => {
                     used.push(step);
                     range = union(range, defined_range(scene, &view));
@@ -146,11 +152,11 @@ impl Sequence {
         &self.left_out
     }
 
-    /// Values at both ends of the color map in every view.
+    /// True values at both ends of the color map in every view.
     pub fn range(&self) -> [f64; 2] {
         match &self.views {
             Views::Steps { range, .. } => *range,
-            Views::Turn { view, .. } => view.transfer.range,
+            Views::Turn { view, .. } => view.transfer.true_range(),
         }
     }
 
@@ -165,11 +171,7 @@ impl Sequence {
                 scene,
                 steps,
                 range,
-            } => {
-                let mut view = resolve(&at_step(scene, steps[n]), case)?;
-                view.transfer.range = *range;
-                view
-            }
+            } => resolve_over(&at_step(scene, steps[n]), case, Some(*range))?,
             Views::Turn { view, cameras } => View {
                 camera: cameras[n],
                 ..View::clone(view)
@@ -207,8 +209,9 @@ fn at_step(scene: &Scene, step: usize) -> Scene {
 
 /// The scene's range, or that of the values of one step; `None` where none is defined.
 fn defined_range(scene: &Scene, view: &View) -> Option<[f64; 2]> {
-    let defined = scene.range.is_some() || view.field.statistics().is_some();
-    defined.then_some(view.transfer.range)
+    let fixed = matches!(scene.range, RangeSpec::Fixed(_));
+    let defined = fixed || view.field.statistics().is_some();
+    defined.then(|| view.transfer.true_range())
 }
 
 fn union(a: Option<[f64; 2]>, b: Option<[f64; 2]>) -> Option<[f64; 2]> {

@@ -1,6 +1,7 @@
 //! The scene file: what to look at and how, as JSON. Every field has a default.
 
 pub mod camera;
+mod colors;
 pub mod film;
 pub mod ghosts;
 mod half_turns;
@@ -8,6 +9,7 @@ pub mod lighting;
 pub mod resolve;
 mod settings;
 pub mod surfaces;
+pub mod transfer;
 
 use serde::{Deserialize, Serialize};
 
@@ -18,6 +20,9 @@ pub use lighting::{LightMode, Lighting, LightingSpec};
 pub use resolve::{ClipPlane, SceneError, View, resolve};
 pub use settings::{ClipSpec, CutFace, Integration, LibcSettings, SrgSettings};
 pub use surfaces::{Hull, Surfaces};
+pub use transfer::{
+    ColorSpec, Coloring, FoundOpacity, OpacitySpec, OwnRange, RangeSpec, ScaleSpec, TransferSpec,
+};
 
 /// A scene as users write it. Unknown fields are errors; absent ones have defaults.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -39,8 +44,9 @@ pub struct Scene {
     pub step: StepSpec,
     /// How values vary inside a cell.
     pub interpolation: Interpolation,
-    /// Values at both ends of the color map; the property's own range where absent.
-    pub range: Option<[f64; 2]>,
+    /// Values at both ends of the color map; those of the step shown where absent.
+    #[serde(deserialize_with = "transfer::null_is_default")]
+    pub range: RangeSpec,
     /// Color and opacity.
     pub transfer: TransferSpec,
     /// Ray-casting strategy by name.
@@ -74,7 +80,7 @@ impl Default for Scene {
             property: None,
             step: StepSpec::Name("last".into()),
             interpolation: Interpolation::Vertex,
-            range: None,
+            range: RangeSpec::STEP,
             transfer: TransferSpec::default(),
             strategy: "plts".into(),
             sampling_step: None,
@@ -186,38 +192,6 @@ pub enum Interpolation {
     Cell,
     /// Trilinear between averages at the vertices.
     Vertex,
-}
-
-/// Color map and opacity curve.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct TransferSpec {
-    /// A named map or a list of points.
-    pub color: ColorSpec,
-    /// Points (position 0..1, opacity 0..1); a curve rising with the value where absent.
-    pub opacity: Option<Vec<[f64; 2]>>,
-    /// Length to which opacity refers; the mean cell edge in world space where absent.
-    pub reference_length: Option<f64>,
-}
-
-impl Default for TransferSpec {
-    fn default() -> Self {
-        Self {
-            color: ColorSpec::Name("turbo".into()),
-            opacity: None,
-            reference_length: None,
-        }
-    }
-}
-
-/// A color map by name or by points (position 0..1, `#rrggbb`).
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(untagged)]
-pub enum ColorSpec {
-    /// One of the presets.
-    Name(String),
-    /// Position and `#rrggbb`.
-    Points(Vec<(f64, String)>),
 }
 
 /// Which active cells are drawn; ranges are one-based and inclusive.

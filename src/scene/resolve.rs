@@ -5,11 +5,12 @@ use std::sync::Arc;
 use glam::{DVec3, DVec4};
 use rayon::prelude::*;
 
+use super::colors::{self, Asked, Colors, interpolation};
 use super::ghosts::{Ghosts, shown_grid};
 use super::lighting::{self, Lighting};
 use super::{
-    Camera, CameraSpec, ClipSpec, ColorSpec, CutFace, Filter, Inactive, Interpolation,
-    LibcSettings, Scene, SrgSettings, StepSpec, Surfaces,
+    Camera, CameraSpec, ClipSpec, CutFace, Filter, Inactive, Interpolation, LibcSettings, Scene,
+    SrgSettings, StepSpec, Surfaces,
 };
 use crate::case::{Case, CaseError};
 use crate::gpu::volume::Shape;
@@ -79,7 +80,7 @@ pub struct View {
     pub property: String,
     /// Step shown.
     pub step: usize,
-    /// Its values.
+    /// Its values, in the scale of the transfer function; see [`Self::true_value`].
     pub field: Arc<CellField>,
     /// How values vary inside a cell.
     pub interpolation: Interpolation,
@@ -141,6 +142,11 @@ impl View {
         box_corners(&self.spaces, bounds)
     }
 
+    /// The value that a number of [`Self::field`], or between such numbers, stands for.
+    pub fn true_value(&self, shown: f64) -> f64 {
+        self.transfer.scale.true_value(shown)
+    }
+
     /// Width over height.
     pub fn aspect(&self) -> f64 {
         f64::from(self.size[0]) / f64::from(self.size[1])
@@ -166,10 +172,16 @@ pub const MAX_CLIP_PLANES: usize = 8;
 /// # Errors
 /// When a value is out of its range, or asks for what the case or this version does not have.
 pub fn resolve(scene: &Scene, case: &Case) -> Result<View, SceneError> {
-    if scene.version != 1 {
-        let problem = format!("{} is not known; this is version 1", scene.version);
-        return Err(wrong("version", problem));
-    }
+    resolve_over(scene, case, None)
+}
+
+/// [`resolve`], over another range of true values where one is given.
+pub(super) fn resolve_over(
+    scene: &Scene,
+    case: &Case,
+    range: Option<[f64; 2]>,
+) -> Result<View, SceneError> {
+    check_version(scene)?;
     let active_bounds = case.grid.bounds().ok_or(SceneError::Empty)?;
     let exaggeration = match scene.vertical_exaggeration {
         Some(v) => positive("vertical_exaggeration", v)?,
@@ -183,7 +195,14 @@ pub fn resolve(scene: &Scene, case: &Case) -> Result<View, SceneError> {
     };
     let step = step(case, &scene.step, case.is_dynamic(&property))?;
     let field = case.field(&property, step)?;
-    let range = range(scene, &field)?;
+    let asked = Asked {
+        scene,
+        case,
+        property: &property,
+        range,
+        mean_edge: edges.element_sum() / 3.0,
+    };
+    let Colors { field, transfer } = colors::resolve(&asked, &field)?;
     let drawn = drawn(case, &field, &scene.filter, step)?;
     let connections = match scene.show.nnc {
         true => connections(case, &spaces, &drawn),
@@ -218,10 +237,10 @@ pub fn resolve(scene: &Scene, case: &Case) -> Result<View, SceneError> {
         box_corners,
         strategy,
         step,
-        transfer: transfer(scene, range, edges)?,
+        interpolation: interpolation(scene),
+        transfer,
         sampling_step: sampling_step(scene, edges, world_bounds)?,
         early_termination: scene.early_termination,
-        interpolation: scene.interpolation,
         property,
         field,
         drawn: Arc::new(drawn),
@@ -240,6 +259,14 @@ pub fn resolve(scene: &Scene, case: &Case) -> Result<View, SceneError> {
         show_box: scene.show.r#box,
         show_legend: scene.show.legend,
     })
+}
+
+fn check_version(scene: &Scene) -> Result<(), SceneError> {
+    if scene.version != 1 {
+        let problem = format!("{} is not known; this is version 1", scene.version);
+        return Err(wrong("version", problem));
+    }
+    Ok(())
 }
 
 fn checked_size(size: [u32; 2]) -> Result<[u32; 2], SceneError> {
@@ -318,7 +345,7 @@ fn clip(planes: &[ClipSpec]) -> Result<Vec<ClipPlane>, SceneError> {
     planes.iter().map(resolve).collect()
 }
 
-fn positive(field: &'static str, value: f64) -> Result<f64, SceneError> {
+pub(super) fn positive(field: &'static str, value: f64) -> Result<f64, SceneError> {
     if value.is_finite() && value > 0.0 {
         Ok(value)
     } else {
@@ -392,15 +419,6 @@ fn step(case: &Case, spec: &StepSpec, dynamic: bool) -> Result<usize, SceneError
         StepSpec::Index(n) => case.step(&n.to_string())?,
         StepSpec::Name(name) => case.step(name)?,
     })
-}
-
-fn range(scene: &Scene, field: &CellField) -> Result<[f64; 2], SceneError> {
-    match (scene.range, field.statistics()) {
-        (Some([a, b]), _) if a.is_finite() && b.is_finite() && a < b => Ok([a, b]),
-        (Some(_), _) => Err(wrong("range", "must be two numbers, the smaller first")),
-        (None, Some(s)) => Ok([s.min, s.max]),
-        (None, None) => Ok([0.0, 1.0]),
-    }
 }
 
 fn drawn(
@@ -493,57 +511,4 @@ fn camera(spec: &CameraSpec, size: [u32; 2], corners: &[DVec3; 8]) -> Result<Cam
                 "eye, target and up must be three finite points that span a view",
             )
         })
-}
-
-fn transfer(scene: &Scene, range: [f64; 2], edges: DVec3) -> Result<TransferFunction, SceneError> {
-    let spec = &scene.transfer;
-    let color = match &spec.color {
-        ColorSpec::Name(name) => presets::color_map(name).ok_or_else(|| {
-            wrong(
-                "transfer.color",
-                format!(
-                    "{name} is not known; there are {}",
-                    presets::NAMES.join(", ")
-                ),
-            )
-        })?,
-        ColorSpec::Points(points) => points
-            .iter()
-            .map(|(at, hex)| presets::parse_color(hex).map(|rgb| (*at, rgb)))
-            .collect::<Option<Vec<_>>>()
-            .ok_or_else(|| wrong("transfer.color", "colors must look like #rrggbb"))?,
-    };
-    let opacity: Vec<(f64, f64)> = match &spec.opacity {
-        Some(points) => points.iter().map(|p| (p[0], p[1])).collect(),
-        None => vec![(0.0, 0.02), (0.5, 0.1), (1.0, 0.5)],
-    };
-    let rising = |positions: Vec<f64>| {
-        !positions.is_empty()
-            && positions.iter().all(|p| (0.0..=1.0).contains(p))
-            && positions.is_sorted()
-    };
-    if !rising(color.iter().map(|c| c.0).collect()) {
-        return Err(wrong(
-            "transfer.color",
-            "needs positions that rise from 0 to 1",
-        ));
-    }
-    if !rising(opacity.iter().map(|c| c.0).collect())
-        || !opacity.iter().all(|o| (0.0..=1.0).contains(&o.1))
-    {
-        return Err(wrong(
-            "transfer.opacity",
-            "needs rising positions and opacities, both from 0 to 1",
-        ));
-    }
-    let reference_length = match spec.reference_length {
-        Some(v) => positive("transfer.reference_length", v)?,
-        None => edges.element_sum() / 3.0,
-    };
-    Ok(TransferFunction {
-        color,
-        opacity,
-        range,
-        reference_length,
-    })
 }

@@ -1,7 +1,12 @@
 //! The transfer function: piecewise linear color and opacity over a property's range.
 
+use super::Scale;
+
 /// Opacities are kept below one: full opacity would mean an infinite extinction.
 pub const MAX_OPACITY: f64 = 1.0 - 1e-6;
+
+/// Positions and what is there; linear between them, a jump where two are equal.
+pub type Curve<T> = Vec<(f64, T)>;
 
 /// Piecewise linear color and opacity over positions 0..1 of a property's range.
 ///
@@ -10,16 +15,25 @@ pub const MAX_OPACITY: f64 = 1.0 - 1e-6;
 #[derive(Debug, Clone, PartialEq)]
 pub struct TransferFunction {
     /// Position and color in sRGB, 0..1.
-    pub color: Vec<(f64, [f64; 3])>,
+    pub color: Curve<[f64; 3]>,
     /// Position and opacity, 0..1.
-    pub opacity: Vec<(f64, f64)>,
-    /// Values at positions 0 and 1.
+    pub opacity: Curve<f64>,
+    /// Values at positions 0 and 1, in the scale.
     pub range: [f64; 2],
+    /// What values and range stand for.
+    pub scale: Scale,
+    /// Number of equal parts that have one color each; `None` where colors pass into each other.
+    pub bands: Option<usize>,
     /// Length to which an opacity refers.
     pub reference_length: f64,
 }
 
 impl TransferFunction {
+    /// The range as true values; of categories the first and the last.
+    pub fn true_range(&self) -> [f64; 2] {
+        self.range.map(|v| self.scale.true_value(v))
+    }
+
     /// Position of a value in the range, clamped to 0..1. An empty range puts all at 0.
     pub fn position(&self, value: f64) -> f64 {
         let [low, high] = self.range;
@@ -40,8 +54,7 @@ impl TransferFunction {
 
     /// Color at a position in sRGB; interpolation happens in sRGB, as color maps are published.
     pub fn srgb(&self, position: f64) -> [f64; 3] {
-        let (a, b, f) = segment(&self.color, position);
-        std::array::from_fn(|c| a[c] + (b[c] - a[c]) * f)
+        color_at(&self.color, position)
     }
 
     /// Color at a position in linear light, in which pictures are composited.
@@ -66,8 +79,14 @@ impl TransferFunction {
     }
 }
 
+/// The color of a map at a position, in sRGB.
+pub fn color_at(map: &Curve<[f64; 3]>, position: f64) -> [f64; 3] {
+    let (a, b, f) = segment(map, position);
+    std::array::from_fn(|c| a[c] + (b[c] - a[c]) * f)
+}
+
 /// The two points around `position` and the fraction between them.
-fn segment<T: Copy>(curve: &[(f64, T)], position: f64) -> (T, T, f64) {
+pub(super) fn segment<T: Copy>(curve: &[(f64, T)], position: f64) -> (T, T, f64) {
     let after = curve.partition_point(|point| point.0 <= position);
     let (low, high) = (after.saturating_sub(1), after.min(curve.len() - 1));
     let (a, b) = (curve[low], curve[high]);

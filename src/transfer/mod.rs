@@ -1,6 +1,11 @@
 //! From a value to color and extinction.
 
+pub mod boundaries;
+pub mod coloring;
 pub mod function;
+pub mod kinds;
 pub mod presets;
+mod scale;
 
-pub use function::TransferFunction;
+pub use function::{Curve, TransferFunction};
+pub use scale::Scale;

@@ -132,7 +132,7 @@ fn knots(knots: &[Knot]) -> Vec<(f64, [f64; 3])> {
     knots.iter().map(point).collect()
 }
 
-fn from_hex(value: u32) -> [f64; 3] {
+pub(super) fn from_hex(value: u32) -> [f64; 3] {
     [16, 8, 0].map(|shift| f64::from(value >> shift & 255) / 255.0)
 }
 
@@ -214,6 +214,8 @@ mod tests {
                 color: color_map(name).unwrap(),
                 opacity: vec![(0.0, 0.0)],
                 range: [0.0, 1.0],
+                scale: crate::transfer::Scale::Linear,
+                bands: None,
                 reference_length: 1.0,
             };
             let color = function.srgb(f64::from(row) / 255.0);

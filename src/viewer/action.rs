@@ -2,10 +2,11 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::looks;
 use super::state::{Comparison, Pace, State};
 use crate::scene::{
-    CameraSpec, ClipSpec, Filter, Interpolation, LibcSettings, LightingSpec, Scene, Show,
-    SrgSettings, StepSpec, TransferSpec,
+    CameraSpec, ClipSpec, Filter, Interpolation, LibcSettings, LightingSpec, RangeSpec, Scene,
+    Show, SrgSettings, StepSpec, TransferSpec,
 };
 
 /// A change of a tab's state.
@@ -17,8 +18,8 @@ pub enum Action {
     Step(usize),
     /// Values in a cell.
     Interpolation(Interpolation),
-    /// Ends of the color map; `None` for the property's own.
-    Range(Option<[f64; 2]>),
+    /// Ends of the color map.
+    Range(RangeSpec),
     /// Colors and opacities.
     Transfer(TransferSpec),
     /// Ray-casting strategy by name.
@@ -96,7 +97,7 @@ impl Action {
         match self {
             Self::Property(name) => {
                 scene.property = Some(name);
-                scene.range = None;
+                looks::forget(scene);
             }
             Self::Step(step) => scene.step = StepSpec::Index(step),
             Self::Interpolation(v) => scene.interpolation = v,

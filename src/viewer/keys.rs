@@ -144,12 +144,18 @@ pub const SHORTCUTS: [(Modifiers, Key, Command, &str); 48] = [
     ),
 ];
 
-/// What was pressed in this frame; nothing while text is being typed.
+/// What was pressed in this frame; nothing while text is being typed, and no arrows, letters or space
+/// while a control has the focus, whose keys they are.
 pub fn pressed(ctx: &Context) -> Vec<Command> {
     if ctx.text_edit_focused() {
         return Vec::new();
     }
+    let is_focused = ctx.memory(|m| m.focused().is_some());
     let taken = |(modifiers, key, command, _): &(Modifiers, Key, Command, &str)| {
+        let is_function = (Key::F1..=Key::F35).contains(key);
+        if is_focused && !modifiers.command && !is_function {
+            return None;
+        }
         let shortcut = KeyboardShortcut::new(*modifiers, *key);
         ctx.input_mut(|i| i.consume_shortcut(&shortcut))
             .then_some(*command)

@@ -15,6 +15,7 @@ mod history;
 mod keys;
 mod loading;
 mod looking;
+mod looks;
 mod mouse;
 mod orbit;
 mod overlay;
@@ -36,6 +37,7 @@ use std::path::PathBuf;
 
 pub use action::{Action, Beside};
 pub use document::Document;
+pub use looks::{Look, look_of};
 pub use reader::{Curves, Table};
 pub use settings::Settings;
 pub use state::{Comparison, Layout, Pace, Setup, State};

@@ -5,10 +5,9 @@ use glam::DVec2;
 
 use super::studio::DIFFERENCE_SCALE;
 use crate::metrics::Comparison;
-use crate::picture::{
-    Annotations, Arrow, CONNECTION, Orientation, Paper, legend_labels, on_screen,
-};
+use crate::picture::{Annotations, Arrow, CONNECTION, Orientation, Paper, legend_marks, on_screen};
 use crate::scene::View;
+use crate::transfer::Scale;
 
 const TEXT: f32 = 13.0;
 
@@ -142,49 +141,38 @@ fn legend(
     annotations: &Annotations,
     ink: Color32,
 ) -> Rect {
-    let height = (0.5 * rect.height()).min(260.0);
+    let transfer = &view.transfer;
+    let wanted = (0.5 * rect.height()).min(260.0);
+    let height = match &transfer.scale {
+        Scale::Categories(values) => wanted.min(20.0 * values.len().max(1) as f32),
+        _ => wanted,
+    };
     let top = rect.center().y - 0.5 * height;
     let right = rect.right() - 64.0;
     let bar = Rect::from_min_size(pos2(right - 18.0, top), vec2(18.0, height));
-    let transfer = &view.transfer;
-    let mut mesh = egui::Mesh::default();
-    const BANDS: u32 = 64;
-    for n in 0..=BANDS {
-        let position = f64::from(n) / f64::from(BANDS);
-        let [r, g, b] = transfer.srgb(position).map(|v| (255.0 * v).round() as u8);
-        let y = bar.bottom() - position as f32 * height;
-        for x in [bar.left(), bar.right()] {
-            mesh.colored_vertex(pos2(x, y), Color32::from_rgb(r, g, b));
-        }
-        if n > 0 {
-            let at = 2 * n;
-            mesh.add_triangle(at - 2, at - 1, at);
-            mesh.add_triangle(at - 1, at + 1, at);
-        }
-    }
-    painter.add(mesh);
-    painter.rect_stroke(bar, 0.0, Stroke::new(1.0, ink), egui::StrokeKind::Outside);
-    let mut covered = bar.expand(4.0);
-    let [low, high] = transfer.range;
-    for (value, label) in legend_labels(transfer.range, 6) {
-        let position = if high > low {
-            (value - low) / (high - low)
-        } else {
-            0.5
-        };
-        let y = bar.bottom() - position as f32 * height;
-        painter.line_segment(
-            [pos2(bar.right(), y), pos2(bar.right() + 4.0, y)],
+    color_bar(painter, bar, |position| transfer.srgb(position));
+    let boxes = match &transfer.scale {
+        Scale::Categories(values) => values.len().max(1),
+        _ => 1,
+    };
+    for n in 0..boxes {
+        let part = |n: usize| n as f32 / boxes as f32;
+        let corners = [vec2(0.0, part(n)), vec2(1.0, part(n + 1))].map(|c| bar.lerp_inside(c));
+        let outline = Rect::from_two_pos(corners[0], corners[1]);
+        painter.rect_stroke(
+            outline,
+            0.0,
             Stroke::new(1.0, ink),
+            egui::StrokeKind::Outside,
         );
-        covered |= write(
-            painter,
-            pos2(bar.right() + 7.0, y),
-            Align2::LEFT_CENTER,
-            &label,
-            ink,
-            TEXT,
-        );
+    }
+    let mut covered = bar.expand(4.0);
+    for (position, label) in legend_marks(transfer, 6, (height / (1.2 * TEXT)) as usize) {
+        let y = bar.bottom() - position as f32 * height;
+        let ends = [pos2(bar.right(), y), pos2(bar.right() + 4.0, y)];
+        painter.line_segment(ends, Stroke::new(1.0, ink));
+        let at = pos2(bar.right() + 7.0, y);
+        covered |= write(painter, at, Align2::LEFT_CENTER, &label, ink, TEXT);
     }
     let heading = match annotations.unit.is_empty() {
         true => annotations.property.clone(),
@@ -192,6 +180,26 @@ fn legend(
     };
     let at = pos2(bar.center().x, top - 8.0);
     covered | write(painter, at, Align2::CENTER_BOTTOM, &heading, ink, TEXT)
+}
+
+/// Fills `bar` with the colors of positions from 0 to 1, from the lower end of its longer side to the
+/// other: each row of points has one color, so that steps stay sharp.
+pub fn color_bar(painter: &Painter, bar: Rect, color: impl Fn(f64) -> [f64; 3]) {
+    let upright = bar.height() > bar.width();
+    let rows = bar.height().max(bar.width()).ceil().clamp(1.0, 1024.0) as u32;
+    let mut mesh = egui::Mesh::default();
+    for n in 0..rows {
+        let [r, g, b] =
+            color((f64::from(n) + 0.5) / f64::from(rows)).map(|v| (255.0 * v).round() as u8);
+        let ends = [n, n + 1].map(|n| n as f32 / rows as f32);
+        let corners = match upright {
+            true => [vec2(0.0, 1.0 - ends[1]), vec2(1.0, 1.0 - ends[0])],
+            false => [vec2(ends[0], 0.0), vec2(ends[1], 1.0)],
+        };
+        let [low, high] = corners.map(|c| bar.lerp_inside(c));
+        mesh.add_colored_rect(Rect::from_min_max(low, high), Color32::from_rgb(r, g, b));
+    }
+    painter.add(mesh);
 }
 
 /// A short text beside the pointer.

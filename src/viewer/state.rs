@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
+use super::looks;
 use crate::scene::{Scene, StepSpec};
 use crate::strategies::StrategyKind;
 
@@ -107,7 +108,7 @@ impl Comparison {
             .filter(|p| scene.property.as_ref() != Some(p))
         {
             other.property = Some(property.clone());
-            other.range = None;
+            looks::forget(&mut other);
         }
         other
     }

@@ -6,7 +6,7 @@ use strataray::case::Case;
 use strataray::gpu::Gpu;
 use strataray::gpu::volume::Volume;
 use strataray::renderer::{Frame, Renderer};
-use strataray::scene::{self, Interpolation, LightingSpec, Scene, View};
+use strataray::scene::{self, Interpolation, LightingSpec, OpacitySpec, RangeSpec, Scene, View};
 
 /// A scene of the property `VALUE` from 0 to 1 whose picture is as small as possible; opacities are per
 /// world-space length `reference_length`.
@@ -14,13 +14,13 @@ pub fn scene(opacity: &[[f64; 2]], reference_length: f64, lighting: LightingSpec
     let mut scene = Scene {
         size: [2, 2],
         property: Some("VALUE".into()),
-        range: Some([0.0, 1.0]),
+        range: RangeSpec::Fixed([0.0, 1.0]),
         interpolation: Interpolation::Cell,
         vertical_exaggeration: Some(1.0),
         lighting,
         ..Scene::default()
     };
-    scene.transfer.opacity = Some(opacity.to_vec());
+    scene.transfer.opacity = Some(OpacitySpec::Points(opacity.to_vec()));
     scene.transfer.reference_length = Some(reference_length);
     scene
 }

@@ -130,6 +130,9 @@ fn a_picked_cell_tells_its_values() {
     };
     driven.wait("both tables", of_two);
     let before = covered(&driven.picture(0), [255; 3]);
+    // Room for the panel of selected cells.
+    driven.click("Transfer function");
+    driven.wait_settled();
     driven.click("Only alike");
     assert_eq!(driven.scene().filter.properties.len(), 1);
     driven.wait_final();

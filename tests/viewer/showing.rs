@@ -2,7 +2,7 @@
 
 use eframe::egui::{Key, Modifiers};
 use strataray::metrics::Comparison;
-use strataray::scene::StepSpec;
+use strataray::scene::{OpacitySpec, StepSpec};
 
 use super::common::{gpu, sample};
 use super::driven::Driven;
@@ -89,21 +89,21 @@ fn the_transfer_function_is_edited_and_undone() {
             .opacity
             .clone()
     };
-    let last = points.map_or_else(
-        || *shown(&driven).last().unwrap(),
-        |p| {
-            let [at, opacity] = *p.last().unwrap();
-            (at, opacity)
-        },
-    );
+    let last = match points {
+        Some(OpacitySpec::Points(points)) => points.last().map(|p| (p[0], p[1])).unwrap(),
+        _ => *shown(&driven).last().unwrap(),
+    };
     let from =
         place.left_top() + place.size() * eframe::egui::vec2(last.0 as f32, 1.0 - last.1 as f32);
     let nudge = eframe::egui::vec2(2.0, 0.0);
     driven.drag(from - nudge, place.right_top() - nudge);
 
     let edited = driven.scene().transfer.opacity.clone().unwrap();
+    let OpacitySpec::Points(points) = &edited else {
+        panic!("{edited:?}");
+    };
     assert!(
-        (edited.last().unwrap()[1] - last.1).abs() > 0.2,
+        (points.last().unwrap()[1] - last.1).abs() > 0.2,
         "{edited:?}"
     );
     driven.wait_final();

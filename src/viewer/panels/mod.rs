@@ -4,6 +4,8 @@
 mod cells;
 mod clip;
 mod compare;
+mod controls;
+mod curve;
 mod filters;
 mod light;
 mod player;

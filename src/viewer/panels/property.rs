@@ -3,8 +3,9 @@
 use eframe::egui::{self, Ui};
 
 use super::About;
-use crate::case::Kind;
-use crate::scene::Interpolation;
+use super::controls::{list, number, one_of};
+use crate::case::{Kind, difference};
+use crate::scene::{Coloring, Interpolation, OwnRange, RangeSpec, ScaleSpec};
 use crate::viewer::action::Action;
 
 /// Groups in the order in which they are listed.
@@ -15,90 +16,155 @@ const GROUPS: [(Kind, &str); 3] = [
 ];
 
 pub fn show(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
+    let shown = about.picture.map(|p| p.view.property.as_str());
+    let current = about.scene.property.as_deref().or(shown).unwrap_or("");
+    properties(ui, about, current, actions);
+    differences(ui, about, current, actions);
+    let are_categories = about.scene.transfer.coloring == Coloring::Categories;
+    ui.add_enabled_ui(!are_categories, |ui| {
+        interpolation(ui, about, actions);
+        range(ui, about, actions);
+    });
+    if are_categories {
+        ui.weak("Categories are cell values, each with its color.");
+    }
+}
+
+/// The properties by group, those whose name has the text that is searched.
+fn properties(ui: &mut Ui, about: &About<'_>, current: &str, actions: &mut Vec<Action>) {
     let id = ui.scope_id().with("search");
     let mut search: String = ui.data(|d| d.get_temp(id)).unwrap_or_default();
-    let hint = egui::TextEdit::singleline(&mut search).hint_text("Search");
-    ui.add(hint).on_hover_text("Part of a property's name");
+    let edit = egui::TextEdit::singleline(&mut search).hint_text("Search");
+    let what = "Part of a property's name";
+    ui.add(edit.desired_width(f32::INFINITY))
+        .on_hover_text(what);
     ui.data_mut(|d| d.insert_temp(id, search.clone()));
-    let shown = about.picture.map(|p| p.view.property.as_str());
-    let current = about.scene.property.as_deref().or(shown);
-    let list = egui::ScrollArea::vertical().max_height(220.0);
-    list.show(ui, |ui| {
-        for (kind, group) in GROUPS {
-            let matches = |name: &str| name.to_lowercase().contains(&search.to_lowercase());
-            let of_kind = about.case.properties.iter();
-            let mut of_kind = of_kind
-                .filter(|p| p.kind == kind && matches(&p.name))
-                .peekable();
-            if of_kind.peek().is_none() {
-                continue;
-            }
-            ui.weak(group);
-            for property in of_kind {
-                let unit = match property.unit.is_empty() {
-                    true => "no unit".to_owned(),
-                    false => property.unit.clone(),
-                };
-                let is_shown = current == Some(property.name.as_str());
-                let label = ui.selectable_label(is_shown, &property.name);
-                if label.on_hover_text(unit).clicked() {
-                    actions.push(Action::Property(property.name.clone()));
+    let now = difference(current).map_or(current, |(now, ..)| now);
+    let search = search.to_lowercase();
+    egui::ScrollArea::vertical()
+        .max_height(220.0)
+        .show(ui, |ui| {
+            for (kind, group) in GROUPS {
+                let all = about.case.properties.iter();
+                let of_kind = all.filter(|p| p.kind == kind);
+                let mut found = of_kind
+                    .filter(|p| p.name.to_lowercase().contains(&search))
+                    .peekable();
+                if found.peek().is_none() {
+                    continue;
                 }
+                ui.weak(group);
+                for property in found {
+                    let unit = match property.unit.as_str() {
+                        "" => "No unit",
+                        unit => unit,
+                    };
+                    let label = ui.selectable_label(now == property.name, &property.name);
+                    if label.on_hover_text(unit).clicked() {
+                        actions.push(Action::Property(property.name.clone()));
+                    }
+                }
+            }
+        });
+}
+
+/// Turns a property that changes with time into its difference to a step, and back.
+fn differences(ui: &mut Ui, about: &About<'_>, current: &str, actions: &mut Vec<Action>) {
+    if !about.case.is_dynamic(current) {
+        return;
+    }
+    let (now, base) = match difference(current) {
+        Some((now, _, step)) => (now, about.case.step(step).ok()),
+        None => (current, None),
+    };
+    let steps = about.case.steps.iter().enumerate();
+    let named: Vec<String> = steps.map(|(n, s)| format!("{n}   {}", s.date)).collect();
+    let text = base
+        .and_then(|n| named.get(n))
+        .map_or("none", String::as_str);
+    let what = "Shows how much the values differ from those of a step";
+    list(ui, "Difference to", what, text, |ui| {
+        if ui.selectable_label(base.is_none(), "none").clicked() {
+            actions.push(Action::Property(now.to_owned()));
+        }
+        for (n, text) in named.iter().enumerate() {
+            if ui.selectable_label(base == Some(n), text).clicked() {
+                actions.push(Action::Property(format!("{now}-{now}@{n}")));
             }
         }
     });
-    interpolation(ui, about, actions);
-    range(ui, about, actions);
 }
 
 fn interpolation(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
-    ui.horizontal(|ui| {
-        for (value, name, what) in [
-            (
-                Interpolation::Cell,
-                "Cell values",
-                "One value a cell, as the simulator gives it",
-            ),
-            (
-                Interpolation::Vertex,
-                "Smooth",
-                "Averages at the corners, never across a fault",
-            ),
-        ] {
-            let is_on = about.scene.interpolation == value;
-            if ui
-                .selectable_label(is_on, name)
-                .on_hover_text(what)
-                .clicked()
-            {
-                actions.push(Action::Interpolation(value));
-            }
-        }
-    });
+    let choices = [
+        (
+            Interpolation::Cell,
+            "Cells",
+            "One value a cell, as the simulator gives it",
+        ),
+        (
+            Interpolation::Vertex,
+            "Smooth",
+            "Averages at the corners, never across a fault",
+        ),
+    ];
+    if let Some(chosen) = one_of(ui, "Values", about.scene.interpolation, &choices) {
+        actions.push(Action::Interpolation(chosen));
+    }
+}
+
+/// What a range is taken from.
+#[derive(Clone, Copy, PartialEq)]
+enum Of {
+    Own(OwnRange),
+    Fixed,
 }
 
 fn range(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
     let Some(picture) = about.picture else { return };
-    let mut range = about.scene.range.unwrap_or(picture.view.transfer.range);
-    let speed = 0.005 * (range[1] - range[0]).abs().max(1e-9);
+    let [mut low, mut high] = match about.scene.range {
+        RangeSpec::Fixed(range) => range,
+        RangeSpec::Own(_) => picture.view.transfer.true_range(),
+    };
+    let current = match about.scene.range {
+        RangeSpec::Own(of) => Of::Own(of),
+        RangeSpec::Fixed(_) => Of::Fixed,
+    };
+    let choices = [
+        (
+            Of::Own(OwnRange::Step),
+            "Step",
+            "From the smallest to the largest value of the step shown",
+        ),
+        (
+            Of::Own(OwnRange::Steps),
+            "All steps",
+            "From the smallest to the largest value of all steps: colors mean the same while time plays",
+        ),
+        (Of::Fixed, "Fixed", "The two values below"),
+    ];
+    match one_of(ui, "Range", current, &choices) {
+        Some(Of::Own(of)) => actions.push(Action::Range(RangeSpec::Own(of))),
+        Some(Of::Fixed) if low < high => actions.push(Action::Range(RangeSpec::Fixed([low, high]))),
+        _ => {}
+    }
+    let unit = about.case.unit(&picture.view.property);
+    let is_log = about.scene.transfer.scale == ScaleSpec::Log;
+    let span = (high - low).abs().max(1e-9);
     ui.horizontal(|ui| {
-        ui.label("Range");
         let mut changed = false;
-        for (value, what) in range.iter_mut().zip(["Lower end", "Upper end"]) {
-            let drag = egui::DragValue::new(value).speed(speed).max_decimals(6);
-            let response = ui.add(drag);
-            response.widget_info(|| egui::WidgetInfo::drag_value(true, 0.0));
-            changed |= response.on_hover_text(what).changed();
+        for (value, name) in [(&mut low, "Lower end"), (&mut high, "Upper end")] {
+            let speed = if is_log {
+                0.02 * value.abs()
+            } else {
+                0.005 * span
+            };
+            let what = format!("{name} of the color map, {unit}");
+            changed |= number(ui, value, speed, name, what.trim_end_matches([',', ' ']));
         }
-        if changed && range[0] < range[1] {
-            actions.push(Action::Range(Some(range)));
-        }
-        let own = ui.add_enabled(about.scene.range.is_some(), egui::Button::new("Own"));
-        if own
-            .on_hover_text("The range of the step's values")
-            .clicked()
-        {
-            actions.push(Action::Range(None));
+        ui.weak(unit);
+        if changed && low < high && (low > 0.0 || !is_log) {
+            actions.push(Action::Range(RangeSpec::Fixed([low, high])));
         }
     });
 }

@@ -1,162 +1,188 @@
-//! The transfer function: histogram, opacity curve with points to drag, color maps.
+//! The transfer function: scale, colors, and the opacity curve with curves to begin from.
 
-use eframe::egui::{self, Color32, Pos2, Rect, Sense, Stroke, Ui, vec2};
+use eframe::egui::{Rect, Ui, vec2};
 
-use super::About;
-use crate::scene::{ColorSpec, TransferSpec};
-use crate::transfer::presets;
+use super::controls::{list, number, one_of};
+use super::{About, curve};
+use crate::model::derivatives;
+use crate::scene::ghosts::shown_grid;
+use crate::scene::transfer::BANDS;
+use crate::scene::{ColorSpec, Coloring, OpacitySpec, ScaleSpec, TransferSpec};
+use crate::transfer::function::color_at;
+use crate::transfer::{boundaries, presets};
 use crate::viewer::action::Action;
-
-const BINS: usize = 64;
-/// Points nearer than this to the pointer are taken, in points of the screen.
-const GRIP: f32 = 10.0;
+use crate::viewer::{look_of, overlay};
 
 pub fn show(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
     let Some(picture) = about.picture else { return };
-    let shown = &picture.view.transfer;
-    let spec = &about.scene.transfer;
+    let before = &about.scene.transfer;
+    let mut spec = before.clone();
     let mut points: Vec<[f64; 2]> = match &spec.opacity {
-        Some(points) => points.clone(),
-        None => shown.opacity.iter().map(|p| [p.0, p.1]).collect(),
+        Some(OpacitySpec::Points(points)) => points.clone(),
+        _ => {
+            let shown = picture.view.transfer.opacity.iter();
+            shown.map(|p| [p.0, p.1]).collect()
+        }
     };
-    let (rect, response) =
-        ui.allocate_exact_size(vec2(ui.available_width(), 120.0), Sense::click_and_drag());
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "opacity curve"));
-    let painter = ui.painter_at(rect);
-    painter.rect_filled(rect, 2.0, ui.visuals().extreme_bg_color);
-    histogram(
-        &painter,
-        rect,
-        picture.view.field.values(),
-        shown.range,
-        |p| {
-            let [r, g, b] = shown.srgb(p).map(|v| (255.0 * v) as u8);
-            Color32::from_rgb(r, g, b)
-        },
-    );
-    let place = |p: [f64; 2]| rect.lerp_inside(vec2(p[0] as f32, 1.0 - p[1] as f32));
-    let line: Vec<Pos2> = points.iter().map(|p| place(*p)).collect();
-    let ink = ui.visuals().text_color();
-    painter.line(line.clone(), Stroke::new(2.0, ink));
-    for point in &line {
-        painter.circle(
-            *point,
-            4.0,
-            ui.visuals().extreme_bg_color,
-            Stroke::new(2.0, ink),
-        );
+    let unit = about.case.unit(&picture.view.property);
+    if curve::show(ui, &picture.view, unit, &mut points) {
+        spec.opacity = Some(OpacitySpec::Points(points));
     }
-    if edited(&response, rect, &mut points, &line, ui) {
-        let spec = TransferSpec {
-            opacity: Some(points),
-            ..spec.clone()
-        };
+    opacities(ui, about, &mut spec);
+    scale(ui, &mut spec);
+    coloring(ui, &mut spec);
+    color_maps(ui, &mut spec);
+    let reset = ui.button("Reset");
+    let what = "Scale, colors and opacity that suit the kind of property shown";
+    if reset.on_hover_text(what).clicked() {
+        spec = look_of(about.case, &picture.view.property).transfer;
+    }
+    if spec != *before {
         actions.push(Action::Transfer(spec));
     }
-    response.on_hover_text("Drag points, double-click for a new one, right-click to remove one");
-    colors(ui, spec, actions);
 }
 
-fn histogram(
-    painter: &egui::Painter,
-    rect: Rect,
-    values: &[f32],
-    [low, high]: [f64; 2],
-    color: impl Fn(f64) -> Color32,
-) {
-    let mut bins = [0u32; BINS];
-    let scale = BINS as f64 / (high - low).max(1e-30);
-    for value in values.iter().map(|v| (f64::from(*v) - low) * scale) {
-        // Values outside the range, and NaN, are in no bin.
-        if (0.0..=BINS as f64).contains(&value) {
-            bins[(value as usize).min(BINS - 1)] += 1;
+/// A curve to begin from: its name, what it shows, its points.
+type Preset = (&'static str, &'static str, &'static [[f64; 2]]);
+
+const PRESETS: [Preset; 5] = [
+    (
+        "Ramp",
+        "The higher the value, the more opaque",
+        &[[0.0, 0.02], [0.5, 0.1], [1.0, 0.5]],
+    ),
+    (
+        "Peak",
+        "Values around one, to be moved; the rest is faint",
+        &[
+            [0.0, 0.005],
+            [0.42, 0.005],
+            [0.5, 0.8],
+            [0.58, 0.005],
+            [1.0, 0.005],
+        ],
+    ),
+    ("Uniform", "All values alike", &[[0.0, 0.15], [1.0, 0.15]]),
+    (
+        "Highest only",
+        "The highest fifth of the range",
+        &[[0.0, 0.0], [0.78, 0.0], [0.82, 0.4], [1.0, 0.6]],
+    ),
+    (
+        "Lowest only",
+        "The lowest fifth of the range",
+        &[[0.0, 0.6], [0.18, 0.4], [0.22, 0.0], [1.0, 0.0]],
+    ),
+];
+
+fn opacities(ui: &mut Ui, about: &About<'_>, spec: &mut TransferSpec) {
+    ui.horizontal_wrapped(|ui| {
+        ui.label("Opacity");
+        for (name, what, points) in PRESETS {
+            if ui.button(name).on_hover_text(what).clicked() {
+                spec.opacity = Some(OpacitySpec::Points(points.to_vec()));
+            }
         }
-    }
-    // By the root, so that few cells are seen beside many.
-    let most = f64::from(bins.iter().copied().max().unwrap_or(1).max(1)).sqrt();
-    for (n, count) in bins.iter().enumerate() {
-        let part = |n: usize| n as f32 / BINS as f32;
-        let height = (f64::from(*count).sqrt() / most) as f32;
-        let bar = Rect::from_min_max(
-            rect.lerp_inside(vec2(part(n), 1.0 - height)),
-            rect.lerp_inside(vec2(part(n + 1), 1.0)),
-        );
-        painter.rect_filled(bar, 0.0, color((n as f64 + 0.5) / BINS as f64));
-    }
+        let found = ui.button("Boundaries");
+        let what = "Peaks where values change most from cell to cell at the step shown; a ramp where they change evenly";
+        if found.on_hover_text(what).clicked() {
+            let points = found_in(about).unwrap_or_else(|| PRESETS[0].2.to_vec());
+            spec.opacity = Some(OpacitySpec::Points(points));
+        }
+    });
 }
 
-/// Lets the pointer change the points; true where it did.
-fn edited(
-    response: &egui::Response,
-    rect: Rect,
-    points: &mut Vec<[f64; 2]>,
-    line: &[Pos2],
-    ui: &Ui,
-) -> bool {
-    let id = response.id.with("grabbed");
-    let Some(pointer) = response.interact_pointer_pos() else {
-        ui.data_mut(|d| d.remove::<usize>(id));
-        return false;
-    };
-    let at = (pointer - rect.min) / rect.size();
-    let at = [
-        f64::from(at.x.clamp(0.0, 1.0)),
-        f64::from(1.0 - at.y.clamp(0.0, 1.0)),
+/// Peaks at the boundaries in what is shown.
+fn found_in(about: &About<'_>) -> Option<Vec<[f64; 2]>> {
+    let view = &about.picture?.view;
+    let grid = shown_grid(&about.case.grid, view.ghosts.as_ref());
+    let found = boundaries::find(&derivatives::samples(grid, &view.field));
+    let curve = boundaries::curve(&found, view.transfer.range)?;
+    Some(
+        curve
+            .into_iter()
+            .map(|(at, opacity)| [at, opacity])
+            .collect(),
+    )
+}
+
+fn scale(ui: &mut Ui, spec: &mut TransferSpec) {
+    let choices = [
+        (ScaleSpec::Linear, "Linear", "Colors follow the values"),
+        (
+            ScaleSpec::Log,
+            "Log",
+            "Colors follow the logarithms of the values; those at or below 0 have the lowest color",
+        ),
     ];
-    let near = |p: &Pos2| p.distance(pointer);
-    let nearest = (0..line.len()).min_by(|a, b| near(&line[*a]).total_cmp(&near(&line[*b])));
-    let nearest = nearest.filter(|n| near(&line[*n]) < GRIP);
-    if response.double_clicked() && nearest.is_none() {
-        let after = points.partition_point(|p| p[0] <= at[0]);
-        points.insert(after, at);
-        return true;
-    }
-    if response.secondary_clicked() && points.len() > 1 {
-        if let Some(n) = nearest {
-            points.remove(n);
-            return true;
+    if let Some(chosen) = one_of(ui, "Scale", spec.scale, &choices) {
+        spec.scale = chosen;
+        if chosen == ScaleSpec::Log && spec.coloring == Coloring::Categories {
+            spec.coloring = Coloring::Continuous;
         }
-        return false;
-    }
-    if response.drag_started()
-        && let Some(n) = nearest
-    {
-        ui.data_mut(|d| d.insert_temp(id, n));
-    }
-    let grabbed: Option<usize> = ui.data(|d| d.get_temp(id));
-    match grabbed.filter(|n| *n < points.len() && response.dragged()) {
-        Some(n) => {
-            let low = if n > 0 { points[n - 1][0] } else { 0.0 };
-            let high = points.get(n + 1).map_or(1.0, |p| p[0]);
-            points[n] = [at[0].clamp(low, high), at[1]];
-            true
-        }
-        None => false,
     }
 }
 
-fn colors(ui: &mut Ui, spec: &TransferSpec, actions: &mut Vec<Action>) {
-    let current = match &spec.color {
-        ColorSpec::Name(name) => name.as_str(),
-        ColorSpec::Points(_) => "own",
-    };
-    egui::ComboBox::from_label("Color map")
-        .selected_text(current)
-        .show_ui(ui, |ui| {
-            for name in presets::NAMES {
-                if ui.selectable_label(current == name, name).clicked() {
-                    let color = ColorSpec::Name(name.into());
-                    actions.push(Action::Transfer(TransferSpec {
-                        color,
-                        ..spec.clone()
-                    }));
-                }
+fn coloring(ui: &mut Ui, spec: &mut TransferSpec) {
+    let choices = [
+        (
+            Coloring::Continuous,
+            "Continuous",
+            "Colors pass into each other",
+        ),
+        (
+            Coloring::Banded,
+            "Bands",
+            "One color for each of equal parts of the range",
+        ),
+        (
+            Coloring::Categories,
+            "Categories",
+            "One color for each whole number, as of regions or rock types",
+        ),
+    ];
+    if let Some(chosen) = one_of(ui, "Colors", spec.coloring, &choices) {
+        spec.coloring = chosen;
+        if chosen == Coloring::Categories {
+            spec.scale = ScaleSpec::Linear;
+            // A curve over values says nothing of categories.
+            spec.opacity = None;
+        }
+    }
+    if spec.coloring == Coloring::Banded {
+        let [least, most] = BANDS.map(|n| n as f64);
+        let mut bands = spec.bands as f64;
+        ui.horizontal(|ui| {
+            ui.label("Number of bands");
+            if number(ui, &mut bands, 0.1, "Number of bands", "2 to 64") {
+                spec.bands = bands.round().clamp(least, most) as usize;
             }
         });
-    if ui.button("Default curve").clicked() {
-        actions.push(Action::Transfer(TransferSpec {
-            opacity: None,
-            ..spec.clone()
-        }));
     }
+}
+
+/// The color maps, each with a picture of it.
+fn color_maps(ui: &mut Ui, spec: &mut TransferSpec) {
+    let current = match &spec.color {
+        ColorSpec::Name(name) => name.clone(),
+        ColorSpec::Points(_) => "own points".to_owned(),
+    };
+    let what = "Colors from the low to the high end of the range";
+    list(ui, "Color map", what, &current, |ui| {
+        for name in presets::NAMES {
+            let width = ui.available_width().max(220.0);
+            let button = eframe::egui::Button::selectable(current == name, name);
+            let response = ui.add(button.min_size(vec2(width, 0.0)));
+            if let Some(map) = presets::color_map(name) {
+                let right = Rect::from_min_max(
+                    response.rect.left_top() + vec2(80.0, 3.0),
+                    response.rect.right_bottom() - vec2(4.0, 3.0),
+                );
+                overlay::color_bar(ui.painter(), right, |p| color_at(&map, p));
+            }
+            if response.clicked() {
+                spec.color = ColorSpec::Name(name.into());
+            }
+        }
+    });
 }

@@ -1,0 +1,228 @@
+//! What the values of a property are like over all steps: read once, then kept by name.
+
+use std::collections::HashMap;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use rayon::prelude::*;
+
+use super::{Case, CaseError};
+use crate::model::CellField;
+use crate::model::derivatives;
+use crate::transfer::Scale;
+use crate::transfer::boundaries::{self, Boundary};
+
+/// Smallest and largest value.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ValueRange {
+    /// Smallest value.
+    pub min: f64,
+    /// Largest value.
+    pub max: f64,
+    /// Smallest value above zero.
+    pub least_positive: Option<f64>,
+}
+
+impl ValueRange {
+    /// That of the defined values of a field; `None` where there is none.
+    pub fn of(field: &CellField) -> Option<Self> {
+        let values = field.values().par_iter().map(|v| f64::from(*v));
+        let one = |v: f64| Self {
+            min: v,
+            max: v,
+            least_positive: (v > 0.0).then_some(v),
+        };
+        let defined = values.filter(|v| !v.is_nan());
+        defined.map(one).reduce_with(Self::with)
+    }
+
+    fn with(self, other: Self) -> Self {
+        let least = [self.least_positive, other.least_positive];
+        Self {
+            min: self.min.min(other.min),
+            max: self.max.max(other.max),
+            least_positive: least.into_iter().flatten().min_by(f64::total_cmp),
+        }
+    }
+}
+
+/// The different values of a property, where they are numbers of something.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Categories {
+    /// Whole numbers, rising; none where no value is defined.
+    Values(Arc<[f64]>),
+    /// One that is not whole.
+    NotWhole(f64),
+    /// More than [`MAX_CATEGORIES`].
+    TooMany,
+}
+
+/// Categories at most.
+pub const MAX_CATEGORIES: usize = 64;
+
+impl Categories {
+    /// The values of fields that come one after another.
+    fn of<E>(fields: impl Iterator<Item = Result<Arc<CellField>, E>>) -> Result<Self, E> {
+        let mut values: Vec<f64> = Vec::new();
+        for field in fields {
+            for value in field?.values().iter().map(|v| f64::from(*v)) {
+                if value.is_nan() {
+                    continue;
+                }
+                // Zero of either sign is one value.
+                let value = value + 0.0;
+                let Err(at) = values.binary_search_by(|v| v.total_cmp(&value)) else {
+                    continue;
+                };
+                if value.fract() != 0.0 {
+                    return Ok(Self::NotWhole(value));
+                }
+                if values.len() == MAX_CATEGORIES {
+                    return Ok(Self::TooMany);
+                }
+                values.insert(at, value);
+            }
+        }
+        Ok(Self::Values(values.into()))
+    }
+}
+
+/// What was found out, by property.
+#[derive(Default)]
+pub struct OverSteps {
+    ranges: Kept<Option<ValueRange>>,
+    categories: Kept<Categories>,
+    boundaries: Kept<Arc<[Boundary]>>,
+}
+
+struct Kept<T>(Mutex<HashMap<String, T>>);
+
+impl<T> Default for Kept<T> {
+    fn default() -> Self {
+        Self(Mutex::default())
+    }
+}
+
+impl<T: Clone> Kept<T> {
+    /// What is kept under a name, or what `make` makes, which is kept from then on.
+    fn get<E>(&self, name: &str, make: impl FnOnce() -> Result<T, E>) -> Result<T, E> {
+        // Whole entries are put in, so a thread that panicked left none half made.
+        let kept = || self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let known = kept().get(name).cloned();
+        if let Some(known) = known {
+            return Ok(known);
+        }
+        let made = make()?;
+        kept().insert(name.to_owned(), made.clone());
+        Ok(made)
+    }
+}
+
+impl Case {
+    /// The range of a property's values (or a difference's) over all steps that have it; `None` where
+    /// no value is defined. Read at the first call.
+    ///
+    /// # Errors
+    /// When the property does not exist or its file cannot be read.
+    pub fn range_over_steps(&self, name: &str) -> Result<Option<ValueRange>, CaseError> {
+        self.over_steps.ranges.get(name, || {
+            let steps = self.steps_of(name).into_par_iter();
+            let ranges = steps.map(|step| {
+                let field = self.field_where_it_is(name, step)?;
+                Ok(field.and_then(|f| ValueRange::of(&f)))
+            });
+            let ranges = ranges.collect::<Result<Vec<_>, CaseError>>()?;
+            Ok(ranges.into_iter().flatten().reduce(ValueRange::with))
+        })
+    }
+
+    /// The different values of a property at all steps, where they are whole numbers. Read at the first
+    /// call.
+    ///
+    /// # Errors
+    /// When the property does not exist or its file cannot be read.
+    pub fn categories(&self, name: &str) -> Result<Categories, CaseError> {
+        self.over_steps.categories.get(name, || {
+            let steps = self.steps_of(name);
+            let fields = steps.map(|step| self.field_where_it_is(name, step).transpose());
+            Categories::of(fields.flatten())
+        })
+    }
+
+    /// Boundaries in the values of a property at the last step that has it, in a scale. Found at the
+    /// first call.
+    ///
+    /// # Errors
+    /// When the property does not exist or its file cannot be read.
+    pub fn boundaries(&self, name: &str, scale: &Scale) -> Result<Arc<[Boundary]>, CaseError> {
+        let key = match scale {
+            Scale::Categories(_) => return Ok(Arc::default()),
+            Scale::Linear => name.to_owned(),
+            Scale::Log => format!("log {name}"),
+        };
+        self.over_steps.boundaries.get(&key, || {
+            for step in self.steps_of(name).rev() {
+                if let Some(field) = self.field_where_it_is(name, step)? {
+                    let field = scale.field(&field, f64::NAN);
+                    return Ok(boundaries::find(&derivatives::samples(&self.grid, &field)).into());
+                }
+            }
+            Ok(Arc::default())
+        })
+    }
+
+    fn steps_of(&self, name: &str) -> std::ops::Range<usize> {
+        match self.is_dynamic(name) {
+            true => 0..self.steps.len(),
+            false => 0..1,
+        }
+    }
+
+    fn field_where_it_is(
+        &self,
+        name: &str,
+        step: usize,
+    ) -> Result<Option<Arc<CellField>>, CaseError> {
+        match self.field(name, step) {
+            Ok(field) => Ok(Some(field)),
+            Err(CaseError::NotAtStep { .. }) => Ok(None),
+            Err(error) => Err(error),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::convert::Infallible;
+
+    use super::*;
+
+    fn field(values: &[f32]) -> CellField {
+        CellField::new(values.to_vec())
+    }
+
+    #[test]
+    fn ranges_leave_out_what_is_undefined() {
+        let range = ValueRange::of(&field(&[-2.0, f32::NAN, 0.5, 3.0, 1e20])).unwrap();
+        assert_eq!((range.min, range.max), (-2.0, 3.0));
+        assert_eq!(range.least_positive, Some(0.5));
+        let negative = ValueRange::of(&field(&[-2.0, 0.0])).unwrap();
+        assert_eq!(negative.least_positive, None);
+        assert_eq!(negative.with(range).least_positive, Some(0.5));
+        assert_eq!(ValueRange::of(&field(&[f32::NAN])), None);
+    }
+
+    #[test]
+    fn categories_are_whole_and_few() {
+        let of = |fields: &[&[f32]]| {
+            let fields = fields.iter().map(|f| Ok::<_, Infallible>(field(f).into()));
+            Categories::of(fields).unwrap()
+        };
+        let two_steps = of(&[&[3.0, 1.0, f32::NAN], &[-0.0, 0.0, 3.0]]);
+        assert_eq!(two_steps, Categories::Values([0.0, 1.0, 3.0].into()));
+        assert_eq!(of(&[&[1.0], &[0.5]]), Categories::NotWhole(0.5));
+        let many: Vec<f32> = (0..65).map(|n| n as f32).collect();
+        assert_eq!(of(&[&many]), Categories::TooMany);
+        assert!(matches!(of(&[&many[1..]]), Categories::Values(v) if v.len() == 64));
+        assert_eq!(of(&[&[f32::NAN]]), Categories::Values([].into()));
+    }
+}

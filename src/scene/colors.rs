@@ -1,0 +1,215 @@
+//! From a scene's range and transfer function to those of a view, checked against the case's values.
+
+use std::sync::Arc;
+
+use super::resolve::{positive, wrong};
+use super::transfer::BANDS;
+use super::{
+    ColorSpec, Coloring, Interpolation, OpacitySpec, OwnRange, RangeSpec, ScaleSpec, Scene,
+    SceneError,
+};
+use crate::case::{Case, Categories, MAX_CATEGORIES, ValueRange};
+use crate::model::CellField;
+use crate::transfer::function::color_at;
+use crate::transfer::{Curve, Scale, TransferFunction, boundaries, coloring, presets};
+
+/// What colors are asked for, and of what.
+pub(super) struct Asked<'a> {
+    pub scene: &'a Scene,
+    pub case: &'a Case,
+    pub property: &'a str,
+    /// Range of true values to use instead of the scene's.
+    pub range: Option<[f64; 2]>,
+    /// Mean edge of the cells in world space.
+    pub mean_edge: f64,
+}
+
+/// A transfer function, and the field in its scale.
+pub(super) struct Colors {
+    pub field: Arc<CellField>,
+    pub transfer: TransferFunction,
+}
+
+/// How values vary inside a cell: a category never passes into another.
+pub(super) fn interpolation(scene: &Scene) -> Interpolation {
+    match scene.transfer.coloring {
+        Coloring::Categories => Interpolation::Cell,
+        _ => scene.interpolation,
+    }
+}
+
+/// Field and transfer function for the values of the step shown.
+pub(super) fn resolve(asked: &Asked<'_>, field: &Arc<CellField>) -> Result<Colors, SceneError> {
+    let spec = &asked.scene.transfer;
+    let (scale, range) = match (spec.coloring, spec.scale) {
+        (Coloring::Categories, _) => categories(asked, field)?,
+        (_, ScaleSpec::Linear) => (Scale::Linear, ends(asked, field)?.0),
+        (_, ScaleSpec::Log) => (Scale::Log, log_range(asked, field)?),
+    };
+    let (color, bands) = colors(asked.scene, &scale)?;
+    let reference_length = match spec.reference_length {
+        Some(v) => positive("transfer.reference_length", v)?,
+        None => asked.mean_edge,
+    };
+    let transfer = TransferFunction {
+        color,
+        opacity: opacity(asked, &scale, range)?,
+        range,
+        bands,
+        reference_length,
+        scale,
+    };
+    Ok(Colors {
+        field: transfer.scale.field(field, range[0]),
+        transfer,
+    })
+}
+
+/// The ends of the range as true values, and what the values are like that they are taken from.
+fn ends(
+    asked: &Asked<'_>,
+    field: &CellField,
+) -> Result<([f64; 2], Option<ValueRange>), SceneError> {
+    let values = match asked.scene.range {
+        RangeSpec::Own(OwnRange::Steps) => asked.case.range_over_steps(asked.property)?,
+        _ => ValueRange::of(field),
+    };
+    let range = match (asked.range, asked.scene.range) {
+        (Some(range), _) => range,
+        (_, RangeSpec::Fixed([a, b])) if a.is_finite() && b.is_finite() && a < b => [a, b],
+        (_, RangeSpec::Fixed(_)) => {
+            return Err(wrong("range", "must be two numbers, the smaller first"));
+        }
+        (_, RangeSpec::Own(_)) => values.map_or([0.0, 1.0], |v| [v.min, v.max]),
+    };
+    Ok((range, values))
+}
+
+/// Powers of ten that a log scale spans at most where its low end is not given.
+const DECADES: i32 = 8;
+
+fn log_range(asked: &Asked<'_>, field: &CellField) -> Result<[f64; 2], SceneError> {
+    let ([low, high], values) = ends(asked, field)?;
+    if high <= 0.0 || values.is_none() {
+        let problem = format!(
+            "\"log\" needs values above 0, and the range of {} is {low} to {high}; use \"linear\" or another range",
+            asked.property
+        );
+        return Err(wrong("transfer.scale", problem));
+    }
+    let lowest = high * 10f64.powi(-DECADES);
+    let least = values.and_then(|v| v.least_positive).filter(|v| *v < high);
+    let low = match asked.scene.range {
+        RangeSpec::Fixed(_) if low > 0.0 => low,
+        _ if low > 0.0 => low.max(lowest),
+        _ => least.unwrap_or(lowest).max(lowest),
+    };
+    Ok([low, high].map(f64::log10))
+}
+
+fn categories(asked: &Asked<'_>, field: &CellField) -> Result<(Scale, [f64; 2]), SceneError> {
+    let name = asked.property;
+    let refuse = |problem: String| {
+        let problem = format!("{name} {problem}; use \"continuous\" or \"banded\"");
+        Err(wrong("transfer.coloring", problem))
+    };
+    if asked.scene.transfer.scale == ScaleSpec::Log {
+        let problem = "categories have no logarithm; use \"linear\"";
+        return Err(wrong("transfer.scale", problem));
+    }
+    // Before all steps are read.
+    if let Some(v) = field
+        .values()
+        .iter()
+        .find(|v| v.fract() != 0.0 && !v.is_nan())
+    {
+        return refuse(format!("has values that are not whole, such as {v}"));
+    }
+    match asked.case.categories(name)? {
+        Categories::NotWhole(v) => refuse(format!("has values that are not whole, such as {v}")),
+        Categories::TooMany => refuse(format!("has more than {MAX_CATEGORIES} different values")),
+        Categories::Values(values) => {
+            let last = values.len().max(1) - 1;
+            Ok((Scale::Categories(values), [-0.5, last as f64 + 0.5]))
+        }
+    }
+}
+
+/// The color curve, and the number of equal parts that have one color each.
+fn colors(scene: &Scene, scale: &Scale) -> Result<(Curve<[f64; 3]>, Option<usize>), SceneError> {
+    let spec = &scene.transfer;
+    let map = color_map(&spec.color)?;
+    // At positions from 0 to 1, both included.
+    let spread = |count: usize| {
+        let last = (count.max(2) - 1) as f64;
+        let at = |n: usize| color_at(&map, n as f64 / last);
+        (0..count).map(at).collect::<Vec<_>>()
+    };
+    let parts = match (scale, spec.coloring) {
+        (Scale::Categories(values), _) => match spec.color {
+            ColorSpec::Name(_) => coloring::palette(values.len().max(1)),
+            ColorSpec::Points(_) => spread(values.len().max(1)),
+        },
+        (_, Coloring::Banded) if (BANDS[0]..=BANDS[1]).contains(&spec.bands) => spread(spec.bands),
+        (_, Coloring::Banded) => {
+            let [least, most] = BANDS;
+            let problem = format!("{} must be {least} to {most}", spec.bands);
+            return Err(wrong("transfer.bands", problem));
+        }
+        _ => return Ok((map, None)),
+    };
+    Ok((coloring::parts(&parts), Some(parts.len())))
+}
+
+fn color_map(spec: &ColorSpec) -> Result<Curve<[f64; 3]>, SceneError> {
+    let color = match spec {
+        ColorSpec::Name(name) => presets::color_map(name).ok_or_else(|| {
+            let known = presets::NAMES.join(", ");
+            let problem = format!("{name} is not known; there are {known}");
+            wrong("transfer.color", problem)
+        })?,
+        ColorSpec::Points(points) => points
+            .iter()
+            .map(|(at, hex)| presets::parse_color(hex).map(|rgb| (*at, rgb)))
+            .collect::<Option<Vec<_>>>()
+            .ok_or_else(|| wrong("transfer.color", "colors must look like #rrggbb"))?,
+    };
+    match rises(&color) {
+        true => Ok(color),
+        false => Err(wrong(
+            "transfer.color",
+            "needs positions that rise from 0 to 1",
+        )),
+    }
+}
+
+fn rises<T>(curve: &Curve<T>) -> bool {
+    let is_within = |p: &(f64, T)| (0.0..=1.0).contains(&p.0);
+    !curve.is_empty() && curve.iter().all(is_within) && curve.is_sorted_by(|a, b| a.0 <= b.0)
+}
+
+/// Where a scene has no opacity: rising with the value, or the same for all categories.
+fn default_opacity(scale: &Scale) -> Curve<f64> {
+    match scale {
+        Scale::Categories(_) => vec![(0.0, 0.3), (1.0, 0.3)],
+        _ => vec![(0.0, 0.02), (0.5, 0.1), (1.0, 0.5)],
+    }
+}
+
+fn opacity(asked: &Asked<'_>, scale: &Scale, range: [f64; 2]) -> Result<Curve<f64>, SceneError> {
+    let points: Curve<f64> = match &asked.scene.transfer.opacity {
+        None => default_opacity(scale),
+        Some(OpacitySpec::Points(points)) => points.iter().map(|p| (p[0], p[1])).collect(),
+        Some(OpacitySpec::Found(_)) => {
+            let found = asked.case.boundaries(asked.property, scale)?;
+            boundaries::curve(&found, range).unwrap_or_else(|| default_opacity(scale))
+        }
+    };
+    match rises(&points) && points.iter().all(|p| (0.0..=1.0).contains(&p.1)) {
+        true => Ok(points),
+        false => Err(wrong(
+            "transfer.opacity",
+            "needs rising positions and opacities, both from 0 to 1",
+        )),
+    }
+}
