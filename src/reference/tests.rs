@@ -123,6 +123,7 @@ fn view(grid: &Grid, field: CellField, extinction: f64, sampling_step: f64) -> V
         sampling_step,
         early_termination: 0.0,
         surfaces: crate::scene::Surfaces::default(),
+        connections: std::sync::Arc::default(),
         named_faults: std::sync::Arc::default(),
         drawn: vec![true; grid.active_cells().len()].into(),
         clip: Vec::new(),

@@ -403,7 +403,7 @@ fn mean_world_edges(case: &Case, exaggeration: f64) -> DVec3 {
 }
 
 /// The property shown where a scene names none.
-pub(super) fn default_property(case: &Case) -> String {
+pub fn default_property(case: &Case) -> String {
     let has = |name: &&str| case.properties.iter().any(|p| p.name == **name);
     ["SOIL", "SWAT", "PRESSURE", "PORO"]
         .iter()

@@ -2,7 +2,6 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::looks;
 use super::state::{Comparison, Pace, State};
 use crate::scene::{
     CameraSpec, ClipSpec, Filter, Interpolation, LibcSettings, LightingSpec, RangeSpec, Scene,
@@ -12,7 +11,7 @@ use crate::scene::{
 /// A change of a tab's state.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Action {
-    /// Shows another property; its own range and curve.
+    /// Shows another property, in the look that it has.
     Property(String),
     /// Shows another step, by number.
     Step(usize),
@@ -95,10 +94,7 @@ impl Action {
     pub fn apply(self, state: &mut State) {
         let scene = &mut state.setup.scene;
         match self {
-            Self::Property(name) => {
-                scene.property = Some(name);
-                looks::forget(scene);
-            }
+            Self::Property(name) => state.setup.show(name),
             Self::Step(step) => scene.step = StepSpec::Index(step),
             Self::Interpolation(v) => scene.interpolation = v,
             Self::Range(v) => scene.range = v,

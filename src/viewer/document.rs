@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use super::action::Action;
 use super::history::History;
-use super::loading::Loading;
+use super::loading::{Loading, Opened};
 use super::reader::{Curves, Table};
 use super::state::State;
 use super::watch::Watch;
@@ -76,9 +76,15 @@ impl Document {
         };
         self.loading = None;
         match answer {
-            Ok(case) => {
+            Ok(Opened { case, first }) => {
                 self.error = None;
                 self.case = Some(case);
+                // What was set before a case is read again stays.
+                if self.state.setup.scene.property.is_none() {
+                    let (property, look) = first;
+                    self.state.setup.looks.insert(property.clone(), look);
+                    self.state.setup.show(property);
+                }
                 true
             }
             Err(error) => {
@@ -91,6 +97,12 @@ impl Document {
     /// Makes a change that can be undone.
     pub fn apply(&mut self, action: Action) {
         self.history.apply(&mut self.state, action);
+    }
+
+    /// A property whose look is not known yet and has to be found before it is shown.
+    pub fn lacks_look(&self, property: &str) -> bool {
+        !self.state.setup.looks.contains_key(property)
+            && self.state.setup.scene.property.as_deref() != Some(property)
     }
 
     /// The step shown, by number, and how many there are; `None` where there are none.

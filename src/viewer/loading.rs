@@ -5,12 +5,22 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 
+use super::looks::{Look, look_of};
 use crate::case::Case;
 use crate::load;
+use crate::scene::default_property;
+
+/// A case, and what of it is shown at first.
+pub struct Opened {
+    /// The case.
+    pub case: Arc<Case>,
+    /// Name of the property, and how it looks.
+    pub first: (String, Look),
+}
 
 /// A case that is being opened.
 pub struct Loading {
-    answer: Receiver<Result<Arc<Case>, String>>,
+    answer: Receiver<Result<Opened, String>>,
     stage: Arc<Mutex<String>>,
     cancel: Arc<AtomicBool>,
 }
@@ -30,7 +40,15 @@ impl Loading {
                 !shared_cancel.load(Ordering::Relaxed)
             };
             let case = match load::open_with(&path, &progress) {
-                Ok(Some(case)) => Ok(Arc::new(case)),
+                Ok(Some(case)) => {
+                    progress("values");
+                    let property = default_property(&case);
+                    let look = look_of(&case, &property);
+                    Ok(Opened {
+                        case: Arc::new(case),
+                        first: (property, look),
+                    })
+                }
                 Ok(None) => Err("opening it was cancelled".into()),
                 Err(error) => Err(error.to_string()),
             };
@@ -46,7 +64,7 @@ impl Loading {
     }
 
     /// The case, or why there is none; `None` while it is being opened.
-    pub fn poll(&self) -> Option<Result<Arc<Case>, String>> {
+    pub fn poll(&self) -> Option<Result<Opened, String>> {
         match self.answer.try_recv() {
             Ok(case) => Some(case),
             Err(TryRecvError::Empty) => None,

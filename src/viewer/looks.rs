@@ -80,13 +80,6 @@ pub fn look_of(case: &Case, property: &str) -> Look {
     }
 }
 
-/// Takes from a scene what suits the property that it shows and may not suit another.
-pub fn forget(scene: &mut Scene) {
-    scene.range = RangeSpec::STEP;
-    scene.transfer.scale = ScaleSpec::Linear;
-    scene.transfer.coloring = Coloring::Continuous;
-}
-
 /// The same values have the same colors at all steps, and fronts are seen.
 fn saturation(property: &str) -> Look {
     let color = match property.to_ascii_uppercase().as_str() {
@@ -180,9 +173,5 @@ mod tests {
         assert_eq!(difference(Some(zero)).range, RangeSpec::STEP);
         let unknown = look_of(&case, "NOSUCHNUM");
         assert_eq!(unknown.transfer.coloring, Coloring::Continuous);
-        let mut scene = Scene::default();
-        look_of(&case, "PERMX").apply(&mut scene);
-        forget(&mut scene);
-        assert_eq!(scene.transfer.scale, ScaleSpec::Linear);
     }
 }

@@ -4,6 +4,7 @@
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 
+use super::looks::{Look, look_of};
 use crate::case::{Case, Property};
 use crate::model::Ijk;
 
@@ -50,6 +51,8 @@ pub enum Read {
     Table(Table),
     /// Curves over time.
     Curves(Curves),
+    /// How a property of a case looks at first.
+    Look(Arc<Case>, String, Look),
 }
 
 /// Properties at steps that are read ahead.
@@ -58,6 +61,7 @@ type Ahead = (Arc<Case>, Vec<(String, usize)>);
 /// What is asked for; a newer wish of a kind replaces the one before.
 #[derive(Default)]
 struct Wishes {
+    look: Option<(Arc<Case>, String)>,
     table: Option<(Cells, usize)>,
     curves: Option<(Cells, String)>,
     ahead: Option<Ahead>,
@@ -87,6 +91,11 @@ impl Reader {
     /// Asks for all properties of some cells at a step.
     pub fn table(&self, of: Cells, step: usize) {
         self.wish(|w| w.table = Some((of, step)));
+    }
+
+    /// Asks how a property looks at first; that may need its values at all steps.
+    pub fn look(&self, case: Arc<Case>, property: String) {
+        self.wish(|w| w.look = Some((case, property)));
     }
 
     /// Asks for a property of some cells over time.
@@ -121,6 +130,7 @@ fn lock(wishes: &Mutex<Wishes>) -> MutexGuard<'_, Wishes> {
 }
 
 enum Wish {
+    Look(Arc<Case>, String),
     Table(Cells, usize),
     Curves(Cells, String),
     Ahead(Ahead),
@@ -136,6 +146,10 @@ impl Thread {
     fn run(self) {
         while let Some(wish) = self.next() {
             match wish {
+                Wish::Look(case, property) => {
+                    let look = look_of(&case, &property);
+                    self.say(Read::Look(case, property, look));
+                }
                 Wish::Table(of, step) => {
                     let rows = rows(&of, step);
                     self.say(Read::Table(Table { of, step, rows }));
@@ -161,6 +175,9 @@ impl Thread {
             if wishes.ends {
                 return None;
             }
+            if let Some((case, property)) = wishes.look.take() {
+                return Some(Wish::Look(case, property));
+            }
             if let Some((of, step)) = wishes.table.take() {
                 return Some(Wish::Table(of, step));
             }
@@ -180,7 +197,7 @@ impl Thread {
 
     fn has_wishes(&self) -> bool {
         let w = lock(&self.wishes.0);
-        w.ends || w.table.is_some() || w.curves.is_some() || w.ahead.is_some()
+        w.ends || w.look.is_some() || w.table.is_some() || w.curves.is_some() || w.ahead.is_some()
     }
 
     /// Reads a property step by step. Another wish comes first; the curves then begin anew.

@@ -111,7 +111,7 @@ impl Window {
         self.sides.rects = rects;
         let mut touched = self.viewport(ui, case, &setup.scene, rects[0], 0);
         if let (Some(other), Some(rect), Some(comparison)) = (other, rects[1], &setup.comparison) {
-            let scene = comparison.scene(&setup.scene);
+            let scene = setup.compared(&setup.scene).unwrap_or_default();
             match layout {
                 Some(Layout::Beside) => {
                     let on_other = self.viewport(ui, &other, &scene, Some(rect), 1);

@@ -1,10 +1,11 @@
 //! What a tab shows, as one plain value.
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
-use super::looks;
+use super::looks::Look;
 use crate::scene::{Scene, StepSpec};
 use crate::strategies::StrategyKind;
 
@@ -28,6 +29,39 @@ pub struct Setup {
     pub scene: Scene,
     /// What it is compared with.
     pub comparison: Option<Comparison>,
+    /// Range, colors and opacities of each property that has been shown, as they were left.
+    pub looks: BTreeMap<String, Look>,
+}
+
+impl Setup {
+    /// Shows another property as it was left.
+    pub fn show(&mut self, property: String) {
+        if let Some(before) = &self.scene.property {
+            self.looks.insert(before.clone(), Look::of(&self.scene));
+        }
+        let look = self.looks.get(&property).cloned().unwrap_or_default();
+        look.apply(&mut self.scene);
+        self.scene.property = Some(property);
+    }
+
+    /// The scene of the second picture, if there is one.
+    pub fn compared(&self, scene: &Scene) -> Option<Scene> {
+        let comparison = self.comparison.as_ref()?;
+        let mut other = scene.clone();
+        if let Some(strategy) = &comparison.strategy {
+            other.strategy.clone_from(strategy);
+        }
+        if let Some(step) = &comparison.step {
+            other.step = step.clone();
+        }
+        let property = comparison.property.clone();
+        if let Some(property) = property.filter(|p| scene.property.as_ref() != Some(p)) {
+            let look = self.looks.get(&property).cloned().unwrap_or_default();
+            look.apply(&mut other);
+            other.property = Some(property);
+        }
+        Some(other)
+    }
 }
 
 /// How time plays.
@@ -91,25 +125,5 @@ impl Comparison {
             strategy: Some(next_strategy(&scene.strategy).name().into()),
             ..Self::default()
         }
-    }
-
-    /// The second picture's scene.
-    pub fn scene(&self, scene: &Scene) -> Scene {
-        let mut other = scene.clone();
-        if let Some(strategy) = &self.strategy {
-            other.strategy.clone_from(strategy);
-        }
-        if let Some(step) = &self.step {
-            other.step = step.clone();
-        }
-        if let Some(property) = self
-            .property
-            .as_ref()
-            .filter(|p| scene.property.as_ref() != Some(p))
-        {
-            other.property = Some(property.clone());
-            looks::forget(&mut other);
-        }
-        other
     }
 }

@@ -41,6 +41,8 @@ pub struct Window {
     pub(super) message: Option<(String, bool)>,
     /// Cases opened from now on are read again when their files change.
     watches: bool,
+    /// The property that is to be shown once it is known how it looks.
+    awaited: Option<String>,
     /// What the reader was asked for last.
     asked: Asked,
     /// The size of letters that is remembered has been set.
@@ -53,6 +55,7 @@ struct Asked {
     table: Option<(Cells, usize)>,
     curves: Option<(Cells, String)>,
     ahead: Option<(usize, Vec<(String, usize)>)>,
+    look: Option<String>,
 }
 
 /// Steps that are read ahead.
@@ -74,6 +77,7 @@ impl Window {
             export: None,
             message: None,
             watches,
+            awaited: None,
             asked: Asked::default(),
             is_zoomed: false,
         };
@@ -119,10 +123,18 @@ impl Window {
         self.documents.get_mut(self.current)
     }
 
-    /// Makes a change of the document in front.
+    /// Makes a change of the document in front. A property that was never shown comes once it is known how
+    /// it looks.
     pub fn apply(&mut self, action: Action) {
-        if let Some(document) = self.document_mut() {
-            document.apply(action);
+        let Some(document) = self.documents.get_mut(self.current) else {
+            return;
+        };
+        match (&action, &document.case) {
+            (Action::Property(property), Some(case)) if document.lacks_look(property) => {
+                self.reader.look(case.clone(), property.clone());
+                self.awaited = Some(property.clone());
+            }
+            _ => document.apply(action),
         }
     }
 
@@ -138,7 +150,8 @@ impl Window {
             _ => self.other_case()?,
         };
         let shown = self.pictures.shown(side, &case)?;
-        Some((&shown.picture, self.pictures.are_final()))
+        let is_final = self.awaited.is_none() && self.pictures.are_final();
+        Some((&shown.picture, is_final))
     }
 
     /// How far the two pictures shown are apart, once that is known.
@@ -196,17 +209,7 @@ impl Window {
         }
         self.listen_to_files(ctx);
         for read in self.reader.poll() {
-            let of = match &read {
-                Read::Table(table) => &table.of,
-                Read::Curves(curves) => &curves.of,
-            };
-            let is_of =
-                |d: &&mut Document| d.case.as_ref().is_some_and(|c| Arc::ptr_eq(c, &of.case));
-            match (self.documents.iter_mut().find(is_of), read) {
-                (Some(document), Read::Table(table)) => document.table = Some(table),
-                (Some(document), Read::Curves(curves)) => document.curves = Some(curves),
-                (None, _) => {}
-            }
+            self.take(read);
         }
         let dropped = ctx.input(|i| i.raw.dropped_files.clone());
         for path in dropped.iter().map(|f| f.path().to_owned()) {
@@ -221,6 +224,34 @@ impl Window {
         if let Some(done) = self.export.as_ref().and_then(Export::poll) {
             self.export = None;
             self.answer(done);
+        }
+    }
+
+    /// Gives a document what was read for it, if it is still there.
+    fn take(&mut self, read: Read) {
+        let case = match &read {
+            Read::Table(table) => &table.of.case,
+            Read::Curves(curves) => &curves.of.case,
+            Read::Look(case, ..) => case,
+        };
+        let is_of = |d: &&mut Document| d.case.as_ref().is_some_and(|c| Arc::ptr_eq(c, case));
+        let document = self.documents.iter_mut().find(is_of);
+        match (document, read) {
+            (Some(document), Read::Table(table)) => document.table = Some(table),
+            (Some(document), Read::Curves(curves)) => document.curves = Some(curves),
+            (Some(document), Read::Look(_, property, look)) => {
+                document
+                    .state
+                    .setup
+                    .looks
+                    .entry(property.clone())
+                    .or_insert(look);
+                if self.awaited.as_ref() == Some(&property) {
+                    self.awaited = None;
+                    document.apply(Action::Property(property));
+                }
+            }
+            (None, _) => {}
         }
     }
 
@@ -314,13 +345,13 @@ impl Window {
             (&setup.comparison, sizes[1], self.other_case())
         {
             let scene = match comparison.case {
-                Some(_) => comparison.scene(&self.linked(&setup.scene)),
-                None => comparison.scene(&setup.scene),
+                Some(_) => setup.compared(&self.linked(&setup.scene)),
+                None => setup.compared(&setup.scene),
             };
-            wanted.push(Wanted {
+            wanted.extend(scene.map(|scene| Wanted {
                 case,
                 scene: Scene { size, ..scene },
-            });
+            }));
         }
         wanted
     }
@@ -373,6 +404,10 @@ impl Window {
         let names: Vec<String> = filters.map(|f| f.name.clone()).chain([property]).collect();
         let next = (step + 1..case.steps.len()).take(AHEAD);
         let next = next.flat_map(|s| names.iter().map(move |n| (n.clone(), s)));
+        let compared = document.state.setup.comparison.as_ref();
+        asked.look = compared
+            .and_then(|c| c.property.clone())
+            .filter(|p| document.lacks_look(p));
         asked.ahead = Some((Arc::as_ptr(&case).addr(), next.collect()));
         if asked.table != self.asked.table
             && let Some((of, step)) = &asked.table
@@ -383,6 +418,11 @@ impl Window {
             && let Some((of, property)) = &asked.curves
         {
             self.reader.curves(of.clone(), property.clone());
+        }
+        if asked.look != self.asked.look
+            && let Some(property) = &asked.look
+        {
+            self.reader.look(case.clone(), property.clone());
         }
         if asked.ahead != self.asked.ahead
             && let Some((_, fields)) = &asked.ahead
