@@ -53,11 +53,16 @@ fn a_difference_to_a_step_is_shown_and_left() {
     driven.click("Difference to");
     driven.wait_settled();
     driven.click("0   2005-01-01");
+    driven.wait_final();
     assert_eq!(
         driven.scene().property.as_deref(),
         Some("PRESSURE-PRESSURE@0")
     );
-    driven.wait_final();
+    // It looks as differences do: the same on both sides of zero.
+    let RangeSpec::Fixed([low, high]) = driven.scene().range else {
+        panic!("{:?}", driven.scene().range);
+    };
+    assert!(high > 0.0 && low == -high, "{low} {high}");
     driven.wait_settled();
     driven.click("Difference to");
     driven.wait_settled();
