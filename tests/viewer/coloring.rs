@@ -29,6 +29,7 @@ fn range_scale_and_coloring_are_chosen() {
     driven.wait_final();
     assert!(driven.picture(0) != plain);
     driven.click("DEPTH");
+    driven.wait_final();
     driven.click("Scale: Log");
     assert_eq!(driven.scene().transfer.scale, ScaleSpec::Log);
     driven.wait_final();
