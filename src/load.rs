@@ -54,7 +54,7 @@ pub fn open_with(path: &Path, progress: &dyn Fn(&str) -> bool) -> Result<Option<
         deck,
         connections,
         fault_faces,
-    } = grids::read(&files.grid, &mut about, &mut warnings)?;
+    } = grids::read(&files, &mut about, &mut warnings)?;
     let mut source = FileSource {
         cells,
         init: None,

@@ -32,6 +32,8 @@ pub struct CaseFiles {
     pub name: String,
     /// Geometry.
     pub grid: GridSource,
+    /// A deck beside an EGRID file, which has what that lacks, such as FAULTS.
+    pub deck: Option<PathBuf>,
     /// Static properties.
     pub init: Option<PathBuf>,
     /// Time steps.
@@ -135,10 +137,11 @@ pub fn find(path: &Path) -> Result<CaseFiles, ParseError> {
         Some(Role::Egrid) => Some(GridSource::Egrid(path.to_owned())),
         _ => first(Role::Egrid).map(GridSource::Egrid),
     };
-    let deck = || first(Role::Deck).or_else(|| first(Role::Text));
-    let Some(grid) = grid.or_else(|| deck().map(GridSource::Deck)) else {
+    let deck = first(Role::Deck).or_else(|| first(Role::Text));
+    let Some(grid) = grid.or_else(|| deck.clone().map(GridSource::Deck)) else {
         return Err(no_grid(path, &stem, &files));
     };
+    let deck = deck.filter(|_| matches!(grid, GridSource::Egrid(_)));
     let mut separate: Vec<(u32, PathBuf)> = Vec::new();
     for (file, role) in &files {
         if let Role::Separate(report) = role
@@ -165,6 +168,7 @@ pub fn find(path: &Path) -> Result<CaseFiles, ParseError> {
     Ok(CaseFiles {
         name: stem,
         grid,
+        deck,
         init: first(Role::Init),
         restart,
         not_read: files

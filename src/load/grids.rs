@@ -3,8 +3,8 @@
 use std::path::Path;
 use std::time::Instant;
 
-use strataray_parsers::case::GridSource;
-use strataray_parsers::deck::Grdecl;
+use strataray_parsers::case::{CaseFiles, GridSource};
+use strataray_parsers::deck::{FaultFaces as DeckFault, Grdecl};
 use strataray_parsers::egrid::{Egrid, PorosityModel};
 use strataray_parsers::{At, ParseError, Warnings};
 
@@ -28,12 +28,18 @@ pub struct Loaded {
 
 /// Reads the grid; what else its file says goes into `about`.
 pub fn read(
-    source: &GridSource,
+    files: &CaseFiles,
     about: &mut About,
     warnings: &mut Warnings,
 ) -> Result<Loaded, ParseError> {
-    match source {
-        GridSource::Egrid(path) => read_egrid(path, about, warnings),
+    match &files.grid {
+        GridSource::Egrid(path) => {
+            let mut loaded = read_egrid(path, about, warnings)?;
+            if let Some(deck) = &files.deck {
+                loaded.fault_faces = deck_faults(deck, loaded.grid.dims(), about, warnings);
+            }
+            Ok(loaded)
+        }
         GridSource::Deck(path) => read_deck(path, about, warnings),
     }
 }
@@ -133,9 +139,9 @@ fn read_deck(
     };
     about.map_axes = deck.map_axes;
     about.porosity_model = "single".into();
-    about.named_faults = named_faults(&deck);
+    about.named_faults = named_faults(&deck.faults);
     let slots = CellSlots::new(&grid, deck.actnum.as_deref(), PorosityModel::Single);
-    let fault_faces = fault_faces(&deck, &about.named_faults);
+    let fault_faces = fault_faces(&deck.faults, &about.named_faults);
     let deck = Grdecl {
         coord: Vec::new(),
         zcorn: Vec::new(),
@@ -161,10 +167,28 @@ fn connections(pairs: &[[i32; 2]], dims: Dims) -> Vec<[Ijk; 2]> {
     pairs.iter().filter_map(pair).collect()
 }
 
+/// The named faults of a deck beside an EGRID file.
+fn deck_faults(path: &Path, dims: Dims, about: &mut About, warnings: &mut Warnings) -> FaultFaces {
+    match Grdecl::read_faults(path, [dims.ni, dims.nj, dims.nk], warnings) {
+        Ok(faults) => {
+            about.named_faults = named_faults(&faults);
+            if !faults.is_empty() {
+                about.files.push(path.to_owned());
+            }
+            fault_faces(&faults, &about.named_faults)
+        }
+        Err(error) => {
+            let note = format!("names of faults were not read: {error}");
+            about.notes.push(note);
+            FaultFaces::default()
+        }
+    }
+}
+
 /// The faults of a deck in the order of their names' first use.
-fn named_faults(deck: &Grdecl) -> Vec<NamedFault> {
+fn named_faults(faults: &[DeckFault]) -> Vec<NamedFault> {
     let mut named: Vec<NamedFault> = Vec::new();
-    for fault in &deck.faults {
+    for fault in faults {
         let span = |[a, b]: [usize; 2]| b.saturating_sub(a) + 1;
         let faces = span(fault.i) * span(fault.j) * span(fault.k);
         match named.iter_mut().find(|f| f.name == fault.name) {
@@ -179,9 +203,9 @@ fn named_faults(deck: &Grdecl) -> Vec<NamedFault> {
 }
 
 /// Which faces lie on which of the named faults.
-fn fault_faces(deck: &Grdecl, named: &[NamedFault]) -> FaultFaces {
+fn fault_faces(faults: &[DeckFault], named: &[NamedFault]) -> FaultFaces {
     let mut faces = FaultFaces::default();
-    for fault in &deck.faults {
+    for fault in faults {
         let number = named.iter().position(|f| f.name == fault.name);
         if let (Some(number), Some(face)) = (number, lateral_face(&fault.face)) {
             // Files count from 1.
@@ -206,4 +230,37 @@ fn lateral_face(name: &str) -> Option<Face> {
 
 fn dims([ni, nj, nk]: [usize; 3]) -> Dims {
     Dims { ni, nj, nk }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "tests")]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_deck_beside_an_egrid_names_its_faults() {
+        let sample = Path::new(env!("CARGO_MANIFEST_DIR")).join("samples/scissor");
+        let folder = tempfile::tempdir().unwrap();
+        let case = folder.path().join("SCISSOR.EGRID");
+        std::fs::copy(sample.join("SCISSOR.EGRID"), &case).unwrap();
+        let names = |case: &crate::case::Case| -> Vec<String> {
+            let faults = case.about.named_faults.iter();
+            faults.map(|f| f.name.clone()).collect()
+        };
+        let without = crate::load::open(&case).unwrap();
+        assert!(names(&without).is_empty());
+        // The deck includes a file that is not there: its names are missing, and a note says so.
+        std::fs::copy(sample.join("SCISSOR.DATA"), folder.path().join("SCISSOR.DATA")).unwrap();
+        let incomplete = crate::load::open(&case).unwrap();
+        assert!(names(&incomplete).is_empty());
+        let told = |note: &String| note.starts_with("names of faults were not read");
+        assert!(incomplete.about.notes.iter().any(told));
+        let whole = crate::load::open(&sample.join("SCISSOR.EGRID")).unwrap();
+        assert_eq!(names(&whole), ["F1", "F2", "F3"]);
+        // F2 lies between columns 24 and 25, counted from 1.
+        let cell = Ijk { i: 23, j: 3, k: 0 };
+        assert_eq!(whole.fault_faces.fault_of(cell, Face::IPlus), Some(1));
+        assert_eq!(whole.fault_faces.fault_of(cell, Face::JPlus), None);
+        assert!(!whole.about.notes.iter().any(told));
+    }
 }

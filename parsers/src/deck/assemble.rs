@@ -223,7 +223,7 @@ fn property(
 }
 
 /// The fault faces that lie inside the grid.
-fn inside(
+pub(super) fn inside(
     faults: Vec<(std::rc::Rc<super::source::Source>, usize, FaultFaces)>,
     dims: [usize; 3],
     warnings: &mut Warnings,

@@ -101,4 +101,19 @@ impl Grdecl {
         let found = scan::scan(path, warnings)?;
         assemble::assemble(path, found, warnings)
     }
+
+    /// Reads FAULTS alone of the deck at `path` and of all files it includes, for a grid of `dims` cells
+    /// that was read from elsewhere. Faces outside it go to `warnings`.
+    ///
+    /// # Errors
+    /// When a file is missing or ends inside a record, or when FAULTS is damaged.
+    pub fn read_faults(
+        path: &Path,
+        dims: [usize; 3],
+        warnings: &mut Warnings,
+    ) -> Result<Vec<FaultFaces>, ParseError> {
+        // What else the deck says is not asked for, so nobody has to know what of it was left out.
+        let found = scan::scan(path, &mut Warnings::default())?;
+        Ok(assemble::inside(found.faults, dims, warnings))
+    }
 }
