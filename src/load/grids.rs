@@ -250,7 +250,11 @@ mod tests {
         let without = crate::load::open(&case).unwrap();
         assert!(names(&without).is_empty());
         // The deck includes a file that is not there: its names are missing, and a note says so.
-        std::fs::copy(sample.join("SCISSOR.DATA"), folder.path().join("SCISSOR.DATA")).unwrap();
+        std::fs::copy(
+            sample.join("SCISSOR.DATA"),
+            folder.path().join("SCISSOR.DATA"),
+        )
+        .unwrap();
         let incomplete = crate::load::open(&case).unwrap();
         assert!(names(&incomplete).is_empty());
         let told = |note: &String| note.starts_with("names of faults were not read");

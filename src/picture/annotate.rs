@@ -48,7 +48,7 @@ impl Annotations {
 }
 
 /// A length unit of a grid file as it is written behind numbers.
-fn short_unit(name: &str) -> String {
+pub fn short_unit(name: &str) -> String {
     match name {
         "METRES" => "m".into(),
         "FEET" => "ft".into(),

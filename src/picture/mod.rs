@@ -17,7 +17,7 @@ mod ticks;
 
 #[cfg(test)]
 pub(crate) use annotate::tests::view as test_view;
-pub use annotate::{Annotations, annotate, finished};
+pub use annotate::{Annotations, annotate, finished, short_unit};
 pub use axes::CONNECTION;
 pub use difference::{difference_colors, difference_picture};
 pub use files::{Format, PictureError, write_exr, write_png};

@@ -74,7 +74,7 @@ pub fn top(window: &mut Window, ui: &mut Ui, ctx: &Context) {
                 ("Undo", Command::Undo),
                 ("Redo", Command::Redo),
                 ("Frame all", Command::Look(Look::FrameAll)),
-                ("Picture", Command::Screenshot),
+                ("Save picture", Command::Screenshot),
                 ("Keys", Command::Help),
             ] {
                 let hint = hint(ctx, command);

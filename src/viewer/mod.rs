@@ -16,6 +16,7 @@ mod keys;
 mod loading;
 mod looking;
 mod looks;
+mod marks;
 mod mouse;
 mod orbit;
 mod overlay;

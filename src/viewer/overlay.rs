@@ -213,11 +213,10 @@ pub fn tip(ui: &egui::Ui, at: Pos2, text: &str) {
     painter.galley(at, text, visuals.strong_text_color());
 }
 
-/// Which strategy made a picture that is compared, below its title.
-pub fn strategy(painter: &Painter, rect: Rect, view: &View) {
+/// What a picture that is compared has of its own, below its title.
+pub fn own(painter: &Painter, rect: Rect, view: &View, text: &str) {
     let at = rect.left_top() + vec2(12.0, 30.0);
-    let name = view.strategy.name().to_uppercase();
-    write(painter, at, Align2::LEFT_TOP, &name, ink(view), 15.0);
+    write(painter, at, Align2::LEFT_TOP, text, ink(view), 15.0);
 }
 
 /// What a map of differences means.

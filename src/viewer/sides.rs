@@ -11,8 +11,8 @@ use super::state::{Comparison, Layout};
 use super::viewport::{self, Touched, Viewport};
 use super::welcome::{self, Asked};
 use super::window::Window;
-use super::worker::{Wanted, Why};
-use super::{handles, keys::Command, overlay};
+use super::worker::{Picture, Wanted, Why};
+use super::{handles, keys::Command, marks, overlay};
 use crate::case::Case;
 use crate::picking::Hit;
 use crate::picture::Annotations;
@@ -128,7 +128,7 @@ impl Window {
                 }
                 _ => self.difference_map(ui, rect),
             }
-            self.name_strategies(ui, rects, [case, &other], layout);
+            self.name_both(ui, rects, [case, &other], layout);
             if self.pictures.are_final() {
                 self.pictures.compare();
             }
@@ -138,6 +138,8 @@ impl Window {
         {
             let view = shown.picture.view.clone();
             let scene = &setup.scene;
+            let selected = self.document().map(|d| d.state.selected.as_slice());
+            marks::show(ui, rect, &view, scene, case, selected.unwrap_or_default());
             if let Some(planes) = handles::show(ui, rect, &view, scene) {
                 touched.actions.push(Action::Clip(planes));
             }
@@ -197,8 +199,11 @@ impl Window {
         } else {
             1.5
         };
-        let stroke = egui::Stroke::new(width, ui.visuals().strong_text_color());
-        ui.painter().vline(x, rect.y_range(), stroke);
+        let light = egui::Stroke::new(width + 2.0, egui::Color32::WHITE);
+        let dark = egui::Stroke::new(width, egui::Color32::BLACK);
+        for stroke in [light, dark] {
+            ui.painter().vline(x, rect.y_range(), stroke);
+        }
         let pointer = response
             .interact_pointer_pos()
             .filter(|_| response.dragged())?;
@@ -207,24 +212,27 @@ impl Window {
         ))
     }
 
-    /// Writes which strategy made which picture, where both are seen.
-    fn name_strategies(
+    /// Writes what each picture has of its own, where both are seen.
+    fn name_both(
         &self,
         ui: &Ui,
         rects: [Option<Rect>; 2],
         cases: [&Arc<Case>; 2],
         layout: Option<Layout>,
     ) {
-        for (n, (rect, case)) in rects.into_iter().zip(cases).enumerate() {
-            let (Some(mut rect), Some(shown)) = (rect, self.pictures.shown(n, case)) else {
-                continue;
-            };
+        let shown = [0, 1].map(|n| self.pictures.shown(n, cases[n]));
+        let [Some(first), Some(second)] = shown.map(|s| s.map(|s| &s.picture)) else {
+            return;
+        };
+        let texts = differing([first, second]);
+        for (n, picture) in [first, second].into_iter().enumerate() {
+            let Some(mut rect) = rects[n] else { continue };
             match (layout, n) {
                 (Some(Layout::Difference), _) => continue,
                 (Some(Layout::Wipe(at)), 1) => rect.min.x += at as f32 * rect.width(),
                 _ => {}
             }
-            overlay::strategy(&ui.painter_at(rect), rect, &shown.picture.view);
+            overlay::own(&ui.painter_at(rect), rect, &picture.view, &texts[n]);
         }
     }
 
@@ -300,6 +308,27 @@ impl Window {
             overlay::tip(ui, at, &text);
         }
     }
+}
+
+/// What two pictures have each of its own: case, property, step, strategy.
+fn differing(pictures: [&Picture; 2]) -> [String; 2] {
+    let facts = pictures.map(|picture| {
+        let (view, case) = (&picture.view, &picture.wanted.case);
+        let when = case.steps.get(view.step);
+        let when = when.filter(|_| case.is_dynamic(&view.property));
+        [
+            case.about.name.clone(),
+            view.property.clone(),
+            when.map_or_else(String::new, |s| format!("step {}   {}", view.step, s.date)),
+            view.strategy.name().to_uppercase(),
+        ]
+    });
+    let differ = |n: &usize| facts[0][*n] != facts[1][*n];
+    let own = |facts: &[String; 4]| {
+        let own: Vec<_> = (0..4).filter(differ).map(|n| facts[n].as_str()).collect();
+        own.join("   ")
+    };
+    [own(&facts[0]), own(&facts[1])]
 }
 
 /// Places of both pictures, and how they are shown.

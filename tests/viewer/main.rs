@@ -18,3 +18,4 @@ mod opening;
 mod selecting;
 mod showing;
 mod speed;
+mod tour;

@@ -101,7 +101,7 @@ fn add(ui: &mut Ui, view: &View, planes: &mut Vec<ClipSpec>) {
         normal: normal.to_array(),
         face: CutFace::Open,
     };
-    ui.horizontal(|ui| {
+    ui.horizontal_wrapped(|ui| {
         ui.label("Add");
         let room = MAX_CLIP_PLANES - planes.len().min(MAX_CLIP_PLANES);
         for (name, normal, what) in [

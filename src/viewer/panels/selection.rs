@@ -10,8 +10,10 @@ use super::About;
 use crate::case::Case;
 use crate::model::Ijk;
 use crate::picking::{Hit, Part};
+use crate::picture::short_unit;
 use crate::scene::{Filter, PropertyFilter};
 use crate::viewer::action::Action;
+use crate::viewer::marks;
 use crate::viewer::reader::{Curves, Table};
 
 /// Cells whose values are listed beside each other, at most.
@@ -32,8 +34,9 @@ pub fn show(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
             ui.label(text);
         }
     }
-    for cell in selected.iter().rev().take(MOST_COLUMNS).rev() {
-        ui.label(named(*cell));
+    let first = selected.len().saturating_sub(MOST_COLUMNS);
+    for (n, cell) in selected.iter().enumerate().skip(first) {
+        ui.colored_label(marks::color(n), named(*cell));
     }
     go_to(ui, about, actions);
     if let Some(table) = about.table {
@@ -60,7 +63,7 @@ fn place(hit: &Hit) -> String {
 
 /// What of the cell was met, where that is more than its inside.
 pub fn part(hit: &Hit, case: &Case) -> Option<String> {
-    let unit = case.about.length_unit.to_lowercase();
+    let unit = short_unit(&case.about.length_unit);
     Some(match &hit.part {
         Part::Inside => return None,
         Part::Section => "Section of a clip plane".into(),
@@ -102,20 +105,36 @@ fn go_to(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
 }
 
 fn values(ui: &mut Ui, table: &Table) {
-    let list = egui::ScrollArea::both().id_salt("values").max_height(170.0);
+    let list = egui::ScrollArea::both().id_salt("values").max_height(120.0);
     list.show(ui, |ui| {
         let grid = egui::Grid::new("values of the selected cells");
         grid.striped(true).show(ui, |ui| {
             for (name, unit, values) in &table.rows {
                 ui.label(name);
                 for value in values.iter().rev().take(MOST_COLUMNS).rev() {
-                    ui.label(value.map_or_else(|| "-".into(), |v| v.to_string()));
+                    ui.label(value.map_or_else(|| "-".into(), short));
                 }
                 ui.weak(unit);
                 ui.end_row();
             }
         });
     });
+}
+
+/// A value with six digits that count; what is copied and saved has all of them.
+fn short(value: f32) -> String {
+    let digits = 5 - value.abs().max(1e-30).log10().floor() as i32;
+    match digits {
+        0..=9 => {
+            let text = format!("{value:.*}", digits as usize);
+            match text.contains('.') {
+                true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
+                false => text,
+            }
+        }
+        _ if value == 0.0 => "0".into(),
+        _ => format!("{value:.5e}"),
+    }
 }
 
 fn buttons(ui: &mut Ui, about: &About<'_>, table: &Table, actions: &mut Vec<Action>) {
@@ -215,18 +234,21 @@ fn plot(ui: &mut Ui, about: &About<'_>, curves: &Curves) {
     let unit = about.case.unit(&curves.property);
     ui.label(format!("{} {unit} over days", curves.property));
     let plot = Plot::new("curves")
-        .height(150.0)
+        .height(140.0)
         .allow_scroll(false)
         .legend(Legend::default().follow_insertion_order(true));
+    let ui_ink = ui.visuals().weak_text_color();
     plot.show(ui, |plot| {
-        for (cell, points) in curves.of.cells.iter().zip(&curves.points) {
-            plot.line(Line::new(named(*cell), points.clone()));
+        let curves = curves.of.cells.iter().zip(&curves.points);
+        for (n, (cell, points)) in curves.enumerate() {
+            plot.line(Line::new(named(*cell), points.clone()).color(marks::color(n)));
         }
         let shown = about
             .picture
             .and_then(|p| about.case.steps.get(p.view.step));
         if let Some(step) = shown {
-            plot.vline(VLine::new("step shown", step.days));
+            let line = VLine::new("step shown", step.days);
+            plot.vline(line.color(ui_ink));
         }
     });
 }
@@ -269,4 +291,25 @@ pub fn csv(table: &Table, curves: Option<&Curves>) -> String {
         }
     }
     text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::short;
+
+    #[test]
+    fn values_are_written_with_the_digits_that_count() {
+        for (value, text) in [
+            (0.0, "0"),
+            (2194.1526, "2194.15"),
+            (0.172, "0.172"),
+            (-0.5, "-0.5"),
+            (3.0, "3"),
+            (123_456.7, "123457"),
+            (1.234_567e9, "1.23457e9"),
+            (1.5e-12, "1.50000e-12"),
+        ] {
+            assert_eq!(short(value), text);
+        }
+    }
 }

@@ -1,0 +1,55 @@
+//! Selected cells in the picture: their edges, each in the color of its curve.
+
+use eframe::egui::{Color32, Rect, Stroke, Ui, vec2};
+use glam::DVec2;
+
+use crate::case::Case;
+use crate::model::Ijk;
+use crate::picture::on_screen;
+use crate::scene::surfaces::PALETTE;
+use crate::scene::{Scene, View};
+
+/// Color of the selected cell at a place in the list.
+pub fn color(n: usize) -> Color32 {
+    // Reddish purple and blue first, which stand out from most color maps.
+    let order = [6, 4, 5, 2, 0, 1, 3];
+    let [r, g, b] = PALETTE[order[n % order.len()]].map(|v| (255.0 * v).round() as u8);
+    Color32::from_rgb(r, g, b)
+}
+
+/// Draws the edges of the selected cells over the picture.
+pub fn show(
+    ui: &Ui,
+    rect: Rect,
+    shown: &View,
+    scene: &Scene,
+    case: &Case,
+    selected: &[[usize; 3]],
+) {
+    let pixels = [rect.width().max(1.0) as u32, rect.height().max(1.0) as u32];
+    let Ok(view) = shown.seen_from(&scene.camera, pixels) else {
+        return;
+    };
+    let size = DVec2::new(f64::from(rect.width()), f64::from(rect.height()));
+    let painter = ui.painter_at(rect);
+    for (n, [i, j, k]) in selected.iter().enumerate() {
+        let cell = Ijk {
+            i: i - 1,
+            j: j - 1,
+            k: k - 1,
+        };
+        let corners = case.grid.hexahedron(cell).0;
+        let corners = corners.map(|c| view.spaces.world_from_grid.transform_point3(c));
+        for a in 0..8usize {
+            for b in [1, 2, 4].map(|bit| a | bit).into_iter().filter(|b| *b != a) {
+                let Some(line) = on_screen(&view, [corners[a], corners[b]], size) else {
+                    continue;
+                };
+                let line = line.map(|at| rect.min + vec2(at.x as f32, at.y as f32));
+                // A light seam keeps the line apart from what is behind it.
+                painter.line_segment(line, Stroke::new(3.5, Color32::from_white_alpha(160)));
+                painter.line_segment(line, Stroke::new(1.8, color(n)));
+            }
+        }
+    }
+}
