@@ -10,7 +10,7 @@ const BUDGET: usize = 256 << 20;
 
 /// Fields by property and step, the one used last in front.
 ///
-/// **Invariants**: never more than [`BUDGET`] bytes; a field larger than that is not kept.
+/// **Invariants**: never more than 256 MB; a field larger than that is not kept.
 #[derive(Default)]
 pub struct FieldCache(Mutex<VecDeque<Entry>>);
 

@@ -15,27 +15,50 @@ pub enum Asked {
     Dialog,
 }
 
+/// What a hand new to the window needs to know.
+const FIRST_STEPS: [(&str, &str); 5] = [
+    ("Left drag", "turns around what is under the pointer"),
+    ("Wheel, two fingers", "comes closer"),
+    ("Click", "tells all values of the cell that is seen there"),
+    ("Space", "plays the time steps"),
+    ("F1", "lists all keys"),
+];
+
 /// Draws the page.
 pub fn show(ui: &mut Ui, settings: &Settings) -> Option<Asked> {
     let mut asked = None;
+    fill(ui);
     ui.vertical_centered(|ui| {
-        ui.add_space(0.15 * ui.available_height());
+        ui.add_space(0.12 * ui.available_height());
         ui.heading(RichText::new("StrataRay").size(34.0));
         ui.label("Reservoirs from the inside. Drop a case on the window, or open one.");
         ui.add_space(16.0);
         if ui.button("Open a case ...").clicked() {
             asked = Some(Asked::Dialog);
         }
-        let samples = samples();
-        section(ui, "Samples", &samples, &mut asked);
+        if let Some(sample) = sample() {
+            section(ui, "Sample", &[sample], &mut asked);
+            ui.label("A faulted oil field after 20 years of water flood:\nwhich oil is left, and behind which fault?");
+        }
         section(ui, "Recent cases", &settings.recent, &mut asked);
+        ui.add_space(28.0);
+        for (what, does) in FIRST_STEPS {
+            ui.weak(format!("{what} {does}"));
+        }
     });
     asked
+}
+
+/// Paints the ground of a page without a picture.
+fn fill(ui: &Ui) {
+    let ground = ui.visuals().panel_fill;
+    ui.painter().rect_filled(ui.max_rect(), 0.0, ground);
 }
 
 /// The page of a case that is being opened, or could not be; true where it is closed.
 pub fn waiting(ui: &mut Ui, document: &Document) -> bool {
     let mut closes = false;
+    fill(ui);
     ui.vertical_centered(|ui| {
         ui.add_space(0.4 * ui.available_height());
         ui.label(document.path.display().to_string());
@@ -73,8 +96,8 @@ fn section(ui: &mut Ui, title: &str, cases: &[PathBuf], asked: &mut Option<Asked
     }
 }
 
-/// The bundled samples: beside the program, in the folder where it was started, or where it was built.
-fn samples() -> Vec<PathBuf> {
+/// The bundled sample: beside the program, in the folder where it was started, or where it was built.
+fn sample() -> Option<PathBuf> {
     let beside = std::env::current_exe().ok();
     let beside = beside
         .as_deref()
@@ -83,10 +106,6 @@ fn samples() -> Vec<PathBuf> {
     let here = PathBuf::from("samples");
     let built = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("samples");
     let folders = beside.into_iter().chain([here, built]);
-    let case = |folder: PathBuf| folder.join("scissor").join("SCISSOR.EGRID");
-    folders
-        .map(case)
-        .find(|p| p.is_file())
-        .into_iter()
-        .collect()
+    let mut cases = folders.map(|folder| folder.join("scissor").join("SCISSOR.EGRID"));
+    cases.find(|p| p.is_file())
 }

@@ -78,7 +78,7 @@ pub struct Picture {
     pub view: Arc<View>,
     /// Of what it was made.
     pub wanted: Wanted,
-    /// See [`Job::Picture`].
+    /// Made while something moves, and coarser than asked for.
     pub is_draft: bool,
     /// What the rays cost.
     pub stats: FrameStats,

@@ -2,7 +2,8 @@
 
 use std::time::{Duration, Instant};
 
-use eframe::egui::{Pos2, vec2};
+use eframe::egui::{Key, Modifiers, Pos2, vec2};
+use strataray::viewer::{Action, Pace};
 
 use super::common::{data, gpu};
 use super::driven::Driven;
@@ -46,8 +47,15 @@ fn pictures_follow_the_pointer_and_no_frame_waits() {
     let Some(case) = data("brugge/BRUGGE_0000.EGRID") else {
         return;
     };
+    let start = Instant::now();
     let mut driven = Driven::open(&[case]);
+    driven.wait("the first picture", |w| w.picture(0).is_some());
+    let first = start.elapsed();
     driven.wait_final();
+    eprintln!(
+        "first picture after {first:?}, final one after {:?}",
+        start.elapsed()
+    );
     let loading = driven.slowest;
     for light in ["off", "soft"] {
         driven.click(light);
@@ -67,4 +75,27 @@ fn pictures_follow_the_pointer_and_no_frame_waits() {
         assert!(loading < Duration::from_millis(500), "{loading:?}");
         driven.wait_final();
     }
+    let played = steps_a_second(&mut driven);
+    eprintln!("{played:.1} steps a second play");
+    assert!(played > 1.0, "{played}");
+}
+
+/// Steps that play in a second, as fast as they come.
+fn steps_a_second(driven: &mut Driven) -> f64 {
+    driven.click("off");
+    driven.press(Modifiers::NONE, Key::Home);
+    driven.wait_final();
+    let pace = Pace {
+        steps_a_second: 30.0,
+        repeats: false,
+    };
+    driven.harness.state_mut().apply(Action::Pace(pace));
+    let start = Instant::now();
+    driven.press(Modifiers::NONE, Key::Space);
+    driven.wait("the end", |w| {
+        w.document().is_some_and(|d| d.playing.is_none())
+    });
+    let (last, count) = driven.document().step().unwrap();
+    assert_eq!(last + 1, count);
+    last as f64 / start.elapsed().as_secs_f64()
 }

@@ -18,10 +18,11 @@ const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/tour");
 fn shot(driven: &mut Driven, name: &str) {
     driven.wait_settled();
     let image = driven.harness.render().unwrap();
+    let size = [image.width(), image.height()];
+    let rgb: Vec<[u8; 3]> = image.pixels().map(|p| [p[0], p[1], p[2]]).collect();
     std::fs::create_dir_all(FOLDER).unwrap();
-    image
-        .save(Path::new(FOLDER).join(format!("{name}.png")))
-        .unwrap();
+    let path = Path::new(FOLDER).join(format!("{name}.png"));
+    strataray::picture::write_png(&path, size, &rgb).unwrap();
 }
 
 fn apply(driven: &mut Driven, action: Action) {
