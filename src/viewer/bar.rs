@@ -175,14 +175,16 @@ pub fn bottom(window: &mut Window, ui: &mut Ui, ctx: &Context) {
 }
 
 fn message(window: &Window, ui: &mut Ui) {
-    if let Some((text, is_error)) = &window.message {
-        let color = if *is_error {
-            Color32::from_rgb(220, 80, 60)
-        } else {
-            ui.visuals().text_color()
-        };
-        ui.colored_label(color, text);
-    }
+    let red = Color32::from_rgb(220, 80, 60);
+    match &window.message {
+        Some((text, true)) => ui.colored_label(red, text),
+        Some((text, false)) => ui.label(text),
+        None => {
+            // Why a case that is shown could not be read again.
+            let error = window.document().and_then(|d| d.error.as_deref());
+            ui.colored_label(red, error.unwrap_or_default())
+        }
+    };
 }
 
 /// How far the picture is.

@@ -22,6 +22,8 @@ pub struct Document {
     pub case: Option<Arc<Case>>,
     /// It is being read.
     pub loading: Option<Loading>,
+    /// It has not been said yet whether it is lit at first.
+    pub is_unlit: bool,
     /// Why the last reading failed.
     pub error: Option<String>,
     /// What the user has set.
@@ -47,6 +49,7 @@ impl Document {
             path,
             case: None,
             loading: Some(loading),
+            is_unlit: true,
             error: None,
             state,
             history: History::default(),

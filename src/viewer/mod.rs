@@ -4,6 +4,7 @@
 //! their own.
 
 mod action;
+mod asking;
 mod bar;
 mod command;
 mod commands;
@@ -12,7 +13,9 @@ mod document;
 mod export;
 mod handles;
 mod history;
+mod keeping;
 mod keys;
+mod listening;
 mod loading;
 mod looking;
 mod looks;

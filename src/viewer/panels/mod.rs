@@ -6,6 +6,7 @@ mod clip;
 mod compare;
 mod controls;
 mod curve;
+mod curves;
 mod filters;
 mod light;
 mod player;
@@ -30,8 +31,9 @@ use crate::case::Case;
 use crate::picking::Hit;
 use crate::scene::Scene;
 
+pub use curves::csv;
 pub use player::{Asked, player};
-pub use selection::{csv, part as hover_text};
+pub use selection::part as hover_text;
 
 /// What a panel knows.
 pub struct About<'a> {

@@ -1,12 +1,9 @@
 //! The selected cells: where they are, what the case says of them, curves over time, what can be done
 //! with them.
 
-use std::fmt::Write;
-
 use eframe::egui::{self, Ui};
-use egui_plot::{Legend, Line, Plot, VLine};
 
-use super::About;
+use super::{About, curves};
 use crate::case::Case;
 use crate::model::Ijk;
 use crate::picking::{Hit, Part};
@@ -14,7 +11,7 @@ use crate::picture::short_unit;
 use crate::scene::{Filter, PropertyFilter};
 use crate::viewer::action::Action;
 use crate::viewer::marks;
-use crate::viewer::reader::{Curves, Table};
+use crate::viewer::reader::Table;
 
 /// Cells whose values are listed beside each other, at most.
 const MOST_COLUMNS: usize = 4;
@@ -44,7 +41,7 @@ pub fn show(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
         buttons(ui, about, table, actions);
     }
     if let Some(curves) = about.curves {
-        plot(ui, about, curves);
+        curves::show(ui, about, curves);
     }
 }
 
@@ -52,7 +49,8 @@ fn one_based(ijk: Ijk) -> [usize; 3] {
     [ijk.i + 1, ijk.j + 1, ijk.k + 1]
 }
 
-fn named([i, j, k]: [usize; 3]) -> String {
+/// A cell by its numbers.
+pub fn named([i, j, k]: [usize; 3]) -> String {
     format!("I {i}  J {j}  K {k}")
 }
 
@@ -141,7 +139,7 @@ fn buttons(ui: &mut Ui, about: &About<'_>, table: &Table, actions: &mut Vec<Acti
     ui.horizontal(|ui| {
         let copy = ui.button("Copy").on_hover_text("All of it as CSV, to the clipboard; Ctrl + Shift + S saves it in a file");
         if copy.clicked() {
-            ui.ctx().copy_text(csv(table, about.curves));
+            ui.ctx().copy_text(curves::csv(table, about.curves));
         }
         let clear = ui.button("Clear").on_hover_text("Selects none");
         if clear.clicked() {
@@ -224,73 +222,6 @@ fn like(about: &About<'_>, table: &Table) -> Option<Filter> {
         max: value + reach,
     });
     Some(filter)
-}
-
-fn plot(ui: &mut Ui, about: &About<'_>, curves: &Curves) {
-    if curves.points.iter().all(|p| p.len() < 2) {
-        ui.weak(format!("{} does not change with time.", curves.property));
-        return;
-    }
-    let unit = about.case.unit(&curves.property);
-    ui.label(format!("{} {unit} over days", curves.property));
-    let plot = Plot::new("curves")
-        .height(140.0)
-        .allow_scroll(false)
-        .legend(Legend::default().follow_insertion_order(true));
-    let ui_ink = ui.visuals().weak_text_color();
-    plot.show(ui, |plot| {
-        let curves = curves.of.cells.iter().zip(&curves.points);
-        for (n, (cell, points)) in curves.enumerate() {
-            plot.line(Line::new(named(*cell), points.clone()).color(marks::color(n)));
-        }
-        let shown = about
-            .picture
-            .and_then(|p| about.case.steps.get(p.view.step));
-        if let Some(step) = shown {
-            let line = VLine::new("step shown", step.days);
-            plot.vline(line.color(ui_ink));
-        }
-    });
-}
-
-/// Values of the step, then curves, as comma-separated text with a heading each.
-pub fn csv(table: &Table, curves: Option<&Curves>) -> String {
-    let mut text = String::from("property,unit");
-    let heads = |text: &mut String, cells: &[[usize; 3]]| {
-        for [i, j, k] in cells {
-            // Writing to a string cannot fail.
-            let _ = write!(text, ",{i} {j} {k}");
-        }
-        text.push('\n');
-    };
-    heads(&mut text, &table.of.cells);
-    for (name, unit, values) in &table.rows {
-        let _ = write!(text, "{name},{unit}");
-        for value in values {
-            let _ = match value {
-                Some(value) => write!(text, ",{value}"),
-                None => write!(text, ","),
-            };
-        }
-        text.push('\n');
-    }
-    if let Some(curves) = curves {
-        let _ = write!(text, "\n{},days", curves.property);
-        heads(&mut text, &curves.of.cells);
-        let steps = &curves.of.case.steps;
-        for step in steps {
-            let _ = write!(text, "{},{}", step.date, step.days);
-            for points in &curves.points {
-                let value = points.iter().find(|p| p[0] == step.days);
-                let _ = match value {
-                    Some([_, value]) => write!(text, ",{value}"),
-                    None => write!(text, ","),
-                };
-            }
-            text.push('\n');
-        }
-    }
-    text
 }
 
 #[cfg(test)]

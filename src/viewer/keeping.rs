@@ -1,0 +1,47 @@
+//! Scenes and values in files.
+
+use std::path::Path;
+
+use super::action::Action;
+use super::window::Window;
+use super::{command, panels};
+use crate::scene::Scene;
+
+impl Window {
+    /// Loads a scene into the document in front.
+    ///
+    /// # Errors
+    /// When the file is no scene; the sentence names it.
+    pub fn load_scene(&mut self, path: &Path) -> Result<String, String> {
+        let why = |e: &dyn std::fmt::Display| format!("{}: {e}", path.display());
+        let text = std::fs::read_to_string(path).map_err(|e| why(&e))?;
+        let scene: Scene = serde_json::from_str(&text).map_err(|e| why(&e))?;
+        let document = self.document_mut().ok_or("open a case first")?;
+        document.history.end_gesture();
+        document.apply(Action::Scene(Box::new(scene)));
+        Ok(format!("the scene of {} is shown", path.display()))
+    }
+
+    /// Saves the scene of the document in front.
+    ///
+    /// # Errors
+    /// When it cannot be written; the sentence names the file.
+    pub fn save_scene(&self, path: &Path) -> Result<String, String> {
+        let document = self.document().ok_or("there is no scene to save")?;
+        let text = command::scene_text(&document.state.setup.scene)?;
+        std::fs::write(path, text).map_err(|e| format!("{}: {e}", path.display()))?;
+        Ok(format!("the scene is in {}", path.display()))
+    }
+
+    /// Saves the values of the selected cells, and their curves, as comma-separated text.
+    ///
+    /// # Errors
+    /// When none is selected, or the file cannot be written; the sentence names it.
+    pub fn save_table(&self, path: &Path) -> Result<String, String> {
+        let document = self.document().ok_or("open a case first")?;
+        let table = document.table.as_ref().ok_or("select a cell first")?;
+        let text = panels::csv(table, document.curves.as_ref());
+        std::fs::write(path, text).map_err(|e| format!("{}: {e}", path.display()))?;
+        Ok(format!("the values are in {}", path.display()))
+    }
+}

@@ -1,0 +1,134 @@
+//! What happened since the last frame: answers of threads, files that changed, what was dropped.
+
+use std::sync::Arc;
+
+use eframe::egui::Context;
+
+use super::action::{Action, Beside};
+use super::dialogs::Dialog;
+use super::document::Document;
+use super::export::Export;
+use super::pictures::Event;
+use super::reader::Read;
+use super::watch::{Change, Watch};
+use super::window::{Window, load};
+use super::worker::Why;
+use crate::picking::Hit;
+
+impl Window {
+    /// Takes in what happened since the last frame.
+    pub(super) fn listen(&mut self, ctx: &Context) {
+        for event in self.pictures.listen(ctx) {
+            match event {
+                Event::Came => {
+                    if self.message.as_ref().is_some_and(|m| m.1) {
+                        self.message = None;
+                    }
+                }
+                Event::Failed(error) => self.fail(error),
+                Event::Picked(why, hit) => self.picked(why, hit),
+            }
+        }
+        self.listen_to_files(ctx);
+        for read in self.reader.poll() {
+            self.take(read);
+        }
+        let dropped = ctx.input(|i| i.raw.dropped_files.clone());
+        for path in dropped.iter().map(|f| f.path().to_owned()) {
+            self.open(ctx, path);
+        }
+        if let Some(chosen) = self.dialog.as_ref().and_then(Dialog::poll) {
+            self.dialog = None;
+            if let Some(chosen) = chosen {
+                self.choose(ctx, chosen);
+            }
+        }
+        if let Some(done) = self.export.as_ref().and_then(Export::poll) {
+            self.export = None;
+            self.answer(done);
+        }
+    }
+
+    /// Gives a document what was read for it, if it is still there.
+    fn take(&mut self, read: Read) {
+        let case = match &read {
+            Read::Table(table) => &table.of.case,
+            Read::Curves(curves) => &curves.of.case,
+            Read::Look(case, ..) => case,
+        };
+        let is_of = |d: &&mut Document| d.case.as_ref().is_some_and(|c| Arc::ptr_eq(c, case));
+        let document = self.documents.iter_mut().find(is_of);
+        match (document, read) {
+            (Some(document), Read::Table(table)) => document.table = Some(table),
+            (Some(document), Read::Curves(curves)) => document.curves = Some(curves),
+            (Some(document), Read::Look(_, property, look)) => {
+                document
+                    .state
+                    .setup
+                    .looks
+                    .entry(property.clone())
+                    .or_insert(look);
+                if self.awaited.as_ref() == Some(&property) {
+                    self.awaited = None;
+                    document.apply(Action::Property(property));
+                }
+            }
+            (None, _) => {}
+        }
+    }
+
+    /// Cases that came, and files that changed.
+    fn listen_to_files(&mut self, ctx: &Context) {
+        let mut opened = Vec::new();
+        let mut gone = None;
+        for document in &mut self.documents {
+            if document.listen() {
+                opened.push(document.path.clone());
+                if self.watches
+                    && let Some(case) = &document.case
+                {
+                    let waker = ctx.clone();
+                    let files = case.about.files.clone();
+                    document.watch = Some(Watch::begin(files, move || waker.request_repaint()));
+                }
+            }
+            match document.watch.as_ref().and_then(Watch::poll) {
+                Some(Change::Written) => document.loading = Some(load(ctx, document.path.clone())),
+                Some(Change::Gone) => gone = Some(document.title()),
+                None => {}
+            }
+        }
+        if let Some(name) = gone {
+            self.fail(format!(
+                "a file of {name} is gone; what was read of it stays, and F5 reads it again"
+            ));
+        }
+        if opened.is_empty() {
+            return;
+        }
+        for path in opened {
+            self.settings.remember(&path);
+        }
+        self.keep_settings();
+    }
+
+    fn picked(&mut self, why: Why, hit: Option<Hit>) {
+        if why == Why::Hover {
+            self.sides.hover = hit;
+            return;
+        }
+        let Some(hit) = hit else {
+            self.tell("nothing is drawn there");
+            return;
+        };
+        let cell = [hit.ijk.i, hit.ijk.j, hit.ijk.k].map(|n| n + 1);
+        let beside = match why {
+            Why::Join => Beside::Others,
+            _ => Beside::Nothing,
+        };
+        if let Some(document) = self.document_mut() {
+            document.hit = Some(hit);
+            document.apply(Action::Select(cell, beside));
+        }
+    }
+}
