@@ -226,7 +226,7 @@ fn the_window_shows_a_case_and_follows_the_hand() {
     };
     let config = tempfile::tempdir().unwrap();
     let folder = tempfile::tempdir().unwrap();
-    let case = copy_of_sample(folder.path());
+    let case = common::copy_of_sample(folder.path());
     let mut process = viewer(&display, &case, config.path());
     let window = display.window();
     let first = display.settled("the first picture", |p| colored(p) > 5_000);
@@ -323,13 +323,4 @@ fn close(display: &Display, window: u32) {
         .x
         .send_event(false, window, xproto::EventMask::NO_EVENT, message);
     sent.unwrap().check().unwrap();
-}
-
-fn copy_of_sample(folder: &Path) -> std::path::PathBuf {
-    let from = common::sample();
-    for file in std::fs::read_dir(from.parent().unwrap()).unwrap() {
-        let file = file.unwrap().path();
-        std::fs::copy(&file, folder.join(file.file_name().unwrap())).unwrap();
-    }
-    folder.join(from.file_name().unwrap())
 }

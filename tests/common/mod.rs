@@ -33,6 +33,16 @@ pub fn sample() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("samples/scissor/SCISSOR.EGRID")
 }
 
+/// A copy of the sample in a folder.
+pub fn copy_of_sample(folder: &Path) -> PathBuf {
+    let from = sample();
+    for file in std::fs::read_dir(from.parent().unwrap()).unwrap() {
+        let file = file.unwrap().path();
+        std::fs::copy(&file, folder.join(file.file_name().unwrap())).unwrap();
+    }
+    folder.join(from.file_name().unwrap())
+}
+
 /// The sample and the real models that pictures are compared on.
 pub fn models() -> Vec<PathBuf> {
     let real = [

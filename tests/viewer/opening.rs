@@ -6,18 +6,8 @@ use eframe::egui::{self, Key, Modifiers, vec2};
 use egui_kittest::kittest::Queryable;
 use strataray::viewer::Settings;
 
-use super::common::{gpu, sample};
+use super::common::{copy_of_sample, gpu, sample};
 use super::driven::{Driven, covered};
-
-/// A copy of the sample in a folder of its own.
-fn copy_of_sample(folder: &Path) -> PathBuf {
-    let from = sample();
-    for file in std::fs::read_dir(from.parent().unwrap()).unwrap() {
-        let file = file.unwrap().path();
-        std::fs::copy(&file, folder.join(file.file_name().unwrap())).unwrap();
-    }
-    folder.join(from.file_name().unwrap())
-}
 
 #[test]
 fn a_sample_is_opened_from_the_welcome_page() {

@@ -75,16 +75,22 @@ fn the_tour_is_walked() {
     driven.click("soft");
     driven.wait_final();
     shot(&mut driven, "4_oil");
+    find(&mut driven);
+    understand(&mut driven);
+}
+
+/// What holds the oil back, and where.
+fn find(driven: &mut Driven) {
     // Faults, and the throw of the one in the way.
     driven.click("Fault surfaces");
     driven.wait_final();
-    let on_fault = face_on_screen(&driven, Ijk { i: 24, j: 4, k: 1 }, Face::IMinus);
+    let on_fault = face_on_screen(driven, Ijk { i: 24, j: 4, k: 1 }, Face::IMinus);
     driven.harness.hover_at(on_fault);
     for _ in 0..60 {
         driven.step();
         std::thread::sleep(Duration::from_millis(20));
     }
-    shot(&mut driven, "5_fault");
+    shot(driven, "5_fault");
     // Only the oil.
     let mut filter = driven.scene().filter.clone();
     filter.properties.push(PropertyFilter {
@@ -92,8 +98,8 @@ fn the_tour_is_walked() {
         min: 0.6,
         max: 1.0,
     });
-    apply(&mut driven, Action::Filter(filter));
-    shot(&mut driven, "6_filter");
+    apply(driven, Action::Filter(filter));
+    shot(driven, "6_filter");
     driven.press(Modifiers::COMMAND, Key::Z);
     // A section across the fault.
     driven.click("Property");
@@ -104,15 +110,19 @@ fn the_tour_is_walked() {
     let mut clip = driven.scene().clip.clone();
     clip[0].face = CutFace::Opaque;
     clip[0].point[1] -= 700.0;
-    apply(&mut driven, Action::Clip(clip));
+    apply(driven, Action::Clip(clip));
     driven.click("Edges of cells");
     driven.wait_final();
-    shot(&mut driven, "7_section");
+    shot(driven, "7_section");
     driven.click("Clip planes");
     driven.click("Property");
-    apply(&mut driven, Action::Clip(Vec::new()));
+    apply(driven, Action::Clip(Vec::new()));
     driven.click("Edges of cells");
     driven.click("Fault surfaces");
+}
+
+/// How it came about.
+fn understand(driven: &mut Driven) {
     // Two cells, one on each side of the fault, over time.
     driven.click("Transfer function");
     driven.wait_settled();
@@ -122,14 +132,14 @@ fn the_tour_is_walked() {
         } else {
             strataray::viewer::Beside::Others
         };
-        apply(&mut driven, Action::Select(cell, beside));
+        apply(driven, Action::Select(cell, beside));
     }
     driven.wait("curves", |w| {
         let curves = w.document().and_then(|d| d.curves.as_ref());
         curves.is_some_and(|c| c.points.len() == 2)
     });
     driven.wait_final();
-    shot(&mut driven, "8_cells");
+    shot(driven, "8_cells");
     driven.click("Transfer function");
     // Before and after, with a line to drag.
     let comparison = Comparison {
@@ -137,6 +147,6 @@ fn the_tour_is_walked() {
         step: Some(strataray::scene::StepSpec::Index(0)),
         ..Comparison::default()
     };
-    apply(&mut driven, Action::Compare(Some(comparison)));
-    shot(&mut driven, "9_compare");
+    apply(driven, Action::Compare(Some(comparison)));
+    shot(driven, "9_compare");
 }
