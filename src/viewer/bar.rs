@@ -181,7 +181,8 @@ fn message(window: &Window, ui: &mut Ui) {
         Some((text, false)) => ui.label(text),
         None => {
             // Why a case that is shown could not be read again.
-            let error = window.document().and_then(|d| d.error.as_deref());
+            let shown = window.document().filter(|d| d.case.is_some());
+            let error = shown.and_then(|d| d.error.as_deref());
             ui.colored_label(red, error.unwrap_or_default())
         }
     };
