@@ -1,12 +1,13 @@
 //! What keys and menus do.
 
+use std::path::PathBuf;
 use std::time::Instant;
 
 use eframe::egui::Context;
 
 use super::action::Action;
 use super::command;
-use super::dialogs::{Chosen, Dialog};
+use super::dialogs::{Dialog, Purpose};
 use super::document::Document;
 use super::export::Export;
 use super::keys::Command;
@@ -19,16 +20,12 @@ impl Window {
     /// Does what a key or a line of a menu says.
     pub(super) fn perform(&mut self, ctx: &Context, command: Command) {
         match command {
-            Command::Open => self.dialog = Some(Dialog::open(ctx, Chosen::Case)),
+            Command::Open => self.ask_file(ctx, Purpose::Case),
             Command::Close => self.close(self.current),
             Command::Reload => self.reload(ctx),
-            Command::SaveScene => {
-                self.dialog = Some(Dialog::save(ctx, "scene.json", Chosen::SaveScene));
-            }
-            Command::LoadScene => self.dialog = Some(Dialog::open(ctx, Chosen::LoadScene)),
-            Command::SaveTable => {
-                self.dialog = Some(Dialog::save(ctx, "cells.csv", Chosen::SaveTable));
-            }
+            Command::SaveScene => self.ask_file(ctx, Purpose::SaveScene),
+            Command::LoadScene => self.ask_file(ctx, Purpose::LoadScene),
+            Command::SaveTable => self.ask_file(ctx, Purpose::SaveTable),
             Command::Screenshot => self.sheets.export = Some(false),
             Command::Film => self.sheets.export = Some(true),
             Command::CopyLine => self.copy_command(ctx),
@@ -81,27 +78,28 @@ impl Window {
         self.answer(told);
     }
 
-    /// Does what a dialog was for.
-    pub(super) fn choose(&mut self, ctx: &Context, chosen: Chosen) {
-        match chosen {
-            Chosen::Case(path) => self.open(ctx, path),
-            Chosen::LoadScene(path) => {
-                let told = self.load_scene(&path);
-                self.answer(told);
+    /// Asks for a file.
+    pub(super) fn ask_file(&mut self, ctx: &Context, purpose: Purpose) {
+        self.dialog = Some(Dialog::begin(ctx, purpose));
+    }
+
+    /// Does what a file was asked for.
+    pub(super) fn choose(&mut self, ctx: &Context, purpose: Purpose, path: PathBuf) {
+        let told = match purpose {
+            Purpose::Case => {
+                self.open(ctx, path);
+                return;
             }
-            Chosen::SaveScene(path) => {
-                let told = self.save_scene(&path);
-                self.answer(told);
-            }
-            Chosen::SaveTable(path) => {
-                let told = self.save_table(&path);
-                self.answer(told);
-            }
-            Chosen::Export(spec, path) => {
+            Purpose::Export(spec) => {
                 let waker = ctx.clone();
                 self.export = Some(Export::begin(*spec, path, move || waker.request_repaint()));
+                return;
             }
-        }
+            Purpose::LoadScene => self.load_scene(&path),
+            Purpose::SaveScene => self.save_scene(&path),
+            Purpose::SaveTable => self.save_table(&path),
+        };
+        self.answer(told);
     }
 }
 

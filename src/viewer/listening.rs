@@ -5,7 +5,7 @@ use std::sync::Arc;
 use eframe::egui::Context;
 
 use super::action::{Action, Beside};
-use super::dialogs::Dialog;
+use super::dialogs::{Dialog, Outcome, PathSheet};
 use super::document::Document;
 use super::export::Export;
 use super::pictures::Event;
@@ -37,10 +37,12 @@ impl Window {
         for path in dropped.iter().map(|f| f.path().to_owned()) {
             self.open(ctx, path);
         }
-        if let Some(chosen) = self.dialog.as_ref().and_then(Dialog::poll) {
+        if let Some(outcome) = self.dialog.as_ref().and_then(Dialog::poll) {
             self.dialog = None;
-            if let Some(chosen) = chosen {
-                self.choose(ctx, chosen);
+            match outcome {
+                Outcome::Chosen(purpose, path) => self.choose(ctx, purpose, path),
+                Outcome::Left => {}
+                Outcome::NoDialog(purpose) => self.sheets.path = Some(PathSheet::new(purpose)),
             }
         }
         if let Some(done) = self.export.as_ref().and_then(Export::poll) {

@@ -2,7 +2,7 @@
 
 use eframe::egui::{self, Context, Ui};
 
-use super::dialogs::{Chosen, Dialog};
+use super::dialogs::{PathSheet, Purpose};
 use super::export::{ExportSpec, Kind};
 use super::keys;
 use super::settings::{Export, Mouse};
@@ -18,6 +18,8 @@ pub struct Sheets {
     pub notes: bool,
     /// How a picture (false) or a film (true) is saved.
     pub export: Option<bool>,
+    /// The path of a file.
+    pub path: Option<PathSheet>,
 }
 
 impl Window {
@@ -44,6 +46,12 @@ impl Window {
             });
         if let Some(is_film) = self.sheets.export {
             self.export_sheet(ctx, is_film);
+        }
+        if let Some(answer) = self.sheets.path.as_mut().and_then(|sheet| sheet.show(ctx)) {
+            self.sheets.path = None;
+            if let Some((purpose, path)) = answer {
+                self.choose(ctx, purpose, path);
+            }
         }
     }
 
@@ -96,10 +104,7 @@ impl Window {
                 kind,
                 plain: !export.annotated,
             };
-            let name = if is_film { "film.png" } else { "picture.png" };
-            self.dialog = Some(Dialog::save(ctx, name, move |path| {
-                Chosen::Export(Box::new(spec), path)
-            }));
+            self.ask_file(ctx, Purpose::Export(Box::new(spec)));
         }
     }
 }

@@ -54,6 +54,34 @@ fn a_saved_scene_makes_the_same_picture() {
 }
 
 #[test]
+fn without_a_dialog_of_the_system_a_path_is_typed() {
+    let Some(_) = gpu() else { return };
+    if std::env::var_os("DISPLAY").is_some() || std::env::var_os("WAYLAND_DISPLAY").is_some() {
+        eprintln!("SKIPPED: with a display, the system may show a dialog of its own");
+        return;
+    }
+    let mut driven = Driven::showing(sample());
+    driven.press(Modifiers::COMMAND, Key::S);
+    while driven.harness.query_by_label("Path").is_none() {
+        driven.step();
+        std::thread::sleep(std::time::Duration::from_millis(10));
+    }
+    let file = driven.folder.path().join("typed.json");
+    driven.press(Modifiers::COMMAND, Key::A);
+    driven
+        .harness
+        .get_by_label("Path")
+        .type_text(&file.display().to_string());
+    driven.step();
+    driven.press(Modifiers::NONE, Key::Enter);
+    let (message, is_error) = driven.harness.state().message().unwrap();
+    assert!(!is_error && message.contains("typed.json"), "{message}");
+    let read: Scene = serde_json::from_str(&std::fs::read_to_string(&file).unwrap()).unwrap();
+    assert_eq!(&read, driven.scene());
+    assert!(driven.harness.query_by_label("Path").is_none());
+}
+
+#[test]
 fn what_was_chosen_is_remembered() {
     let Some(_) = gpu() else { return };
     let mut driven = Driven::showing(sample());
