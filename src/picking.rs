@@ -8,7 +8,7 @@ use crate::gpu::GpuError;
 use crate::model::topology::{Behind, Face};
 use crate::model::{Grid, Ijk};
 use crate::renderer::Renderer;
-use crate::scene::View;
+use crate::scene::{Surfaces, View};
 
 /// Opacity that a ray must have gathered to have met something.
 const SEEN: f64 = 0.1;
@@ -77,18 +77,31 @@ pub fn pick(
             found.push((distance, ijk, Part::Section));
         }
     }
-    found.extend(surface(case, view, &ray));
+    found.extend(surface(case, view, view.surfaces, &ray));
     let nearest = found.into_iter().min_by(|a, b| a.0.total_cmp(&b.0));
-    Ok(nearest.map(|(distance, ijk, part)| {
-        let world = ray.at(distance);
-        let map = DVec3::new(world.x, world.y, -world.z / view.vertical_exaggeration);
-        Hit {
-            ijk,
-            world,
-            map,
-            part,
-        }
-    }))
+    Ok(nearest.map(|(distance, ijk, part)| hit(view, ray.at(distance), ijk, part)))
+}
+
+fn hit(view: &View, world: DVec3, ijk: Ijk, part: Part) -> Hit {
+    let map = DVec3::new(world.x, world.y, -world.z / view.vertical_exaggeration);
+    Hit {
+        ijk,
+        world,
+        map,
+        part,
+    }
+}
+
+/// The nearest fault under a place in the picture, whatever of the volume is before it; `None` where the view
+/// shows none there.
+pub fn fault_under(case: &Case, view: &View, at: DVec2) -> Option<Hit> {
+    let ray = Ray::through(view, at);
+    let surfaces = Surfaces {
+        hull: false,
+        ..view.surfaces
+    };
+    let (distance, ijk, part) = surface(case, view, surfaces, &ray)?;
+    Some(hit(view, ray.at(distance), ijk, part))
 }
 
 struct Ray {
@@ -138,14 +151,14 @@ fn section(view: &View, ray: &Ray) -> Option<f64> {
     last.1.then_some(last.0)
 }
 
-/// The nearest face that the view shows.
-fn surface(case: &Case, view: &View, ray: &Ray) -> Option<(f64, Ijk, Part)> {
+/// The nearest face of some surfaces.
+fn surface(case: &Case, view: &View, surfaces: Surfaces, ray: &Ray) -> Option<(f64, Ijk, Part)> {
     let grid = &case.grid;
     let mut faces = Vec::new();
-    if view.surfaces.hull {
+    if surfaces.hull {
         faces.extend(view.hull_faces(grid));
     }
-    if view.surfaces.faults {
+    if surfaces.faults {
         let faults = view.fault_faces(grid);
         faces.extend(faults.into_iter().map(|(ijk, face, _)| (ijk, face)));
     }

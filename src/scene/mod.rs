@@ -17,7 +17,7 @@ pub use camera::{Camera, Projection};
 pub use film::{Sequence, Turn};
 pub use half_turns::{NamedView, TurnAxis, half_turns};
 pub use lighting::{LightMode, Lighting, LightingSpec};
-pub use resolve::{ClipPlane, SceneError, View, default_property, resolve};
+pub use resolve::{ClipPlane, SceneError, View, default_property, model_corners, resolve};
 pub use settings::{ClipSpec, CutFace, Integration, LibcSettings, SrgSettings};
 pub use surfaces::{Hull, Surfaces};
 pub use transfer::{

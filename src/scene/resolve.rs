@@ -353,6 +353,15 @@ pub(super) fn positive(field: &'static str, value: f64) -> Result<f64, SceneErro
     }
 }
 
+/// Corners of the model's box in world space, at a vertical exaggeration or the one that suits it; `None` of a
+/// model without active cells.
+pub fn model_corners(case: &Case, exaggeration: Option<f64>) -> Option<[DVec3; 8]> {
+    let bounds = case.grid.bounds()?;
+    let factor = exaggeration.unwrap_or_else(|| automatic_exaggeration(bounds));
+    let spaces = Spaces::new(case.grid.map_axes(), factor);
+    Some(box_corners(&spaces, bounds))
+}
+
 /// Makes the model a quarter as high as it is wide, in the steps that engineers use.
 fn automatic_exaggeration(bounds: [DVec3; 2]) -> f64 {
     let size = bounds[1] - bounds[0];

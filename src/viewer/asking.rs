@@ -4,11 +4,12 @@ use std::sync::Arc;
 
 use eframe::egui::Context;
 
+use super::link::Link;
 use super::reader::Cells;
 use super::window::Window;
 use super::worker::Wanted;
 use crate::case::Case;
-use crate::scene::Scene;
+use crate::scene::{Scene, StepSpec, model_corners};
 
 /// What the reader was asked for last.
 #[derive(Default, PartialEq)]
@@ -54,38 +55,54 @@ impl Window {
             };
             wanted.push(Wanted { case, scene });
         }
-        if let (Some(comparison), Some(size), Some(case)) =
-            (&setup.comparison, sizes[1], self.other_case())
-        {
-            let scene = match comparison.case {
-                Some(_) => setup.compared(&self.linked(&setup.scene)),
-                None => setup.compared(&setup.scene),
-            };
-            wanted.extend(scene.map(|scene| Wanted {
+        if let (Some(size), Some((case, scene))) = (sizes[1], self.other()) {
+            wanted.push(Wanted {
                 case,
                 scene: Scene { size, ..scene },
-            }));
+            });
         }
         wanted
     }
 
-    /// The scene with camera and exaggeration of the first picture, which may depend on its case.
-    fn linked(&self, scene: &Scene) -> Scene {
-        let Some((picture, _)) = self.picture(0) else {
-            return scene.clone();
-        };
-        let size = picture.view.size;
-        let camera = picture.view.seen_from(&scene.camera, size);
-        Scene {
-            camera: camera.map_or_else(
-                |_| scene.camera.clone(),
-                |v| super::orbit::spec(&v.camera, &v.box_corners),
-            ),
-            vertical_exaggeration: scene
-                .vertical_exaggeration
-                .or(Some(picture.view.vertical_exaggeration)),
-            ..scene.clone()
+    /// The second picture's case and scene, if there is one.
+    pub(super) fn other(&self) -> Option<(Arc<Case>, Scene)> {
+        let setup = &self.document()?.state.setup;
+        let other = self.other_case()?;
+        let mut scene = setup.compared(&setup.scene)?;
+        let comparison = setup.comparison.as_ref()?;
+        if comparison.case.is_some() {
+            let case = self.document()?.case.as_ref()?;
+            scene.step = same_date(case, &scene.step, &other);
+            let link = self.link()?;
+            let (picture, _) = self.picture(0)?;
+            let view = &picture.view;
+            if link.is_one_world() {
+                // One that frames its own model would not look from the same place.
+                let now = view.seen_from(&scene.camera, view.size);
+                scene.camera = now.map_or_else(
+                    |_| scene.camera.clone(),
+                    |v| super::orbit::spec(&v.camera, &v.box_corners),
+                );
+                scene.vertical_exaggeration = Some(view.vertical_exaggeration);
+            } else {
+                scene.camera = link.there(&scene.camera);
+            }
         }
+        Some((other, scene))
+    }
+
+    /// How the worlds of both cases belong together; `None` where there is one case.
+    pub(super) fn link(&self) -> Option<Link> {
+        let document = self.document()?;
+        document.state.setup.comparison.as_ref()?.case.as_ref()?;
+        let other = self.other_case()?;
+        let exaggeration = document.state.setup.scene.vertical_exaggeration;
+        let case = document.case.as_ref()?;
+        let corners = model_corners(case, exaggeration)?;
+        Some(Link::between(
+            &corners,
+            &model_corners(&other, exaggeration)?,
+        ))
     }
 
     /// Asks for the values that panels show, and for those of the next steps.
@@ -144,4 +161,25 @@ impl Window {
         }
         self.asked = asked;
     }
+}
+
+/// The step of another case with the date of this one's, or the one nearest to it.
+fn same_date(case: &Case, step: &StepSpec, other: &Case) -> StepSpec {
+    let number = match step {
+        StepSpec::Index(n) => Some(*n),
+        StepSpec::Name(name) => case.step(name).ok(),
+    };
+    let Some(date) = number.and_then(|n| case.steps.get(n)).map(|s| day(&s.date)) else {
+        return step.clone();
+    };
+    let apart = |n: &usize| (day(&other.steps[*n].date) - date).abs();
+    let nearest = (0..other.steps.len()).min_by_key(apart);
+    nearest.map_or_else(|| step.clone(), StepSpec::Index)
+}
+
+/// A date as a number that grows by about one a day.
+fn day(date: &str) -> i64 {
+    let mut parts = date.split('-').map(|p| p.parse::<i64>().unwrap_or(0));
+    let mut next = || parts.next().unwrap_or(0);
+    372 * next() + 31 * next() + next()
 }

@@ -12,6 +12,7 @@ use super::document::Document;
 use super::export::Export;
 use super::keys::Command;
 use super::settings::Mouse;
+use super::sheets::Sheets;
 use super::state::{Comparison, next_strategy};
 use super::window::Window;
 use crate::scene::LightingSpec;
@@ -48,6 +49,13 @@ impl Window {
             }
             Command::Help => self.sheets.keys = !self.sheets.keys,
             Command::Notes => self.sheets.notes = !self.sheets.notes,
+            Command::Deselect if self.sheets.are_open() => self.sheets = Sheets::default(),
+            Command::Compare => {
+                let told = self
+                    .document_mut()
+                    .and_then(|d| change(d, Command::Compare));
+                self.message = told.map(|told| (told, false));
+            }
             other => {
                 let told = self.document_mut().and_then(|d| change(d, other));
                 if let Some(told) = told {
@@ -143,7 +151,11 @@ fn change(document: &mut Document, command: Command) -> Option<String> {
                 Some(_) => None,
                 None => Some(Comparison::with_next_strategy(&document.state.setup.scene)),
             };
+            let told = next.as_ref().and_then(|c| c.strategy.clone()).map(|strategy| {
+                format!("compared with {strategy}; the panel Compare has steps, properties and cases too")
+            });
             document.apply(Action::Compare(next));
+            return told;
         }
         Command::Deselect => document.apply(Action::Deselect),
         _ => {}

@@ -1,6 +1,6 @@
 //! Keyboard shortcuts: one table for what they do and for the sheet that lists them.
 
-use eframe::egui::{Context, Key, KeyboardShortcut, Modifiers};
+use eframe::egui::{self, Context, Key, KeyboardShortcut, Modifiers};
 
 use super::looking::Look;
 
@@ -132,7 +132,12 @@ pub const SHORTCUTS: [(Modifiers, Key, Command, &str); 48] = [
         "Save the values of the selected cells",
     ),
     (NONE, Key::C, Command::Compare, "Compare two pictures"),
-    (NONE, Key::Escape, Command::Deselect, "Select no cell"),
+    (
+        NONE,
+        Key::Escape,
+        Command::Deselect,
+        "Close what is open, or select no cell",
+    ),
     (CTRL, Key::B, Command::Panels, "Panels or the picture alone"),
     (CTRL, Key::N, Command::Notes, "What was not loaded"),
     (NONE, Key::F1, Command::Help, "This sheet"),
@@ -151,9 +156,11 @@ pub fn pressed(ctx: &Context) -> Vec<Command> {
         return Vec::new();
     }
     let is_focused = ctx.memory(|m| m.focused().is_some());
+    // Escape closes a menu or list that is open, by itself.
+    let is_open = egui::Popup::is_any_open(ctx);
     let taken = |(modifiers, key, command, _): &(Modifiers, Key, Command, &str)| {
         let is_function = (Key::F1..=Key::F35).contains(key);
-        if is_focused && !modifiers.command && !is_function {
+        if is_focused && !modifiers.command && !is_function || is_open && *key == Key::Escape {
             return None;
         }
         let shortcut = KeyboardShortcut::new(*modifiers, *key);

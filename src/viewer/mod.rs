@@ -15,6 +15,7 @@ mod handles;
 mod history;
 mod keeping;
 mod keys;
+mod link;
 mod listening;
 mod loading;
 mod looking;

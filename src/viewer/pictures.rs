@@ -79,6 +79,8 @@ struct Flight {
     /// In full size.
     wanted: Wanted,
     is_draft: bool,
+    /// It takes longer than a draft may.
+    is_slow: bool,
     is_cancelled: bool,
 }
 
@@ -125,11 +127,6 @@ impl Pictures {
         self.difference.as_ref().filter(is_of)
     }
 
-    /// How far the last pictures that were compared are apart, be others shown meanwhile.
-    pub fn last_difference(&self) -> Option<&ShownDifference> {
-        self.difference.as_ref()
-    }
-
     /// True where all that is wanted is shown, in full.
     pub fn are_final(&self) -> bool {
         let sides = self.wanted.iter().zip(&self.sides);
@@ -144,7 +141,7 @@ impl Pictures {
 
     /// Asks what lies under a place; a final picture on its way is left, to be begun again after it.
     pub fn pick(&mut self, side: usize, wanted: Wanted, at: DVec2, why: Why) {
-        if let Some(flight) = self.flight.as_mut().filter(|f| !f.is_draft) {
+        if let Some(flight) = self.flight.as_mut().filter(|f| f.is_slow) {
             flight.is_cancelled = true;
             self.worker.cancel();
         }
@@ -223,7 +220,8 @@ impl Pictures {
         }
         if let Some(flight) = &mut self.flight {
             let is_wanted = self.wanted.get(flight.side) == Some(&flight.wanted);
-            if !flight.is_draft && !flight.is_cancelled && !is_wanted {
+            // Time that plays does not wait for final pictures.
+            if flight.is_slow && !flight.is_cancelled && (!is_wanted || plays) {
                 flight.is_cancelled = true;
                 self.worker.cancel();
             }
@@ -249,11 +247,12 @@ impl Pictures {
             }
             _ => None,
         };
-        self.send(side, part);
+        let is_slow = matches!(dues[side], Due::Slow);
+        self.send(side, part, is_slow);
     }
 
     /// Asks for a side's picture, at a part of its size where it is a draft.
-    fn send(&mut self, side: usize, part: Option<f64>) {
+    fn send(&mut self, side: usize, part: Option<f64>, is_slow: bool) {
         let wanted = self.wanted[side].clone();
         let mut job = wanted.clone();
         if let Some(part) = part {
@@ -272,6 +271,7 @@ impl Pictures {
             side,
             wanted,
             is_draft: part.is_some(),
+            is_slow,
             is_cancelled: false,
         });
     }

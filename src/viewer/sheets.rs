@@ -22,12 +22,20 @@ pub struct Sheets {
     pub path: Option<PathSheet>,
 }
 
+impl Sheets {
+    /// True where one is.
+    pub fn are_open(&self) -> bool {
+        self.keys || self.notes || self.export.is_some() || self.path.is_some()
+    }
+}
+
 impl Window {
     /// Draws the sheets that are open.
     pub(super) fn show_sheets(&mut self, ctx: &Context) {
         egui::Window::new("Keys")
             .open(&mut self.sheets.keys)
             .vscroll(true)
+            .default_height(560.0)
             .show(ctx, |ui| {
                 shortcuts(ui, ctx, self.settings.mouse);
             });

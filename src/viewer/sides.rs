@@ -16,7 +16,7 @@ use super::{handles, keys::Command, marks, overlay};
 use crate::case::Case;
 use crate::picking::Hit;
 use crate::picture::Annotations;
-use crate::scene::Scene;
+use crate::scene::{CameraSpec, Scene};
 
 /// Where the pictures are, and what the pointer is on.
 #[derive(Default)]
@@ -66,6 +66,7 @@ impl Window {
             self.panels(ui, &case, &mut actions);
         }
         let touched = self.pictures(ui, ctx, &case);
+        actions.extend(touched.camera.map(Action::Camera));
         actions.extend(touched.actions);
         for action in actions {
             self.apply(action);
@@ -85,7 +86,7 @@ impl Window {
             state: &document.state,
             scene: &setup.scene,
             picture: self.pictures.shown(0, case).map(|s| &s.picture),
-            difference: self.pictures.last_difference().filter(|_| is_difference),
+            difference: self.pictures.difference().filter(|_| is_difference),
             hit: document.hit.as_ref(),
             table: document.table.as_ref(),
             curves: document.curves.as_ref(),
@@ -104,18 +105,23 @@ impl Window {
         let setup = document.state.setup.clone();
         let place = ui.available_rect_before_wrap();
         let (mut rects, layout) = layout(place, setup.comparison.as_ref());
-        let other = self.other_case().filter(|_| layout.is_some());
+        let other = self.other();
         if other.is_none() {
             rects = [Some(place), None];
         }
         self.sides.rects = rects;
         let mut touched = self.viewport(ui, case, &setup.scene, rects[0], 0);
-        if let (Some(other), Some(rect), Some(comparison)) = (other, rects[1], &setup.comparison) {
-            let scene = setup.compared(&setup.scene).unwrap_or_default();
+        let mut on_other = None;
+        if let (Some((other, scene)), Some(rect), Some(comparison)) =
+            (other, rects[1], &setup.comparison)
+        {
             match layout {
                 Some(Layout::Beside) => {
-                    let on_other = self.viewport(ui, &other, &scene, Some(rect), 1);
-                    touched.join(on_other);
+                    let there = self.viewport(ui, &other, &scene, Some(rect), 1);
+                    let link = self.link();
+                    let back = |c| link.map_or_else(|| CameraSpec::clone(&c), |l| l.back(&c));
+                    touched.camera = touched.camera.or(there.camera.map(back));
+                    on_other = there.pick.map(|at| (other.clone(), scene.clone(), at));
                 }
                 Some(Layout::Wipe(at)) => {
                     let moved = self.wipe(ui, &other, &scene, rect, at);
@@ -138,14 +144,35 @@ impl Window {
         {
             let view = shown.picture.view.clone();
             let scene = &setup.scene;
-            let selected = self.document().map(|d| d.state.selected.as_slice());
-            marks::show(ui, rect, &view, scene, case, selected.unwrap_or_default());
+            self.mark(ui, &rects, case, setup.comparison.as_ref(), scene);
             if let Some(planes) = handles::show(ui, rect, &view, scene) {
                 touched.actions.push(Action::Clip(planes));
             }
         }
-        self.point(ui, ctx, case, &setup.scene, &touched);
+        self.pick(ctx, case, &setup.scene, touched.pick, on_other);
+        self.hover(ui, ctx, case, &setup.scene);
         touched
+    }
+
+    /// Marks the selected cells in each picture of their case.
+    fn mark(
+        &self,
+        ui: &Ui,
+        rects: &[Option<Rect>; 2],
+        case: &Arc<Case>,
+        comparison: Option<&Comparison>,
+        scene: &Scene,
+    ) {
+        let Some(document) = self.document() else {
+            return;
+        };
+        let is_beside = comparison.is_some_and(|c| c.layout == Layout::Beside);
+        for (n, rect) in rects.iter().enumerate().take(1 + usize::from(is_beside)) {
+            if let (Some(rect), Some(shown)) = (rect, self.pictures.shown(n, case)) {
+                let view = &shown.picture.view;
+                marks::show(ui, *rect, view, scene, case, &document.state.selected);
+            }
+        }
     }
 
     /// One picture with what is drawn over it.
@@ -247,39 +274,52 @@ impl Window {
         overlay::difference(&painter, rect, &shown.difference.figures);
     }
 
-    /// What was clicked, and what the pointer rests on.
-    fn point(
+    /// Asks for the cell that was clicked, in the first picture or the second one.
+    fn pick(
         &mut self,
-        ui: &mut Ui,
         ctx: &Context,
         case: &Arc<Case>,
         scene: &Scene,
-        touched: &Touched,
+        at: Option<DVec2>,
+        on_other: Option<(Arc<Case>, Scene, DVec2)>,
     ) {
-        let sizes = self.sides.sizes(ctx.pixels_per_point());
-        let Some(size) = sizes[0] else { return };
-        let wanted = || Wanted {
+        let why = match ctx.input(|i| i.modifiers.command) {
+            true => Why::Join,
+            false => Why::Select,
+        };
+        if let (Some(at), Some(wanted)) = (at, self.sized(ctx, case, scene)) {
+            self.pictures.pick(0, wanted, at, why);
+        }
+        match on_other {
+            Some((other, scene, at)) if Arc::ptr_eq(&other, case) => {
+                if let Some(wanted) = self.sized(ctx, &other, &scene) {
+                    self.pictures.pick(1, wanted, at, why);
+                }
+            }
+            Some(_) => self.tell("cells of the other case are selected in its own tab"),
+            None => {}
+        }
+    }
+
+    /// A scene in the size of the first picture; of two beside each other the second one has that too.
+    fn sized(&self, ctx: &Context, case: &Arc<Case>, scene: &Scene) -> Option<Wanted> {
+        let size = self.sides.sizes(ctx.pixels_per_point())[0]?;
+        Some(Wanted {
             case: case.clone(),
             scene: Scene {
                 size,
                 ..scene.clone()
             },
-        };
-        if let Some(at) = touched.pick {
-            let why = match ctx.input(|i| i.modifiers.command) {
-                true => Why::Join,
-                false => Why::Select,
-            };
-            self.pictures.pick(0, wanted(), at, why);
-        }
-        let Some(rect) = self.sides.rects[0] else {
+        })
+    }
+
+    /// Reads the fault that the pointer rests on.
+    fn hover(&mut self, ui: &Ui, ctx: &Context, case: &Arc<Case>, scene: &Scene) {
+        let Some(rect) = self.sides.rects[0].filter(|_| scene.show.faults) else {
             return;
         };
-        // Only surfaces say more than a click would tell, and only they are found quickly.
-        let says_more = scene.show.faults;
         let pointer = ctx.input(|i| i.pointer.hover_pos());
-        let pointer =
-            pointer.filter(|p| rect.contains(*p) && says_more && !ctx.egui_is_using_pointer());
+        let pointer = pointer.filter(|p| rect.contains(*p) && !ctx.egui_is_using_pointer());
         if self.sides.asked != pointer {
             self.sides.hover = None;
         }
@@ -289,23 +329,19 @@ impl Window {
         };
         if self.sides.asked != Some(pointer) {
             let still = ctx.input(|i| f64::from(i.pointer.time_since_last_movement()));
-            if still >= REST && self.pictures.on_its_way().is_none() {
+            let is_free = self.pictures.on_its_way().is_none();
+            if still < REST || !is_free {
+                ctx.request_repaint_after_secs((REST - still).max(0.02) as f32);
+            } else if let Some(wanted) = self.sized(ctx, case, scene) {
                 self.sides.asked = Some(pointer);
                 let at = (pointer - rect.min) / rect.size();
                 let at = DVec2::new(f64::from(at.x), f64::from(at.y));
-                self.pictures.pick(0, wanted(), at, Why::Hover);
-            } else {
-                ctx.request_repaint_after_secs((REST - still).max(0.02) as f32);
+                self.pictures.pick(0, wanted, at, Why::Hover);
             }
         }
-        if let Some(text) = self
-            .sides
-            .hover
-            .as_ref()
-            .and_then(|h| panels::hover_text(h, case))
-        {
-            let at = pointer + vec2(14.0, 14.0);
-            overlay::tip(ui, at, &text);
+        let text = self.sides.hover.as_ref();
+        if let Some(text) = text.and_then(|hit| panels::hover_text(hit, case)) {
+            overlay::tip(ui, pointer + vec2(14.0, 14.0), &text);
         }
     }
 }

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use glam::DVec2;
 
-use super::worker::{Answer, Difference, Job, Picture, Wanted};
+use super::worker::{Answer, Difference, Job, Picture, Wanted, Why};
 use crate::case::Case;
 use crate::gpu::Gpu;
 use crate::metrics::{Comparison, ciede2000_map};
@@ -78,7 +78,10 @@ impl Studio {
                 at,
                 why,
             } => {
-                let hit = self.pick(side, &wanted, at, say);
+                let hit = match why {
+                    Why::Hover => self.sides[side].fault(&wanted, at),
+                    Why::Select | Why::Join => self.pick(side, &wanted, at, say),
+                };
                 hit.map(|hit| Answer::Picked(why, hit))
             }
             Job::Difference(of) => difference(of).map(|d| Answer::Difference(Box::new(d))),
@@ -172,6 +175,12 @@ impl Side {
             }
         };
         Ok(&mut self.renderer.insert(kept).1)
+    }
+
+    /// The fault under a place, which needs no device.
+    fn fault(&mut self, wanted: &Wanted, at: DVec2) -> Result<Option<Hit>, Failure> {
+        let view = self.view(wanted)?;
+        Ok(picking::fault_under(&wanted.case, &view, at))
     }
 
     /// The scene resolved; where only camera and size differ from a known one, without reading values.

@@ -12,7 +12,7 @@ use super::{orbit, overlay};
 use crate::case::Case;
 use crate::model::Grid;
 use crate::picture::Annotations;
-use crate::scene::{Camera, Scene, View};
+use crate::scene::{Camera, CameraSpec, Scene, View};
 
 /// What the viewport keeps from frame to frame.
 #[derive(Default)]
@@ -33,17 +33,12 @@ struct Drawn {
 /// What the pointer did.
 #[derive(Default)]
 pub struct Touched {
-    /// Changes of the scene.
+    /// Where the camera was moved to.
+    pub camera: Option<CameraSpec>,
+    /// Other changes of the scene.
     pub actions: Vec<Action>,
     /// A place was clicked, 0 to 1 to the right and down.
     pub pick: Option<DVec2>,
-}
-
-impl Touched {
-    /// Adds what the pointer did to another picture, but for what was clicked there.
-    pub fn join(&mut self, other: Self) {
-        self.actions.extend(other.actions);
-    }
 }
 
 impl Viewport {
@@ -73,8 +68,7 @@ impl Viewport {
         overlay::draw(&painter, rect, &now, &Annotations::of(case, &now));
         let input = Input::of(ui, &response, rect, mouse);
         if let Some(camera) = self.moved(&input, &now, &case.grid) {
-            let spec = orbit::spec(&camera, &now.box_corners);
-            touched.actions.push(Action::Camera(spec));
+            touched.camera = Some(orbit::spec(&camera, &now.box_corners));
         }
         if response.clicked() {
             touched.pick = input.at;
