@@ -51,6 +51,8 @@ enum Role {
     Separate(u32),
     Deck,
     Text,
+    /// Curves over time, which belong to the case but are no part of it here.
+    Summary,
     NotRead(&'static str),
 }
 
@@ -68,6 +70,7 @@ fn role(path: &Path) -> Option<Role> {
         "INIT" => Role::Init,
         "UNRST" => Role::Unified,
         "DATA" => Role::Deck,
+        "SMSPEC" | "UNSMRY" | "ESMRY" => Role::Summary,
         "GRDECL" => Role::Text,
         // Text grids are called .grid too; a binary file starts with the length of its first record.
         "GRID" if !starts_binary(path) => Role::Text,
@@ -96,7 +99,8 @@ fn sniff(path: &Path) -> Role {
     }
 }
 
-/// Finds the case that `path` names: one of its files, or its base name without extension.
+/// Finds the case that `path` names: one of its files, its base name without extension, or a folder with one
+/// EGRID file.
 ///
 /// A `.grdecl` file named by the user is the grid itself; a file with an unknown extension is taken
 /// for an EGRID or a text grid by its first bytes. EGRID goes before decks, unified before
@@ -105,6 +109,9 @@ fn sniff(path: &Path) -> Role {
 /// # Errors
 /// When no grid is found; the sentence says what was looked for.
 pub fn find(path: &Path) -> Result<CaseFiles, ParseError> {
+    if let Some(only) = only_grid(path) {
+        return find(&only);
+    }
     let named = path.is_file().then(|| sniff(path));
     let stem = match named.or_else(|| role(path)) {
         Some(_) => path.file_stem(),
@@ -176,6 +183,14 @@ pub fn find(path: &Path) -> Result<CaseFiles, ParseError> {
             .filter_map(|(p, r)| Some((p.clone(), reason(r)?)))
             .collect(),
     })
+}
+
+/// The grid of a folder that has one case.
+fn only_grid(folder: &Path) -> Option<PathBuf> {
+    let files = std::fs::read_dir(folder).ok()?.flatten().map(|e| e.path());
+    let mut grids = files.filter(|p| role(p) == Some(Role::Egrid));
+    let first = grids.next()?;
+    grids.next().is_none().then_some(first)
 }
 
 /// Files beside `path` with the same stem, whatever the letter case, and a known extension.

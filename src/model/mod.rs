@@ -9,6 +9,7 @@ pub mod fields;
 pub mod grid;
 pub mod ids;
 pub mod spaces;
+pub mod summary;
 pub mod synthetic;
 pub mod topology;
 
@@ -18,3 +19,4 @@ pub use fields::{CellField, Statistics, VertexField};
 pub use grid::{Grid, GridInput, ModelError, Pillar};
 pub use ids::{ActiveIndex, CellIndex, Dims, Ijk};
 pub use spaces::{MapAxes, Spaces};
+pub use summary::Summary;

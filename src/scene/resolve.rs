@@ -204,6 +204,11 @@ pub(super) fn resolve_over(
     };
     let Colors { field, transfer } = colors::resolve(&asked, &field)?;
     let drawn = drawn(case, &field, &scene.filter, step)?;
+    let field = match scene.filter == Filter::default() {
+        true => field,
+        // Averages at vertices are of drawn cells: no color of a cell that is filtered away.
+        false => Arc::new(only(&field, &drawn)),
+    };
     let connections = match scene.show.nnc {
         true => connections(case, &spaces, &drawn),
         false => Vec::new(),
@@ -471,6 +476,16 @@ fn drawn(
         }
     }
     Ok(drawn)
+}
+
+/// The values of the drawn cells; the others have none.
+fn only(field: &CellField, drawn: &[bool]) -> CellField {
+    let values = field.values().iter().zip(drawn);
+    CellField::new(
+        values
+            .map(|(v, d)| if *d { *v } else { f32::NAN })
+            .collect(),
+    )
 }
 
 /// Middles of the cells of non-neighbor connections in world space, where both are drawn.

@@ -97,7 +97,7 @@ impl View {
     }
 
     /// Which active cells of `grid` (the case's) are drawn, by active index.
-    pub(super) fn drawn_active(&self, grid: &Grid) -> Vec<bool> {
+    pub fn drawn_active(&self, grid: &Grid) -> Vec<bool> {
         match &self.ghosts {
             None => self.drawn.to_vec(),
             Some(ghosts) => {

@@ -25,7 +25,7 @@ pub enum Quantity {
 const NAMES: [(Quantity, &[&str]); 6] = [
     (
         Quantity::Region,
-        &["*NUM", "FIP*", "FACIES*", "*FACIES", "ROCKTYPE"],
+        &["*NUM", "FIP*", "FACIES*", "*FACIES", "ROCKTYPE", "NNC"],
     ),
     (Quantity::Saturation, &["SWAT", "SGAS", "SOIL", "SSOL"]),
     (Quantity::Pressure, &["PRES*", "*PRES"]),

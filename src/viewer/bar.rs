@@ -150,11 +150,11 @@ pub fn bottom(window: &mut Window, ui: &mut Ui, ctx: &Context) {
             message(window, ui);
             let case = window.document().and_then(|d| d.case.as_ref());
             let notes = case.map_or(0, |c| c.about.notes.len());
-            if notes > 0
-                && ui
-                    .link(format!("{notes} notes on what was not loaded"))
-                    .clicked()
-            {
+            let text = match notes {
+                1 => "1 note on what was not loaded".to_owned(),
+                _ => format!("{notes} notes on what was not loaded"),
+            };
+            if notes > 0 && ui.link(text).clicked() {
                 command = Some(Command::Notes);
             }
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {

@@ -3,8 +3,10 @@
 use serde::{Deserialize, Serialize};
 
 use crate::case::{Case, Categories, ValueRange};
+use crate::model::derived::Derived;
 use crate::scene::{
-    ColorSpec, Coloring, Interpolation, OpacitySpec, RangeSpec, ScaleSpec, Scene, TransferSpec,
+    self, ColorSpec, Coloring, Interpolation, OpacitySpec, RangeSpec, ScaleSpec, Scene,
+    TransferSpec,
 };
 use crate::transfer::kinds::Quantity;
 
@@ -65,6 +67,56 @@ impl Look {
 /// Regions and differences need their values at all steps and permeabilities those of one, which are read
 /// here unless they are known; what cannot be read has the default look, and its picture says why.
 pub fn look_of(case: &Case, property: &str) -> Look {
+    let mut look = look_of_kind(case, property);
+    look.transfer.reference_length = seen_through(case);
+    if look.range == RangeSpec::STEP
+        && look.transfer.coloring != Coloring::Categories
+        && let Some(value) = constant(case, property)
+    {
+        // In the middle of the colors, not at their end.
+        let reach = (0.1 * value.abs()).max(0.1);
+        look.range = RangeSpec::Fixed([value - reach, value + reach]);
+    }
+    look
+}
+
+/// Layers of a model through which one looks from above: opacities refer to so thin a part of its thickness.
+const LAYERS: f64 = 8.0;
+
+/// The length to which opacities refer such that a model is seen and seen through, be it of two cells or of two
+/// hundred layers: a part of its mean thickness in world space. `None` of a model without a thickness.
+fn seen_through(case: &Case) -> Option<f64> {
+    let grid = &case.grid;
+    let thickness = Derived::Thickness.field(grid);
+    let total: f64 = thickness.values().iter().map(|v| f64::from(*v)).sum();
+    let dims = grid.dims();
+    let mut columns: Vec<u32> = grid
+        .active_cells()
+        .iter()
+        .map(|c| {
+            let ijk = dims.ijk(*c);
+            (ijk.i + ijk.j * dims.ni) as u32
+        })
+        .collect();
+    columns.sort_unstable();
+    columns.dedup();
+    let [bottom, .., top] = scene::model_corners(case, None)?;
+    let [low, high] = grid.bounds()?;
+    let exaggeration = (top.z - bottom.z).abs() / (high.z - low.z).abs().max(1e-9);
+    let mean = total / columns.len().max(1) as f64;
+    let length = exaggeration * mean / LAYERS;
+    (length > 0.0 && length.is_finite()).then_some(length)
+}
+
+/// The value of a property that is the same in all cells at the step shown first.
+fn constant(case: &Case, property: &str) -> Option<f64> {
+    let last = case.steps.len().saturating_sub(1);
+    let field = case.field(property, last).ok()?;
+    let statistics = field.statistics()?;
+    (statistics.min == statistics.max).then_some(statistics.min)
+}
+
+fn look_of_kind(case: &Case, property: &str) -> Look {
     let values = || case.range_over_steps(property).ok().flatten();
     match Quantity::of(property) {
         Quantity::Saturation => saturation(property),
@@ -127,7 +179,7 @@ mod tests {
     use std::path::Path;
 
     use super::*;
-    use crate::{load, scene};
+    use crate::load;
 
     fn sample() -> Case {
         let file = "samples/scissor/SCISSOR.EGRID";

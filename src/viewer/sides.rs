@@ -30,6 +30,8 @@ pub struct Sides {
     asked: Option<egui::Pos2>,
 }
 
+/// A narrower window shows no panels.
+const WIDTH_OF_PANELS: f32 = 700.0;
 /// Seconds that the pointer rests before what is under it is looked for.
 const REST: f64 = 0.35;
 /// Points on both sides of a wipe's line within which it is taken.
@@ -62,7 +64,7 @@ impl Window {
             return;
         };
         let mut actions = Vec::new();
-        if !self.settings.hides_panels {
+        if !self.settings.hides_panels && ui.available_width() >= WIDTH_OF_PANELS {
             self.panels(ui, &case, &mut actions);
         }
         let touched = self.pictures(ui, ctx, &case);
@@ -400,10 +402,15 @@ fn side(
             // Filled whatever is in it, so that the picture keeps its size.
             let scroll = egui::ScrollArea::vertical().auto_shrink(false);
             scroll.show(ui, |ui| {
-                for (title, is_open, show) in list {
-                    egui::CollapsingHeader::new(*title)
-                        .default_open(*is_open)
-                        .show(ui, |ui| show(ui, about, actions));
+                for panel in list {
+                    let title = match (panel.count)(about) {
+                        0 => panel.title.to_owned(),
+                        count => format!("{} ({count})", panel.title),
+                    };
+                    egui::CollapsingHeader::new(title)
+                        .id_salt(panel.title)
+                        .default_open(panel.is_open)
+                        .show(ui, |ui| (panel.show)(ui, about, actions));
                 }
             });
         });

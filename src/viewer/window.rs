@@ -123,6 +123,8 @@ impl Window {
             }
             _ => document.apply(action),
         }
+        // What was told of an earlier change is of no interest any more.
+        self.message = self.message.take().filter(|m| m.1);
     }
 
     /// What is told at the bottom, and whether it is an error.

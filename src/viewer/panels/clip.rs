@@ -42,6 +42,15 @@ pub fn show(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
         planes.remove(n);
     }
     add(ui, view, &mut planes);
+    if planes.len() > 1 {
+        let button = ui.button("Remove all");
+        if button
+            .on_hover_text("Shows the whole model again")
+            .clicked()
+        {
+            planes.clear();
+        }
+    }
     if planes != about.scene.clip {
         actions.push(Action::Clip(planes));
     }
@@ -51,7 +60,8 @@ pub fn show(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
 fn lean(ui: &mut Ui, view: &View, plane: &mut ClipSpec) {
     let normal = DVec3::from_array(plane.normal).normalize_or(DVec3::X);
     let mut azimuth = normal.x.atan2(normal.y).to_degrees().rem_euclid(360.0);
-    let mut dip = normal.z.clamp(-1.0, 1.0).asin().to_degrees();
+    // Without a negative zero.
+    let mut dip = normal.z.clamp(-1.0, 1.0).asin().to_degrees() + 0.0;
     let middle = middle(view);
     let reach = 0.5 * view.world_bounds[0].distance(view.world_bounds[1]);
     let mut offset = (DVec3::from_array(plane.point) - middle).dot(normal);

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use eframe::egui::Ui;
-use egui_plot::{Legend, Line, Plot, VLine};
+use egui_plot::{Line, Plot, VLine};
 
 use super::About;
 use super::selection::named;
@@ -18,10 +18,7 @@ pub fn show(ui: &mut Ui, about: &About<'_>, curves: &Curves) {
     }
     let unit = about.case.unit(&curves.property);
     ui.label(format!("{} {unit} over days", curves.property));
-    let plot = Plot::new("curves")
-        .height(140.0)
-        .allow_scroll(false)
-        .legend(Legend::default().follow_insertion_order(true));
+    let plot = Plot::new("curves").height(140.0).allow_scroll(false);
     let ui_ink = ui.visuals().weak_text_color();
     plot.show(ui, |plot| {
         let curves = curves.of.cells.iter().zip(&curves.points);
@@ -32,7 +29,7 @@ pub fn show(ui: &mut Ui, about: &About<'_>, curves: &Curves) {
             .picture
             .and_then(|p| about.case.steps.get(p.view.step));
         if let Some(step) = shown {
-            let line = VLine::new("step shown", step.days);
+            let line = VLine::new("", step.days);
             plot.vline(line.color(ui_ink));
         }
     });

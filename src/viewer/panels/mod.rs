@@ -57,28 +57,62 @@ pub struct About<'a> {
     pub others: &'a [(PathBuf, String)],
 }
 
-/// A panel: its title, whether it is open at first, and what draws it.
-pub type Panel = (
-    &'static str,
-    bool,
-    fn(&mut Ui, &About<'_>, &mut Vec<Action>),
-);
+impl About<'_> {
+    /// The property shown.
+    pub fn property(&self) -> Option<&str> {
+        let shown = self.picture.map(|p| p.view.property.as_str());
+        self.scene.property.as_deref().or(shown)
+    }
+}
+
+/// What draws a panel.
+type Show = fn(&mut Ui, &About<'_>, &mut Vec<Action>);
+
+/// A panel.
+pub struct Panel {
+    /// Its title.
+    pub title: &'static str,
+    /// It is open at first.
+    pub is_open: bool,
+    /// How many of its things are in use, which its title tells.
+    pub count: fn(&About<'_>) -> usize,
+    /// Draws it.
+    pub show: Show,
+}
+
+const fn panel(title: &'static str, is_open: bool, show: Show) -> Panel {
+    Panel {
+        title,
+        is_open,
+        count: |_| 0,
+        show,
+    }
+}
 
 /// Panels at the left, from top to bottom.
 pub const LEFT: [Panel; 5] = [
-    ("Property", true, property::show),
-    ("Cells", true, cells::show),
-    ("Shown", true, surfaces::show),
-    ("Property filters", false, filters::show),
-    ("Clip planes", false, clip::show),
+    panel("Property", true, property::show),
+    panel("Cells", true, cells::show),
+    panel("Shown", true, surfaces::show),
+    Panel {
+        count: |about| about.scene.filter.properties.len(),
+        ..panel("Property filters", false, filters::show)
+    },
+    Panel {
+        count: |about| about.scene.clip.len(),
+        ..panel("Clip planes", false, clip::show)
+    },
 ];
 
 /// Panels at the right, from top to bottom.
 pub const RIGHT: [Panel; 6] = [
-    ("Transfer function", true, transfer::show),
-    ("Strategy", true, strategy::show),
-    ("Light", true, light::show),
-    ("Selected cells", true, selection::show),
-    ("Compare", false, compare::show),
-    ("Statistics", false, statistics::show),
+    panel("Transfer function", true, transfer::show),
+    panel("Strategy", true, strategy::show),
+    panel("Light", true, light::show),
+    Panel {
+        count: |about| about.state.selected.len(),
+        ..panel("Selected cells", true, selection::show)
+    },
+    panel("Compare", false, compare::show),
+    panel("Statistics", false, statistics::show),
 ];

@@ -4,7 +4,7 @@ use eframe::egui::{self, Ui};
 
 use super::About;
 use super::controls::{list, number, one_of};
-use crate::case::{Kind, difference};
+use crate::case::{Kind, Property, difference};
 use crate::scene::{Coloring, Interpolation, OwnRange, RangeSpec, ScaleSpec};
 use crate::viewer::action::Action;
 
@@ -41,12 +41,20 @@ fn properties(ui: &mut Ui, about: &About<'_>, current: &str, actions: &mut Vec<A
     ui.data_mut(|d| d.insert_temp(id, search.clone()));
     let now = difference(current).map_or(current, |(now, ..)| now);
     let search = search.to_lowercase();
+    // As high with few names as with many, so that what is below stays in its place.
     egui::ScrollArea::vertical()
-        .max_height(220.0)
+        .max_height(190.0)
+        .min_scrolled_height(190.0)
+        .auto_shrink([false, false])
         .show(ui, |ui| {
             for (kind, group) in GROUPS {
                 let all = about.case.properties.iter();
-                let of_kind = all.filter(|p| p.kind == kind);
+                // What is derived from values that change with time changes too.
+                let kind_of = |p: &Property| match p.steps {
+                    0 => p.kind,
+                    _ => Kind::Dynamic,
+                };
+                let of_kind = all.filter(|p| kind_of(p) == kind);
                 let mut found = of_kind
                     .filter(|p| p.name.to_lowercase().contains(&search))
                     .peekable();

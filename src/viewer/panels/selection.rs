@@ -3,16 +3,19 @@
 
 use eframe::egui::{self, Ui};
 
+use super::controls::significant;
 use super::{About, curves};
 use crate::case::Case;
 use crate::model::Ijk;
 use crate::picking::{Hit, Part};
 use crate::picture::short_unit;
-use crate::scene::{Filter, PropertyFilter};
+use crate::scene::{Filter, PropertyFilter, ScaleSpec};
 use crate::viewer::action::Action;
 use crate::viewer::marks;
 use crate::viewer::reader::Table;
 
+/// The same on a log scale, as a factor.
+const ALIKE_FACTOR: f64 = 1.25;
 /// Cells whose values are listed beside each other, at most.
 const MOST_COLUMNS: usize = 4;
 /// Half of the part of the color range within which values are alike.
@@ -37,7 +40,7 @@ pub fn show(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
     }
     go_to(ui, about, actions);
     if let Some(table) = about.table {
-        values(ui, table);
+        values(ui, table, about.property());
         buttons(ui, about, table, actions);
     }
     if let Some(curves) = about.curves {
@@ -82,7 +85,10 @@ fn go_to(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
     let dims = about.case.grid.dims();
     let id = ui.scope_id().with("cell");
     let start = about.state.selected.last().copied().unwrap_or([1; 3]);
-    let mut cell: [usize; 3] = ui.data(|d| d.get_temp(id)).unwrap_or(start);
+    // What was typed counts until another cell is selected.
+    let typed: Option<([usize; 3], [usize; 3])> = ui.data(|d| d.get_temp(id));
+    let typed = typed.filter(|(of, _)| *of == start);
+    let mut cell = typed.map_or(start, |(_, cell)| cell);
     ui.horizontal(|ui| {
         let axes = [("I", dims.ni), ("J", dims.nj), ("K", dims.nk)];
         for (value, (name, count)) in cell.iter_mut().zip(axes) {
@@ -99,40 +105,27 @@ fn go_to(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
             actions.push(Action::Select(cell, beside));
         }
     });
-    ui.data_mut(|d| d.insert_temp(id, cell));
+    ui.data_mut(|d| d.insert_temp(id, (start, cell)));
 }
 
-fn values(ui: &mut Ui, table: &Table) {
+fn values(ui: &mut Ui, table: &Table, shown: Option<&str>) {
+    // The property shown first.
+    let mut rows: Vec<_> = table.rows.iter().collect();
+    rows.sort_by_key(|row| Some(row.0.as_str()) != shown);
     let list = egui::ScrollArea::both().id_salt("values").max_height(120.0);
     list.show(ui, |ui| {
         let grid = egui::Grid::new("values of the selected cells");
         grid.striped(true).show(ui, |ui| {
-            for (name, unit, values) in &table.rows {
+            for (name, unit, values) in rows {
                 ui.label(name);
                 for value in values.iter().rev().take(MOST_COLUMNS).rev() {
-                    ui.label(value.map_or_else(|| "-".into(), short));
+                    ui.label(value.map_or_else(|| "-".into(), |v| significant(f64::from(v))));
                 }
                 ui.weak(unit);
                 ui.end_row();
             }
         });
     });
-}
-
-/// A value with six digits that count; what is copied and saved has all of them.
-fn short(value: f32) -> String {
-    let digits = 5 - value.abs().max(1e-30).log10().floor() as i32;
-    match digits {
-        0..=9 => {
-            let text = format!("{value:.*}", digits as usize);
-            match text.contains('.') {
-                true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
-                false => text,
-            }
-        }
-        _ if value == 0.0 => "0".into(),
-        _ => format!("{value:.5e}"),
-    }
 }
 
 fn buttons(ui: &mut Ui, about: &About<'_>, table: &Table, actions: &mut Vec<Action>) {
@@ -148,7 +141,7 @@ fn buttons(ui: &mut Ui, about: &About<'_>, table: &Table, actions: &mut Vec<Acti
         let alike = ui.button("Only alike");
         let what = "Draws only cells whose value of the property shown is like that of the cell selected last";
         if alike.on_hover_text(what).clicked()
-            && let Some(filter) = like(about, table)
+            && let Some(filter) = like(about)
         {
             actions.push(Action::Filter(filter));
         }
@@ -198,49 +191,37 @@ fn buttons(ui: &mut Ui, about: &About<'_>, table: &Table, actions: &mut Vec<Acti
 
 /// The filter that keeps values like the last cell's: the same where they are whole numbers, else those
 /// within a part of the color range.
-fn like(about: &About<'_>, table: &Table) -> Option<Filter> {
+fn like(about: &About<'_>) -> Option<Filter> {
     let picture = about.picture?;
     let name = &picture.view.property;
+    let [i, j, k] = about.state.selected.last()?.map(|n| n - 1);
+    let grid = &about.case.grid;
     let field = about.case.field(name, picture.view.step).ok()?;
-    let row = table.rows.iter().find(|r| r.0 == *name);
-    let value = f64::from((*row?.2.last()?)?);
+    let value = f64::from(field.value(grid, grid.dims().cell(Ijk { i, j, k }))?);
     let are_whole = field
         .values()
         .iter()
         .all(|v| v.is_nan() || v.fract() == 0.0);
     let range = field.statistics()?;
-    let reach = if are_whole {
-        0.0
+    let is_log = about.scene.transfer.scale == ScaleSpec::Log && value > 0.0;
+    let [min, max] = if are_whole {
+        [value; 2]
+    } else if is_log {
+        // By factors, as the colors go.
+        [value / ALIKE_FACTOR, value * ALIKE_FACTOR]
     } else {
-        ALIKE * (range.max - range.min)
+        let reach = ALIKE * (range.max - range.min);
+        [
+            (value - reach).max(range.min),
+            (value + reach).min(range.max),
+        ]
     };
     let mut filter = about.scene.filter.clone();
     filter.properties.retain(|p| p.name != *name);
     filter.properties.push(PropertyFilter {
         name: name.clone(),
-        min: value - reach,
-        max: value + reach,
+        min,
+        max,
     });
     Some(filter)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::short;
-
-    #[test]
-    fn values_are_written_with_the_digits_that_count() {
-        for (value, text) in [
-            (0.0, "0"),
-            (2194.1526, "2194.15"),
-            (0.172, "0.172"),
-            (-0.5, "-0.5"),
-            (3.0, "3"),
-            (123_456.7, "123457"),
-            (1.234_567e9, "1.23457e9"),
-            (1.5e-12, "1.50000e-12"),
-        ] {
-            assert_eq!(short(value), text);
-        }
-    }
 }

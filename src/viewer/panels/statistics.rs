@@ -1,14 +1,20 @@
-//! What the last picture cost.
+//! What the values of the drawn cells are like, and what the last picture cost.
 
+use std::sync::Arc;
 use std::time::Duration;
 
 use eframe::egui::{self, Ui};
 
 use super::About;
+use super::controls::significant;
+use crate::model::Summary;
+use crate::scene::View;
 use crate::viewer::action::Action;
+use crate::viewer::worker::Picture;
 
 pub fn show(ui: &mut Ui, about: &About<'_>, _actions: &mut Vec<Action>) {
     let Some(picture) = about.picture else { return };
+    values(ui, about, picture);
     let ms = |d: Duration| format!("{:.1} ms", 1e3 * d.as_secs_f64());
     let megabytes = picture.bytes.total() as f64 / f64::from(1 << 20);
     let light = picture.light;
@@ -31,4 +37,65 @@ pub fn show(ui: &mut Ui, about: &About<'_>, _actions: &mut Vec<Action>) {
             ui.end_row();
         }
     });
+}
+
+/// Values of the drawn cells at the step shown.
+fn values(ui: &mut Ui, about: &About<'_>, picture: &Picture) {
+    let view = &picture.view;
+    // Counted again only where values or cells are others.
+    let of = (
+        Arc::as_ptr(&view.field).addr(),
+        Arc::as_ptr(&view.drawn).addr(),
+    );
+    let id = ui.scope_id().with("summary");
+    let known: Option<((usize, usize), Option<Summary>)> = ui.data(|d| d.get_temp(id));
+    let summary = match known.filter(|(known, _)| *known == of) {
+        Some((_, summary)) => summary,
+        None => {
+            let summary = summary(about, view);
+            ui.data_mut(|d| d.insert_temp(id, (of, summary)));
+            summary
+        }
+    };
+    let Some(summary) = summary else {
+        ui.weak("No cell with a value is drawn.");
+        return;
+    };
+    ui.label(format!(
+        "{} of {} drawn cells, {}",
+        view.property,
+        summary.count,
+        match about.case.unit(&view.property) {
+            "" => "no unit",
+            unit => unit,
+        }
+    ));
+    let [low, middle, high] = summary.percentiles;
+    let weighted = summary.weighted.map(|v| ("Mean by pore volume", v));
+    let rows = [("Smallest", summary.min), ("Mean", summary.mean)];
+    let rows = rows.into_iter().chain(weighted).chain([
+        ("Largest", summary.max),
+        ("A tenth is below", low),
+        ("Half is below", middle),
+        ("Nine tenths are below", high),
+    ]);
+    egui::Grid::new("values").striped(true).show(ui, |ui| {
+        for (name, value) in rows {
+            ui.label(name);
+            ui.label(significant(value));
+            ui.end_row();
+        }
+    });
+    ui.separator();
+}
+
+fn summary(about: &About<'_>, view: &View) -> Option<Summary> {
+    let field = about.case.field(&view.property, view.step).ok()?;
+    let weights = about.case.field("PORV", 0).ok();
+    let weights = weights.as_ref().map(|w| w.values());
+    Summary::of(
+        field.values(),
+        &view.drawn_active(&about.case.grid),
+        weights,
+    )
 }

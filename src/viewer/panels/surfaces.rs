@@ -4,7 +4,8 @@ use eframe::egui::{self, Color32, Ui, vec2};
 
 use super::About;
 use crate::scene::surfaces::fault_color;
-use crate::scene::{Hull, Inactive, Show};
+use crate::scene::{CutFace, Hull, Inactive, Show};
+use crate::transfer::presets::parse_color;
 use crate::viewer::action::Action;
 
 pub fn show(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
@@ -14,8 +15,13 @@ pub fn show(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
         ui.checkbox(&mut hull, "Opaque hull")
             .on_hover_text("The outer faces of the drawn cells, in the property's colors");
         show.hull = if hull { Hull::Opaque } else { Hull::Hidden };
-        ui.checkbox(&mut show.cell_edges, "Edges of cells")
-            .on_hover_text("On hull, fault surfaces and opaque sections");
+        let is_cut = about.scene.clip.iter().any(|c| c.face == CutFace::Opaque);
+        let has_faces = show.hull == Hull::Opaque || show.faults || is_cut;
+        let edges = egui::Checkbox::new(&mut show.cell_edges, "Edges of cells");
+        let what = "On hull, fault surfaces and opaque sections";
+        ui.add_enabled(has_faces, edges)
+            .on_hover_text(what)
+            .on_disabled_hover_text("There are none: show the hull, fault surfaces or an opaque section");
         ui.end_row();
         ui.checkbox(&mut show.faults, "Fault surfaces")
             .on_hover_text("Half-transparent sheets, a color for each name in FAULTS; rest the pointer on one to read its throw");
@@ -30,6 +36,7 @@ pub fn show(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
         ui.end_row();
         ui.checkbox(&mut show.legend, "Legend")
             .on_hover_text("Legend and title");
+        background(ui, about, actions);
         ui.end_row();
     });
     if show != about.scene.show {
@@ -38,6 +45,24 @@ pub fn show(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
     if about.scene.show.faults {
         names(ui, about);
     }
+}
+
+/// The picture's background.
+fn background(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
+    let Some(color) = parse_color(&about.scene.background) else {
+        return;
+    };
+    let mut rgb = color.map(|v| (255.0 * v).round() as u8);
+    ui.horizontal(|ui| {
+        let button = ui.color_edit_button_srgb(&mut rgb);
+        button.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ColorWell, true, "Background"));
+        let is_changed = button.on_hover_text("Color behind the model").changed();
+        ui.label("Background");
+        if is_changed {
+            let [r, g, b] = rgb;
+            actions.push(Action::Background(format!("#{r:02x}{g:02x}{b:02x}")));
+        }
+    });
 }
 
 fn connections(ui: &mut Ui, about: &About<'_>, show: &mut Show) {

@@ -7,7 +7,7 @@ use super::{About, curve};
 use crate::model::derivatives;
 use crate::scene::ghosts::shown_grid;
 use crate::scene::transfer::BANDS;
-use crate::scene::{ColorSpec, Coloring, OpacitySpec, ScaleSpec, TransferSpec};
+use crate::scene::{ColorSpec, Coloring, OpacitySpec, RangeSpec, ScaleSpec, TransferSpec};
 use crate::transfer::function::color_at;
 use crate::transfer::{boundaries, presets};
 use crate::viewer::action::Action;
@@ -29,7 +29,7 @@ pub fn show(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
         spec.opacity = Some(OpacitySpec::Points(points));
     }
     opacities(ui, about, &mut spec);
-    scale(ui, &mut spec);
+    scale(ui, &mut spec, about.scene.range, actions);
     coloring(ui, &mut spec);
     color_maps(ui, &mut spec);
     let reset = ui.button("Reset");
@@ -106,7 +106,7 @@ fn found_in(about: &About<'_>) -> Option<Vec<[f64; 2]>> {
     )
 }
 
-fn scale(ui: &mut Ui, spec: &mut TransferSpec) {
+fn scale(ui: &mut Ui, spec: &mut TransferSpec, range: RangeSpec, actions: &mut Vec<Action>) {
     let choices = [
         (ScaleSpec::Linear, "Linear", "Colors follow the values"),
         (
@@ -117,6 +117,10 @@ fn scale(ui: &mut Ui, spec: &mut TransferSpec) {
     ];
     if let Some(chosen) = one_of(ui, "Scale", spec.scale, &choices) {
         spec.scale = chosen;
+        if chosen == ScaleSpec::Log && matches!(range, RangeSpec::Fixed([low, _]) if low <= 0.0) {
+            // Of no use where logarithms count: the step's own positive values are.
+            actions.push(Action::Range(RangeSpec::STEP));
+        }
         if chosen == ScaleSpec::Log && spec.coloring == Coloring::Categories {
             spec.coloring = Coloring::Continuous;
         }
