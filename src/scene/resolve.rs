@@ -203,12 +203,7 @@ pub(super) fn resolve_over(
         mean_edge: edges.element_sum() / 3.0,
     };
     let Colors { field, transfer } = colors::resolve(&asked, &field)?;
-    let drawn = drawn(case, &field, &scene.filter, step)?;
-    let field = match scene.filter == Filter::default() {
-        true => field,
-        // Averages at vertices are of drawn cells: no color of a cell that is filtered away.
-        false => Arc::new(only(&field, &drawn)),
-    };
+    let (field, drawn) = filtered(case, field, &scene.filter, step)?;
     let connections = match scene.show.nnc {
         true => connections(case, &spaces, &drawn),
         false => Vec::new(),
@@ -476,6 +471,22 @@ fn drawn(
         }
     }
     Ok(drawn)
+}
+
+/// Which cells are drawn, and their values: averages at vertices are of drawn cells, so that no color of a cell
+/// shows that is filtered away.
+fn filtered(
+    case: &Case,
+    field: Arc<CellField>,
+    filter: &Filter,
+    step: usize,
+) -> Result<(Arc<CellField>, Vec<bool>), SceneError> {
+    let drawn = drawn(case, &field, filter, step)?;
+    let field = match *filter == Filter::default() {
+        true => field,
+        false => Arc::new(only(&field, &drawn)),
+    };
+    Ok((field, drawn))
 }
 
 /// The values of the drawn cells; the others have none.

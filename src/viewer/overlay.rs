@@ -4,6 +4,7 @@ use eframe::egui::{self, Align2, Color32, FontId, Painter, Pos2, Rect, Stroke, p
 use glam::DVec2;
 
 use super::studio::DIFFERENCE_SCALE;
+use super::worker::Picture;
 use crate::metrics::Comparison;
 use crate::picture::{Annotations, Arrow, CONNECTION, Orientation, Paper, legend_marks, on_screen};
 use crate::scene::View;
@@ -11,8 +12,14 @@ use crate::transfer::Scale;
 
 const TEXT: f32 = 13.0;
 
-/// Draws everything that the scene asks for.
-pub fn draw(painter: &Painter, rect: Rect, view: &View, annotations: &Annotations) {
+/// Draws everything that the scene asks for over a picture, as it is seen from a view.
+pub fn draw(
+    painter: &Painter,
+    rect: Rect,
+    picture: &Picture,
+    view: &View,
+    annotations: &Annotations,
+) {
     let ink = ink(view);
     let [r, g, b] = CONNECTION;
     let stroke = Stroke::new(1.0, Color32::from_rgb(r, g, b));
@@ -22,7 +29,7 @@ pub fn draw(painter: &Painter, rect: Rect, view: &View, annotations: &Annotation
         }
     }
     if annotations.show_box {
-        model_box(painter, rect, view, ink);
+        model_box(painter, rect, picture, view, ink);
     }
     let mut taken = Vec::new();
     if annotations.show_legend {
@@ -59,10 +66,20 @@ fn place(rect: Rect, at: DVec2) -> Pos2 {
     rect.left_top() + vec2(at.x as f32, at.y as f32)
 }
 
-fn model_box(painter: &Painter, rect: Rect, view: &View, ink: Color32) {
-    let stroke = Stroke::new(1.0, ink.gamma_multiply(0.35));
+/// Parts of an edge of the box, each as faint as the picture covers what is behind it.
+const PARTS: u32 = 48;
+
+/// The far edges of the box, behind the model.
+fn model_box(painter: &Painter, rect: Rect, picture: &Picture, view: &View, ink: Color32) {
     for line in Orientation::box_edges(view, size(rect)) {
-        painter.line_segment(line.map(|at| place(rect, at)), stroke);
+        let [a, b] = line;
+        let at = |n: u32| a.lerp(b, f64::from(n) / f64::from(PARTS));
+        for n in 0..PARTS {
+            let ends = [at(n), at(n + 1)];
+            let cover = picture.covered(0.5 * (ends[0] + ends[1]) / size(rect));
+            let stroke = Stroke::new(1.0, ink.gamma_multiply(0.35 * (1.0 - cover)));
+            painter.line_segment(ends.map(|at| place(rect, at)), stroke);
+        }
     }
 }
 
@@ -217,6 +234,11 @@ pub fn tip(ui: &egui::Ui, at: Pos2, text: &str) {
 pub fn own(painter: &Painter, rect: Rect, view: &View, text: &str) {
     let at = rect.left_top() + vec2(12.0, 30.0);
     write(painter, at, Align2::LEFT_TOP, text, ink(view), 15.0);
+}
+
+/// The legend of a picture of which only the left part is seen.
+pub fn legend_of_part(painter: &Painter, rect: Rect, view: &View, annotations: &Annotations) {
+    legend(painter, rect, view, annotations, ink(view));
 }
 
 /// What a map of differences means.

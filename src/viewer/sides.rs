@@ -34,6 +34,8 @@ pub struct Sides {
 const WIDTH_OF_PANELS: f32 = 700.0;
 /// Seconds that the pointer rests before what is under it is looked for.
 const REST: f64 = 0.35;
+/// Points of a part of a picture that has room for a legend.
+const NARROWEST_LEGEND: f32 = 160.0;
 /// Points on both sides of a wipe's line within which it is taken.
 const GRIP: f32 = 5.0;
 
@@ -190,7 +192,6 @@ impl Window {
             return Touched::default();
         };
         let shown = self.pictures.shown(side, case);
-        let shown = shown.map(|s| (&s.texture, &s.picture.view));
         let viewport = &mut self.sides.viewports[side];
         let builder = UiBuilder::new().id_salt(("side", side)).max_rect(rect);
         let mut child = ui.new_child(builder);
@@ -217,7 +218,13 @@ impl Window {
             let now = view
                 .seen_from(&scene.camera, size)
                 .map_or_else(|_| view.clone(), Arc::new);
-            overlay::draw(&painter, rect, &now, &Annotations::of(case, &now));
+            overlay::draw(
+                &painter,
+                rect,
+                &shown.picture,
+                &now,
+                &Annotations::of(case, &now),
+            );
         }
         let grip = Rect::from_x_y_ranges(x - GRIP..=x + GRIP, rect.y_range());
         let response = ui.interact(grip, ui.scope_id().with("wipe"), Sense::drag());
@@ -259,6 +266,15 @@ impl Window {
             match (layout, n) {
                 (Some(Layout::Difference), _) => continue,
                 (Some(Layout::Wipe(at)), 1) => rect.min.x += at as f32 * rect.width(),
+                (Some(Layout::Wipe(at)), _) if first.view.property != second.view.property => {
+                    // The second picture lies over the first one's legend.
+                    let part = rect.with_max_x(rect.left() + at as f32 * rect.width());
+                    let annotations = Annotations::of(cases[0], &first.view);
+                    if annotations.show_legend && part.width() > NARROWEST_LEGEND {
+                        let painter = ui.painter_at(part);
+                        overlay::legend_of_part(&painter, part, &first.view, &annotations);
+                    }
+                }
                 _ => {}
             }
             overlay::own(&ui.painter_at(rect), rect, &picture.view, &texts[n]);

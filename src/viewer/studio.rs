@@ -118,7 +118,9 @@ impl Studio {
         };
         let frame = renderer.render(&wanted.case.grid, &view, &progress);
         let frame = frame.map_err(|e| Failure::of_device(e.to_string()))?;
+        let cover = |p: &[f32; 4]| (255.0 * p[3].clamp(0.0, 1.0)).round() as u8;
         Ok(frame.map(|frame| Picture {
+            cover: frame.image.pixels.iter().map(cover).collect(),
             rgb: Arc::new(Rgb8 {
                 size: frame.image.size,
                 pixels: frame.image.over_background_8bit(view.background),

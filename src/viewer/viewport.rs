@@ -2,11 +2,12 @@
 
 use std::sync::Arc;
 
-use eframe::egui::{self, Rect, Sense, TextureHandle, Ui, vec2};
+use eframe::egui::{self, Rect, Sense, Ui, vec2};
 use glam::{DVec2, DVec3};
 
 use super::action::Action;
 use super::mouse::{self, Input, Motion};
+use super::pictures::Shown;
 use super::settings::Mouse;
 use super::{orbit, overlay};
 use crate::case::Case;
@@ -48,24 +49,31 @@ impl Viewport {
         ui: &mut Ui,
         case: &Case,
         scene: &Scene,
-        shown: Option<(&TextureHandle, &Arc<View>)>,
+        shown: Option<&Shown>,
         mouse: Mouse,
     ) -> Touched {
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
         let mut touched = Touched::default();
         let painter = ui.painter_at(rect);
-        let Some((texture, view)) = shown else {
+        let Some(shown) = shown else {
             ui.put(rect, egui::Spinner::new());
             return touched;
         };
         let uv = Rect::from_min_max(egui::Pos2::ZERO, egui::pos2(1.0, 1.0));
-        painter.image(texture.id(), rect, uv, egui::Color32::WHITE);
+        let view = &shown.picture.view;
+        painter.image(shown.texture.id(), rect, uv, egui::Color32::WHITE);
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "volume"));
         // The camera of the scene as it is now; the picture may lag behind.
         let size = [rect.width().max(1.0) as u32, rect.height().max(1.0) as u32];
         let now = view.seen_from(&scene.camera, size);
         let now = now.map_or_else(|_| view.clone(), Arc::new);
-        overlay::draw(&painter, rect, &now, &Annotations::of(case, &now));
+        overlay::draw(
+            &painter,
+            rect,
+            &shown.picture,
+            &now,
+            &Annotations::of(case, &now),
+        );
         let input = Input::of(ui, &response, rect, mouse);
         if let Some(camera) = self.moved(&input, &now, &case.grid) {
             touched.camera = Some(orbit::spec(&camera, &now.box_corners));

@@ -19,7 +19,7 @@ use super::sides::Sides;
 use super::state::{Setup, State};
 use super::worker::{Difference, Picture};
 use super::{bar, keys};
-use crate::scene::{LightingSpec, Scene};
+use crate::scene::{Integration, LibcSettings, LightingSpec, Scene};
 use crate::strategies::StrategyKind;
 
 /// The window's state.
@@ -80,7 +80,12 @@ impl Window {
         let state = State {
             setup: Setup {
                 scene: Scene {
+                    // Whole segments show no steps, and take less time than samples.
                     strategy: StrategyKind::Libc.name().into(),
+                    libc: LibcSettings {
+                        integration: Integration::Segments,
+                        ..LibcSettings::default()
+                    },
                     ..Scene::default()
                 },
                 ..Setup::default()

@@ -74,6 +74,8 @@ pub enum Why {
 pub struct Picture {
     /// Over the scene's background.
     pub rgb: Arc<Rgb8>,
+    /// How much of the background each pixel covers, 0 to 255.
+    pub cover: Vec<u8>,
     /// What it shows.
     pub view: Arc<View>,
     /// Of what it was made.
@@ -90,6 +92,19 @@ pub struct Picture {
     pub bytes: GpuBytes,
     /// From the job's arrival to the picture's end.
     pub took: Duration,
+}
+
+impl Picture {
+    /// How much of the background is covered at a place (0 to 1, right and down), 0 to 1.
+    pub fn covered(&self, at: DVec2) -> f32 {
+        let [width, height] = self.rgb.size;
+        let pixel = |part: f64, count: u32| (part * f64::from(count)).floor();
+        let (x, y) = (pixel(at.x, width), pixel(at.y, height));
+        let inside = x >= 0.0 && y >= 0.0 && x < f64::from(width) && y < f64::from(height);
+        let index = y as usize * width as usize + x as usize;
+        let cover = self.cover.get(index).filter(|_| inside);
+        f32::from(cover.copied().unwrap_or(0)) / 255.0
+    }
 }
 
 /// How far two pictures are apart.

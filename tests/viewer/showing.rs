@@ -111,7 +111,9 @@ fn the_transfer_function_is_edited_and_undone() {
     driven.press(Modifiers::COMMAND, Key::Z);
     assert_eq!(driven.scene(), &start);
     driven.wait_final();
-    assert!(driven.picture(0) == before);
+    // Rays pause by time, so sums may round differently, in single pixels.
+    let apart = Comparison::of(&driven.picture(0), &before).unwrap();
+    assert!(apart.psnr_db > 90.0, "{apart:?}");
     driven.press(Modifiers::COMMAND, Key::Y);
     assert_eq!(driven.scene().transfer.opacity, Some(edited));
 }
