@@ -3,8 +3,8 @@
 use eframe::egui::{Key, Modifiers, vec2};
 use strataray::viewer::{Action, Comparison, Layout};
 
-use super::common::{gpu, sample};
-use super::driven::Driven;
+use super::common::{copy_of_sample, data, gpu, sample};
+use super::driven::{Driven, covered};
 
 #[test]
 fn two_strategies_stand_beside_each_other() {
@@ -100,4 +100,39 @@ fn a_difference_is_measured_and_a_wipe_dragged() {
         matches!(layout, Layout::Wipe(at) if at < 0.45),
         "{layout:?}"
     );
+}
+
+#[test]
+fn two_cases_are_seen_alike_wherever_they_lie() {
+    let Some(_) = gpu() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let mut others = vec![copy_of_sample(folder.path())];
+    others.extend(data("spe1/SPE1CASE1.EGRID"));
+    for other in others {
+        let mut driven = Driven::open(&[other.clone(), sample()]);
+        driven.wait_final();
+        driven.press(Modifiers::NONE, Key::Home);
+        let comparison = Comparison {
+            case: Some(other.clone()),
+            ..Comparison::default()
+        };
+        let action = Action::Compare(Some(comparison));
+        driven.harness.state_mut().apply(action);
+        driven.wait("both cases", |w| w.picture(1).is_some());
+        driven.wait_final();
+        let shown = |d: &Driven| d.harness.state().picture(1).unwrap().0.view.clone();
+        let covered_by = |d: &Driven| covered(&d.picture(1), [255; 3]);
+        assert!(covered_by(&driven) > 0.03, "{}", other.display());
+        // A drag on either turns both.
+        let before = shown(&driven).camera;
+        for place in driven.places("volume") {
+            driven.drag(place.center(), place.center() + vec2(40.0, 0.0));
+        }
+        driven.wait_final();
+        assert!(covered_by(&driven) > 0.03, "{}", other.display());
+        let turned = shown(&driven).camera;
+        assert!(turned.forward.dot(before.forward) < 0.999);
+        let first = driven.harness.state().picture(0).unwrap().0.view.camera;
+        assert!(turned.forward.distance(first.forward) < 1e-6);
+    }
 }
