@@ -19,6 +19,7 @@ use super::sides::Sides;
 use super::state::{Setup, State};
 use super::worker::{Difference, Picture};
 use super::{bar, keys};
+use crate::picking::Hit;
 use crate::scene::{Integration, LibcSettings, LightingSpec, Scene};
 use crate::strategies::StrategyKind;
 
@@ -146,6 +147,11 @@ impl Window {
         let shown = self.pictures.shown(side, &case)?;
         let is_final = self.awaited.is_none() && self.pictures.are_final();
         Some((&shown.picture, is_final))
+    }
+
+    /// The fault that the pointer rests on.
+    pub fn hovered(&self) -> Option<&Hit> {
+        self.sides.hover.as_ref()
     }
 
     /// How far the two pictures shown are apart, once that is known.

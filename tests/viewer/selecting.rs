@@ -3,6 +3,7 @@
 use eframe::egui::{Key, Modifiers, pos2, vec2};
 use egui_kittest::kittest::Queryable;
 use strataray::model::Ijk;
+use strataray::picking::Part;
 use strataray::scene::{Hull, Show};
 use strataray::viewer::Action;
 
@@ -139,4 +140,56 @@ fn a_picked_cell_tells_its_values() {
     assert!(covered(&driven.picture(0), [255; 3]) < before);
     driven.press(Modifiers::NONE, Key::Escape);
     assert!(driven.document().state.selected.is_empty());
+}
+
+#[test]
+fn a_pointer_that_rests_on_a_fault_reads_its_throw() {
+    let Some(_) = gpu() else { return };
+    let mut driven = Driven::showing(sample());
+    driven.click("Fault surfaces");
+    driven.press(Modifiers::COMMAND.plus(Modifiers::ALT), Key::E);
+    driven.wait_final();
+    // F2 lies between columns 24 and 25 and is seen from the west there.
+    let case = driven.document().case.clone().unwrap();
+    let grid = &case.grid;
+    let (cell, beyond) = (Ijk { i: 23, j: 5, k: 0 }, Ijk { i: 24, j: 5, k: 0 });
+    let view = driven.harness.state().picture(0).unwrap().0.view.clone();
+    let corners = grid.hexahedron(cell).0;
+    let face = [1, 3, 5, 7].map(|n: usize| corners[n]);
+    let world = view
+        .spaces
+        .world_from_grid
+        .transform_point3(face.iter().sum::<glam::DVec3>() / 4.0);
+    let at = view.camera.project(world, view.aspect()).unwrap();
+    let place = driven.place("volume");
+    let at = place.min + vec2(at.x as f32, at.y as f32) * place.size();
+    driven.harness.hover_at(at);
+    driven.wait("the fault", |w| w.hovered().is_some());
+    let hit = driven.harness.state().hovered().unwrap().clone();
+    let Part::Fault(fault) = hit.part else {
+        panic!("{hit:?}");
+    };
+    assert!(fault.name.is_some_and(|n| n.starts_with('F')));
+    // The throw of whatever face it is, from the depths of both cells alone.
+    let [low, high] = [[0, 2], [1, 3]];
+    let sides = if hit.ijk.i < fault.beyond.i {
+        [high, low]
+    } else {
+        [low, high]
+    };
+    if hit.ijk.j == fault.beyond.j {
+        let depth = |cell: Ijk, corners: [usize; 2]| {
+            let all = corners.into_iter().flat_map(|c| [c, c + 4]);
+            all.map(|c| grid.corner_depth(cell, c)).sum::<f64>() / 4.0
+        };
+        let drop = depth(fault.beyond, sides[1]) - depth(hit.ijk, sides[0]);
+        assert!((drop - fault.throw).abs() < 1e-9, "{drop} {}", fault.throw);
+        assert!(fault.throw.abs() > 1.0);
+    }
+    assert!(grid.is_active(cell) && grid.is_active(beyond));
+    // Away from it, nothing is read.
+    driven.harness.hover_at(place.left_top() + vec2(5.0, 5.0));
+    driven.wait_settled();
+    driven.wait_settled();
+    assert!(driven.harness.state().hovered().is_none());
 }

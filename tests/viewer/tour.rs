@@ -67,11 +67,11 @@ fn the_tour_is_walked() {
     let camera = CameraSpec::Framing(FramingCamera {
         azimuth_degrees: 150.0,
         elevation_degrees: 38.0,
-        zoom: 1.3,
+        zoom: 1.1,
         projection: Projection::Perspective,
     });
     apply(&mut driven, Action::Camera(camera));
-    driven.click("Ramp");
+    driven.click("Highest only");
     driven.click("soft");
     driven.wait_final();
     shot(&mut driven, "4_oil");
@@ -114,9 +114,9 @@ fn find(driven: &mut Driven) {
     driven.click("Edges of cells");
     driven.wait_final();
     shot(driven, "7_section");
+    apply(driven, Action::Clip(Vec::new()));
     driven.click("Clip planes");
     driven.click("Property");
-    apply(driven, Action::Clip(Vec::new()));
     driven.click("Edges of cells");
     driven.click("Fault surfaces");
 }

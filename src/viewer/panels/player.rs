@@ -2,6 +2,7 @@
 
 use eframe::egui::{self, Ui};
 
+use super::controls::show_chosen;
 use crate::viewer::action::Action;
 use crate::viewer::document::Document;
 use crate::viewer::keys::Command;
@@ -62,7 +63,10 @@ pub fn player(ui: &mut Ui, document: &Document) -> Option<Asked> {
             .selected_text(at(step))
             .show_ui(ui, |ui| {
                 for n in 0..count {
-                    ui.selectable_value(&mut wanted, n, at(n));
+                    let entry = ui.selectable_value(&mut wanted, n, at(n));
+                    if n == step {
+                        show_chosen(ui, &entry);
+                    }
                 }
             })
             .response

@@ -3,7 +3,7 @@
 use eframe::egui::{self, Ui};
 
 use super::About;
-use super::controls::{list, number, one_of};
+use super::controls::{list, number, one_of, show_chosen};
 use crate::case::{Kind, Property, difference};
 use crate::scene::{Coloring, Interpolation, OwnRange, RangeSpec, ScaleSpec};
 use crate::viewer::action::Action;
@@ -96,7 +96,11 @@ fn differences(ui: &mut Ui, about: &About<'_>, current: &str, actions: &mut Vec<
             actions.push(Action::Property(now.to_owned()));
         }
         for (n, text) in named.iter().enumerate() {
-            if ui.selectable_label(base == Some(n), text).clicked() {
+            let entry = ui.selectable_label(base == Some(n), text);
+            if base == Some(n) {
+                show_chosen(ui, &entry);
+            }
+            if entry.clicked() {
                 actions.push(Action::Property(format!("{now}-{now}@{n}")));
             }
         }
