@@ -63,6 +63,17 @@ pub fn significant(value: f64) -> String {
     }
 }
 
+/// Brings the entry that is chosen into view when a list is opened, and not while it is scrolled.
+pub fn show_chosen(ui: &Ui, entry: &Response) {
+    let id = ui.scope_id().with("shown in frame");
+    let now = ui.ctx().cumulative_frame_nr();
+    let last: Option<u64> = ui.data(|d| d.get_temp(id));
+    if last.is_none_or(|last| now > last + 1) {
+        entry.scroll_to_me(Some(egui::Align::Center));
+    }
+    ui.data_mut(|d| d.insert_temp(id, now));
+}
+
 #[cfg(test)]
 mod tests {
     use super::significant;
@@ -79,15 +90,4 @@ mod tests {
             assert_eq!(significant(value), text);
         }
     }
-}
-
-/// Brings the entry that is chosen into view when a list is opened, and not while it is scrolled.
-pub fn show_chosen(ui: &Ui, entry: &Response) {
-    let id = ui.scope_id().with("shown in frame");
-    let now = ui.ctx().cumulative_frame_nr();
-    let last: Option<u64> = ui.data(|d| d.get_temp(id));
-    if last.is_none_or(|last| now > last + 1) {
-        entry.scroll_to_me(Some(egui::Align::Center));
-    }
-    ui.data_mut(|d| d.insert_temp(id, now));
 }
