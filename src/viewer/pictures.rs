@@ -11,6 +11,7 @@ use crate::case::Case;
 use crate::picking::Hit;
 use crate::picture::Rgb8;
 use crate::scene::Scene;
+use crate::strategies::StrategyKind;
 
 /// Milliseconds that a draft may take: 30 pictures a second.
 const DRAFT_MS: f64 = 30.0;
@@ -22,6 +23,10 @@ const REST: Duration = Duration::from_millis(150);
 const LIGHT_MS: f64 = 12.0;
 /// Parts of its voxels along each axis that a draft's light volume may have.
 const LIGHT_PARTS: [u32; 3] = [1, 2, 4];
+/// A draft by LIBC that takes longer, however few its pixels are, is bound by the faces it draws.
+const TOO_SLOW_MS: f64 = 150.0;
+/// Active cells from where that is taken for granted on a software adapter.
+const MANY_CELLS: usize = 200_000;
 /// Milliseconds that a pixel may take before one has been timed.
 const UNKNOWN_MS: f64 = 1e-3;
 /// Side of a draft, as a part of full resolution, at least.
@@ -53,6 +58,8 @@ struct Side {
     refused: Option<Wanted>,
     /// Milliseconds that a pixel of a draft takes, once one was made.
     draft_ms: Option<f64>,
+    /// The case whose drafts take too long by LIBC.
+    slow: Option<Arc<Case>>,
     /// Voxels of the light volume along each axis, and the milliseconds that each voxel takes.
     light: Option<([u32; 3], f64)>,
 }
@@ -260,6 +267,8 @@ impl Pictures {
                 .scene
                 .size
                 .map(|n| ((f64::from(n) * part).round() as u32).max(16));
+            let is_software = self.adapter.as_ref().is_none_or(|a| a.1);
+            self.sides[side].draft_by_points(&mut job, is_software);
             self.sides[side].thin_light(&mut job.scene);
         }
         self.worker.ask(Job::Picture {
@@ -302,6 +311,19 @@ impl Side {
         }
     }
 
+    /// Takes PLTS for a draft where LIBC would draw so many faces that no draft is quick: the picture is the
+    /// same but for what samples leave out.
+    fn draft_by_points(&self, job: &mut Wanted, is_software: bool) {
+        let is_known = self
+            .slow
+            .as_ref()
+            .is_some_and(|c| Arc::ptr_eq(c, &job.case));
+        let is_large = is_software && job.case.grid.active_cells().len() > MANY_CELLS;
+        if job.scene.strategy == StrategyKind::Libc.name() && (is_known || is_large) {
+            job.scene.strategy = StrategyKind::Plts.name().into();
+        }
+    }
+
     /// Gives a draft a coarser light volume, where the whole one takes too long for each picture.
     fn thin_light(&self, scene: &mut Scene) {
         let Some((size, ms)) = self.light else { return };
@@ -335,6 +357,11 @@ impl Side {
     fn arrive(&mut self, ctx: &Context, picture: Picture, flight: Flight) {
         let pixels = picture.rgb.size.map(f64::from);
         let ms = 1e3 * (picture.took - picture.prepare.min(picture.took)).as_secs_f64();
+        let is_libc = picture.view.strategy == StrategyKind::Libc;
+        // The first draft compiles too, and says nothing.
+        if flight.is_draft && is_libc && ms > TOO_SLOW_MS && self.draft_ms.is_some() {
+            self.slow = Some(picture.wanted.case.clone());
+        }
         let ms = ms / (pixels[0] * pixels[1]);
         if flight.is_draft {
             self.draft_ms = Some(self.draft_ms.map_or(ms, |known| 0.5 * (known + ms)));
