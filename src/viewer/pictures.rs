@@ -193,6 +193,8 @@ impl Pictures {
                 }
                 return Some(Event::Failed(error));
             }
+            // The picture on its way, if there is one, still comes.
+            Answer::Refused(error) => return Some(Event::Failed(error)),
             Answer::Picked(why, hit) => return Some(Event::Picked(why, hit)),
             Answer::Picture(side, picture) => {
                 if let Some(flight) = self.land() {

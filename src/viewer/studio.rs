@@ -55,6 +55,7 @@ impl Studio {
 
     /// Does a job.
     pub fn answer(&mut self, job: Job, cancel: &AtomicBool, say: Say<'_>) -> Answer {
+        let is_picture = matches!(job, Job::Picture { .. });
         let answer = match job {
             Job::Picture {
                 side,
@@ -90,7 +91,10 @@ impl Studio {
             if error.is_device {
                 *self = Self::default();
             }
-            Answer::Failed(error.sentence)
+            match is_picture {
+                true => Answer::Failed(error.sentence),
+                false => Answer::Refused(error.sentence),
+            }
         })
     }
 

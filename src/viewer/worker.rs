@@ -136,8 +136,10 @@ pub enum Answer {
     Picked(Why, Option<Hit>),
     /// How far two pictures are apart.
     Difference(Box<Difference>),
-    /// Why there is no answer, in one sentence.
+    /// Why there is no picture, in one sentence.
     Failed(String),
+    /// Why there is no other answer, in one sentence.
+    Refused(String),
 }
 
 /// The thread that makes pictures, one at a time.
@@ -167,13 +169,16 @@ impl Worker {
                 say(Answer::Failed(error));
             }
             for job in inbox {
+                let is_picture = matches!(job, Job::Picture { .. });
                 let answer = AssertUnwindSafe(|| studio.answer(job, &cancelled, &say));
                 say(catch_unwind(answer).unwrap_or_else(|_| {
                     // A driver or library gave up; what it left behind is not to be trusted.
                     studio = Studio::default();
-                    Answer::Failed(
-                        "the graphics driver failed; change something to try again".into(),
-                    )
+                    let sentence = "the graphics driver failed; change something to try again";
+                    match is_picture {
+                        true => Answer::Failed(sentence.into()),
+                        false => Answer::Refused(sentence.into()),
+                    }
                 }));
             }
         });
