@@ -6,6 +6,9 @@ use strataray::viewer::{Action, Comparison, Layout};
 use super::common::{copy_of_sample, data, gpu, sample};
 use super::driven::{Driven, covered};
 
+/// Mean CIEDE2000 of pictures of the same: rays pause by time, so single pixels may round differently.
+const SAME: f64 = 1e-3;
+
 #[test]
 fn two_strategies_stand_beside_each_other() {
     let Some(_) = gpu() else { return };
@@ -51,7 +54,7 @@ fn a_difference_is_measured_and_a_wipe_dragged() {
             .ciede2000_mean
     };
     let strategies = mean(&driven);
-    assert!(strategies > 0.0 && strategies < 3.0, "{strategies}");
+    assert!(strategies > 10.0 * SAME && strategies < 3.0, "{strategies}");
     // With itself there is none; with another step there is more.
     apply(
         &mut driven,
@@ -63,7 +66,7 @@ fn a_difference_is_measured_and_a_wipe_dragged() {
     driven.wait_final();
     driven.wait("no difference", |w| {
         w.difference()
-            .is_some_and(|d| d.figures.ciede2000_mean == 0.0)
+            .is_some_and(|d| d.figures.ciede2000_mean < SAME)
     });
     apply(
         &mut driven,
@@ -76,7 +79,7 @@ fn a_difference_is_measured_and_a_wipe_dragged() {
     driven.wait_final();
     driven.wait("a difference", |w| {
         w.difference()
-            .is_some_and(|d| d.figures.ciede2000_mean > 0.0)
+            .is_some_and(|d| d.figures.ciede2000_mean > 10.0 * SAME)
     });
     apply(
         &mut driven,
