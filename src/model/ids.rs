@@ -12,6 +12,17 @@ pub struct Dims {
 }
 
 impl Dims {
+    /// The cell by I, J, K counted from 1, as engineers do; `None` outside the grid.
+    pub fn one_based(self, ijk: [usize; 3]) -> Option<Ijk> {
+        let [i, j, k] = ijk;
+        let inside = |n: usize, most: usize| (1..=most).contains(&n);
+        (inside(i, self.ni) && inside(j, self.nj) && inside(k, self.nk)).then(|| Ijk {
+            i: i - 1,
+            j: j - 1,
+            k: k - 1,
+        })
+    }
+
     /// All cells, active or not.
     pub fn cells(self) -> usize {
         self.ni * self.nj * self.nk
@@ -72,5 +83,23 @@ impl Ijk {
     /// The one-based triple that engineers and files use.
     pub fn one_based(self) -> [usize; 3] {
         [self.i + 1, self.j + 1, self.k + 1]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cells_counted_from_one_lie_in_the_grid_or_are_none() {
+        let dims = Dims {
+            ni: 3,
+            nj: 2,
+            nk: 1,
+        };
+        assert_eq!(dims.one_based([3, 2, 1]), Some(Ijk { i: 2, j: 1, k: 0 }));
+        for outside in [[0, 1, 1], [4, 1, 1], [1, 3, 1], [1, 1, 2], [usize::MAX; 3]] {
+            assert_eq!(dims.one_based(outside), None, "{outside:?}");
+        }
     }
 }

@@ -80,7 +80,9 @@ fn changed(
         Look::FrameAll => return Some(orbit::frame_all(spec, camera, corners, aspect)),
         Look::Projection => return Some(orbit::switched(spec, camera, corners)),
         Look::FrameSelection => {
-            let cells = selected.iter().filter_map(|ijk| cell(case, *ijk));
+            let cells = selected
+                .iter()
+                .filter_map(|ijk| case.grid.dims().one_based(*ijk));
             let cells: Vec<Ijk> = cells.collect();
             match case.grid.bounds_of(cells) {
                 Some(bounds) => {
@@ -102,16 +104,4 @@ fn changed(
         ),
     };
     Some(orbit::spec(&camera, corners))
-}
-
-/// A cell by I, J, K from 1, if the grid has it.
-fn cell(case: &Case, ijk: [usize; 3]) -> Option<Ijk> {
-    let dims = case.grid.dims();
-    let inside = ijk.iter().zip([dims.ni, dims.nj, dims.nk]);
-    let inside = inside.into_iter().all(|(n, most)| (1..=most).contains(n));
-    inside.then(|| Ijk {
-        i: ijk[0] - 1,
-        j: ijk[1] - 1,
-        k: ijk[2] - 1,
-    })
 }

@@ -4,7 +4,6 @@ use eframe::egui::{Color32, Rect, Stroke, Ui, vec2};
 use glam::DVec2;
 
 use crate::case::Case;
-use crate::model::Ijk;
 use crate::picture::on_screen;
 use crate::scene::surfaces::PALETTE;
 use crate::scene::{Scene, View};
@@ -32,11 +31,10 @@ pub fn show(
     };
     let size = DVec2::new(f64::from(rect.width()), f64::from(rect.height()));
     let painter = ui.painter_at(rect);
-    for (n, [i, j, k]) in selected.iter().enumerate() {
-        let cell = Ijk {
-            i: i - 1,
-            j: j - 1,
-            k: k - 1,
+    for (n, cell) in selected.iter().enumerate() {
+        // A case that was read again may be smaller.
+        let Some(cell) = case.grid.dims().one_based(*cell) else {
+            continue;
         };
         let corners = case.grid.hexahedron(cell).0;
         let corners = corners.map(|c| view.spaces.world_from_grid.transform_point3(c));

@@ -6,7 +6,7 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 
 use super::looks::{Look, look_of};
 use crate::case::{Case, Property};
-use crate::model::Ijk;
+use crate::model::CellIndex;
 
 /// Cells of a case, by I, J, K from 1.
 #[derive(Clone)]
@@ -239,17 +239,9 @@ impl Thread {
     }
 }
 
-fn index(case: &Case, [i, j, k]: [usize; 3]) -> Option<crate::model::CellIndex> {
+fn index(case: &Case, cell: [usize; 3]) -> Option<CellIndex> {
     let dims = case.grid.dims();
-    let inside =
-        (1..=dims.ni).contains(&i) && (1..=dims.nj).contains(&j) && (1..=dims.nk).contains(&k);
-    inside.then(|| {
-        dims.cell(Ijk {
-            i: i - 1,
-            j: j - 1,
-            k: k - 1,
-        })
-    })
+    Some(dims.cell(dims.one_based(cell)?))
 }
 
 fn rows(of: &Cells, step: usize) -> Vec<(String, String, Vec<Option<f32>>)> {

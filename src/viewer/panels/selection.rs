@@ -194,10 +194,10 @@ fn buttons(ui: &mut Ui, about: &About<'_>, table: &Table, actions: &mut Vec<Acti
 fn like(about: &About<'_>) -> Option<Filter> {
     let picture = about.picture?;
     let name = &picture.view.property;
-    let [i, j, k] = about.state.selected.last()?.map(|n| n - 1);
     let grid = &about.case.grid;
+    let cell = grid.dims().one_based(*about.state.selected.last()?)?;
     let field = about.case.field(name, picture.view.step).ok()?;
-    let value = f64::from(field.value(grid, grid.dims().cell(Ijk { i, j, k }))?);
+    let value = f64::from(field.value(grid, grid.dims().cell(cell))?);
     let are_whole = field
         .values()
         .iter()
