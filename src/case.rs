@@ -2,6 +2,7 @@
 
 mod cache;
 mod over_steps;
+mod weights;
 
 use std::sync::Arc;
 
@@ -11,6 +12,7 @@ use crate::model::derived::Derived;
 use crate::model::{CellField, FaultFaces, Grid, Ijk};
 
 pub use over_steps::{Categories, MAX_CATEGORIES, OverSteps, ValueRange};
+pub use weights::{Extent, Weighting, Weights};
 
 /// Where a property's values come from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]

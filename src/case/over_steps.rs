@@ -1,15 +1,17 @@
 //! What the values of a property are like over all steps: read once, then kept by name.
 
 use std::collections::HashMap;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use rayon::prelude::*;
 
+use super::weights::{Extent, Weights};
 use super::{Case, CaseError};
 use crate::model::CellField;
 use crate::model::derivatives;
 use crate::transfer::Scale;
 use crate::transfer::boundaries::{self, Boundary};
+use crate::transfer::opacity::Opacity;
 
 /// Smallest and largest value.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -92,6 +94,28 @@ pub struct OverSteps {
     ranges: Kept<Option<ValueRange>>,
     categories: Kept<Categories>,
     boundaries: Kept<Arc<[Boundary]>>,
+    opacities: Kept<Option<Opacity>>,
+    weights: OnceLock<Weights>,
+    extents: OnceLock<Arc<Vec<Extent>>>,
+}
+
+impl OverSteps {
+    pub(super) fn weights(&self, find: impl FnOnce() -> Weights) -> Weights {
+        self.weights.get_or_init(find).clone()
+    }
+
+    pub(super) fn extents(&self, find: impl FnOnce() -> Arc<Vec<Extent>>) -> Arc<Vec<Extent>> {
+        self.extents.get_or_init(find).clone()
+    }
+
+    /// The opacity that is known by a key that says what it was found for, or the one that `find` finds.
+    pub(crate) fn opacity<E>(
+        &self,
+        key: &str,
+        find: impl FnOnce() -> Result<Option<Opacity>, E>,
+    ) -> Result<Option<Opacity>, E> {
+        self.opacities.get(key, find)
+    }
 }
 
 struct Kept<T>(Mutex<HashMap<String, T>>);
@@ -118,6 +142,19 @@ impl<T: Clone> Kept<T> {
 }
 
 impl Case {
+    /// The values of a property (or a difference) at the last step that has it; `None` where no step has.
+    ///
+    /// # Errors
+    /// When the property does not exist or its file cannot be read.
+    pub fn last_field(&self, name: &str) -> Result<Option<Arc<CellField>>, CaseError> {
+        for step in self.steps_of(name).rev() {
+            if let Some(field) = self.field_where_it_is(name, step)? {
+                return Ok(Some(field));
+            }
+        }
+        Ok(None)
+    }
+
     /// The range of a property's values (or a difference's) over all steps that have it; `None` where
     /// no value is defined. Read at the first call.
     ///
@@ -160,13 +197,11 @@ impl Case {
             Scale::Log => format!("log {name}"),
         };
         self.over_steps.boundaries.get(&key, || {
-            for step in self.steps_of(name).rev() {
-                if let Some(field) = self.field_where_it_is(name, step)? {
-                    let field = scale.field(&field, f64::NAN);
-                    return Ok(boundaries::find(&derivatives::samples(&self.grid, &field)).into());
-                }
-            }
-            Ok(Arc::default())
+            let Some(field) = self.last_field(name)? else {
+                return Ok(Arc::default());
+            };
+            let field = scale.field(&field, f64::NAN);
+            Ok(boundaries::find(&derivatives::samples(&self.grid, &field)).into())
         })
     }
 

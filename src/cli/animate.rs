@@ -79,8 +79,8 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let reporter = Reporter::new(arguments.verbosity);
     check(arguments)?;
     arguments.options.set_threads()?;
-    let scene = arguments.options.scene()?;
     let case = open_case(&arguments.case, &reporter)?;
+    let scene = arguments.options.scene(&case)?;
     let sequence = sequence(arguments, &scene, &case, &reporter)?;
     for sentence in sequence.left_out() {
         reporter.note(sentence);

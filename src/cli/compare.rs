@@ -70,9 +70,9 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
         "--difference-scale must be above 0"
     );
     arguments.options.set_threads()?;
-    let scene = arguments.options.scene()?;
     let strategies = strategies(arguments)?;
     let case = open_case(&arguments.case, &reporter)?;
+    let scene = arguments.options.scene(&case)?;
     let plan = Plan {
         strategies,
         reference: match arguments.reference {

@@ -62,12 +62,12 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let reporter = Reporter::new(arguments.verbosity);
     let format = picture::Format::from_path(&arguments.output)?;
     arguments.options.set_threads()?;
-    let scene = arguments.options.scene()?;
     let mut stages = Stages::default();
     let start = Instant::now();
     let case = open_case(&arguments.case, &reporter)?;
     stages.open = start.elapsed();
     let start = Instant::now();
+    let scene = arguments.options.scene(&case)?;
     let view = scene::resolve(&scene, &case)?;
     stages.read = start.elapsed();
     let image = if arguments.reference {

@@ -8,6 +8,7 @@ use strataray::case::Case;
 use strataray::gpu::Gpu;
 use strataray::load;
 use strataray::scene::lighting::PRESETS;
+use strataray::scene::look;
 use strataray::scene::{
     CameraSpec, FramingCamera, Interpolation, LightMode, LightingSpec, Projection, Scene, StepSpec,
 };
@@ -59,19 +60,26 @@ pub struct SceneOptions {
 }
 
 impl SceneOptions {
-    /// The scene of the file, or the default one, with the options over it.
-    pub fn scene(&self) -> anyhow::Result<Scene> {
-        let mut scene = match &self.scene {
-            None => Scene::default(),
-            Some(path) => {
-                let text = std::fs::read_to_string(path)
-                    .with_context(|| format!("cannot read {}", path.display()))?;
-                serde_json::from_str(&text).with_context(|| format!("{}", path.display()))?
-            }
-        };
+    /// The scene in which a case opens, with the keys of the scene file over it, and the options over these.
+    pub fn scene(&self, case: &Case) -> anyhow::Result<Scene> {
+        let mut written = self.written()?;
         if let Some(property) = &self.property {
-            scene.property = Some(property.clone());
+            written.insert("property".into(), property.clone().into());
         }
+        self.over(look::opening(case, &written.into())?)
+    }
+
+    /// The scene of the file with plain defaults, whatever the case, and the options over it: what times of
+    /// different cases and versions are compared by.
+    pub fn plain_scene(&self) -> anyhow::Result<Scene> {
+        let mut scene: Scene = serde_json::from_value(self.written()?.into())?;
+        if self.property.is_some() {
+            scene.property.clone_from(&self.property);
+        }
+        self.over(scene)
+    }
+
+    fn over(&self, mut scene: Scene) -> anyhow::Result<Scene> {
         if let Some(step) = &self.step {
             scene.step = StepSpec::Name(step.clone());
         }
@@ -105,6 +113,19 @@ impl SceneOptions {
             scene.vertical_exaggeration = self.exaggeration;
         }
         Ok(scene)
+    }
+
+    /// The keys of the scene file; none without one.
+    fn written(&self) -> anyhow::Result<serde_json::Map<String, serde_json::Value>> {
+        let Some(path) = &self.scene else {
+            return Ok(serde_json::Map::new());
+        };
+        let text = std::fs::read_to_string(path)
+            .with_context(|| format!("cannot read {}", path.display()))?;
+        // As a whole scene first, for errors that name line and column.
+        let _: Scene =
+            serde_json::from_str(&text).with_context(|| format!("{}", path.display()))?;
+        Ok(serde_json::from_str(&text)?)
     }
 
     /// True where an option picks one time step.

@@ -2,15 +2,19 @@
 
 use std::sync::Arc;
 
+use rayon::prelude::*;
+
 use super::resolve::{positive, wrong};
 use super::transfer::BANDS;
 use super::{
-    ColorSpec, Coloring, Interpolation, OpacitySpec, OwnRange, RangeSpec, ScaleSpec, Scene,
-    SceneError,
+    ColorSpec, Coloring, FoundOpacity, Interpolation, OpacitySpec, OwnRange, RangeSpec, ScaleSpec,
+    Scene, SceneError,
 };
-use crate::case::{Case, Categories, MAX_CATEGORIES, ValueRange};
+use crate::case::{Case, Categories, Extent, MAX_CATEGORIES, ValueRange};
 use crate::model::CellField;
 use crate::transfer::function::color_at;
+use crate::transfer::kinds::Quantity;
+use crate::transfer::opacity::{self, Interest, Opacity};
 use crate::transfer::{Curve, Scale, TransferFunction, boundaries, coloring, presets};
 
 /// What colors are asked for, and of what.
@@ -22,6 +26,8 @@ pub(super) struct Asked<'a> {
     pub range: Option<[f64; 2]>,
     /// Mean edge of the cells in world space.
     pub mean_edge: f64,
+    /// Factor on depth in world space.
+    pub exaggeration: f64,
 }
 
 /// A transfer function, and the field in its scale.
@@ -47,13 +53,14 @@ pub(super) fn resolve(asked: &Asked<'_>, field: &Arc<CellField>) -> Result<Color
         (_, ScaleSpec::Log) => (Scale::Log, log_range(asked, field)?),
     };
     let (color, bands) = colors(asked.scene, &scale)?;
+    let opacity = opacity(asked, &scale, range)?;
     let reference_length = match spec.reference_length {
         Some(v) => positive("transfer.reference_length", v)?,
-        None => asked.mean_edge,
+        None => opacity.reference_length,
     };
     let transfer = TransferFunction {
         color,
-        opacity: opacity(asked, &scale, range)?,
+        opacity: opacity.curve,
         range,
         bands,
         reference_length,
@@ -196,20 +203,79 @@ fn default_opacity(scale: &Scale) -> Curve<f64> {
     }
 }
 
-fn opacity(asked: &Asked<'_>, scale: &Scale, range: [f64; 2]) -> Result<Curve<f64>, SceneError> {
-    let points: Curve<f64> = match &asked.scene.transfer.opacity {
-        None => default_opacity(scale),
-        Some(OpacitySpec::Points(points)) => points.iter().map(|p| (p[0], p[1])).collect(),
-        Some(OpacitySpec::Found(_)) => {
+fn opacity(asked: &Asked<'_>, scale: &Scale, range: [f64; 2]) -> Result<Opacity, SceneError> {
+    let per_edge = |curve| Opacity {
+        curve,
+        reference_length: asked.mean_edge,
+    };
+    let found = match &asked.scene.transfer.opacity {
+        None => per_edge(default_opacity(scale)),
+        Some(OpacitySpec::Points(points)) => {
+            per_edge(points.iter().map(|p| (p[0], p[1])).collect())
+        }
+        Some(OpacitySpec::Found(FoundOpacity::Automatic)) => {
+            automatic(asked, scale, range)?.unwrap_or_else(|| per_edge(default_opacity(scale)))
+        }
+        Some(OpacitySpec::Found(FoundOpacity::Boundaries)) => {
             let found = asked.case.boundaries(asked.property, scale)?;
-            boundaries::curve(&found, range).unwrap_or_else(|| default_opacity(scale))
+            let curve = boundaries::curve(&found, range);
+            per_edge(curve.unwrap_or_else(|| default_opacity(scale)))
         }
     };
-    match rises(&points) && points.iter().all(|p| (0.0..=1.0).contains(&p.1)) {
-        true => Ok(points),
+    let points = &found.curve;
+    match rises(points) && points.iter().all(|p| (0.0..=1.0).contains(&p.1)) {
+        true => Ok(found),
         false => Err(wrong(
             "transfer.opacity",
             "needs rising positions and opacities, both from 0 to 1",
         )),
     }
+}
+
+/// The opacity that suits the values at the last step that has them; found once for a range and exaggeration.
+fn automatic(
+    asked: &Asked<'_>,
+    scale: &Scale,
+    range: [f64; 2],
+) -> Result<Option<Opacity>, SceneError> {
+    let (case, exaggeration) = (asked.case, asked.exaggeration);
+    let kind = match scale {
+        Scale::Linear => "linear",
+        Scale::Log => "log",
+        Scale::Categories(_) => "categories",
+    };
+    let key = format!("{} {kind} {range:?} {exaggeration}", asked.property);
+    case.over_steps.opacity(&key, || {
+        let Some(field) = case.last_field(asked.property)? else {
+            return Ok(None);
+        };
+        let field = scale.field(&field, range[0]);
+        let (weights, extents) = (case.weights(), case.extents());
+        let [low, high] = range;
+        // Where the range is empty all values are at its low end; what is undefined stays so.
+        let width = if high > low {
+            high - low
+        } else {
+            f64::INFINITY
+        };
+        let cell = |(value, (volume, extent)): (&f32, (&f32, &Extent))| opacity::Cell {
+            position: ((f64::from(*value) - low) / width).clamp(0.0, 1.0),
+            volume: f64::from(*volume),
+            extent: f64::from(extent.lateral).min(exaggeration * f64::from(extent.vertical)),
+        };
+        let cells = field.values().par_iter();
+        let cells: Vec<_> = cells
+            .zip(weights.values.par_iter().zip(extents.par_iter()))
+            .map(cell)
+            .collect();
+        let interest = match scale {
+            Scale::Categories(_) => Interest::Alike,
+            _ => Quantity::of(asked.property).interest(),
+        };
+        Ok(opacity::find(
+            interest,
+            &cells,
+            case.thinnest_extent(exaggeration),
+        ))
+    })
 }

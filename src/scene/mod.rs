@@ -6,6 +6,7 @@ pub mod film;
 pub mod ghosts;
 mod half_turns;
 pub mod lighting;
+pub mod look;
 pub mod resolve;
 mod settings;
 pub mod surfaces;

@@ -29,6 +29,9 @@ pub enum SceneError {
         /// What is wrong with it.
         problem: String,
     },
+    /// A key is unknown or its value has another form.
+    #[error("scene: {0}")]
+    Text(String),
     /// The case cannot give what the scene asks for.
     #[error(transparent)]
     Case(#[from] CaseError),
@@ -201,6 +204,7 @@ pub(super) fn resolve_over(
         property: &property,
         range,
         mean_edge: edges.element_sum() / 3.0,
+        exaggeration,
     };
     let Colors { field, transfer } = colors::resolve(&asked, &field)?;
     let (field, drawn) = filtered(case, field, &scene.filter, step)?;
@@ -413,11 +417,17 @@ fn mean_world_edges(case: &Case, exaggeration: f64) -> DVec3 {
 
 /// The property shown where a scene names none.
 pub fn default_property(case: &Case) -> String {
-    let has = |name: &&str| case.properties.iter().any(|p| p.name == **name);
-    ["SOIL", "SWAT", "PRESSURE", "PORO"]
-        .iter()
-        .find(|n| has(n))
-        .map_or_else(|| "DEPTH".to_owned(), |n| (*n).to_owned())
+    // A saturation that is the same everywhere tells nothing.
+    let varies = |name: &str| {
+        let range = case.range_over_steps(name).ok().flatten();
+        range.is_some_and(|r| r.max > r.min)
+    };
+    let has = |name: &&&str| case.properties.iter().any(|p| p.name == **name);
+    let saturations = ["SOIL", "SGAS", "SWAT"].iter();
+    let first = saturations.filter(has).find(|name| varies(name));
+    let mut others = ["PRESSURE", "SOIL", "SGAS", "SWAT", "PORO", "PERMX"].iter();
+    let found = first.or_else(|| others.find(has));
+    found.map_or_else(|| "DEPTH".to_owned(), |name| (*name).to_owned())
 }
 
 fn step(case: &Case, spec: &StepSpec, dynamic: bool) -> Result<usize, SceneError> {

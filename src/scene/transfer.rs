@@ -62,10 +62,11 @@ pub struct TransferSpec {
     pub coloring: Coloring,
     /// Number of bands where coloring is banded, 2 to 64.
     pub bands: usize,
-    /// Points (position 0..1, opacity 0..1) or `"boundaries"`; where absent a curve that rises with the
-    /// value, or for categories the same opacity for all.
+    /// Points (position 0..1, opacity 0..1), `"automatic"` or `"boundaries"`; where absent a curve that rises
+    /// with the value, or for categories the same opacity for all.
     pub opacity: Option<OpacitySpec>,
-    /// Length to which opacity refers; the mean cell edge in world space where absent.
+    /// Length to which opacity refers; where absent the mean cell edge in world space, or for an automatic
+    /// opacity the one found with it.
     pub reference_length: Option<f64>,
 }
 
@@ -123,7 +124,7 @@ pub enum ColorSpec {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(
     untagged,
-    expecting = "transfer.opacity must be points [[position, opacity], ...] or \"boundaries\""
+    expecting = "transfer.opacity must be points [[position, opacity], ...], \"automatic\" or \"boundaries\""
 )]
 pub enum OpacitySpec {
     /// Position 0..1 and opacity 0..1.
@@ -136,12 +137,17 @@ pub enum OpacitySpec {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum FoundOpacity {
+    /// What is rich in the quantity that one looks for is the most solid, the rest a haze: by the values at the
+    /// last step that has them. The reference length is found with it where the scene has none.
+    Automatic,
     /// Peaks where values change most from cell to cell, at the last step that has them; the default
     /// curve where there is no such boundary.
     Boundaries,
 }
 
 impl OpacitySpec {
+    /// `"automatic"`.
+    pub const AUTOMATIC: Self = Self::Found(FoundOpacity::Automatic);
     /// `"boundaries"`.
     pub const BOUNDARIES: Self = Self::Found(FoundOpacity::Boundaries);
 }

@@ -1,5 +1,7 @@
 //! Color maps of parts that have one color each: bands and categories.
 
+use palette::{FromColor, Hsv, Oklab, Srgb};
+
 use super::function::Curve;
 use super::presets::from_hex;
 
@@ -10,10 +12,79 @@ pub const PALETTE: [u32; 12] = [
     0xa40122, 0x00c2f9, 0xff5aaf,
 ];
 
-/// Colors for `count` categories; those of [`PALETTE`] again and again.
+/// Hues, saturations and values of the colors that the palette is continued with.
+const MORE_HUES: u16 = 40;
+const MORE_TONES: [(f32, f32); 6] = [
+    (0.45, 0.95),
+    (0.75, 0.9),
+    (0.95, 0.8),
+    (0.5, 0.7),
+    (0.85, 0.55),
+    (0.3, 0.8),
+];
+/// How much more the color before counts than those farther away.
+const NEIGHBOR: f32 = 0.6;
+
+/// Colors for `count` categories: those of [`PALETTE`], then each time the one that is farthest, in Oklab, from
+/// all before it and above all from its neighbor. The first 240 or so have no repeats.
 pub fn palette(count: usize) -> Vec<[f64; 3]> {
-    let colors = PALETTE.iter().cycle().take(count);
-    colors.map(|hex| from_hex(*hex)).collect()
+    let lab = |[r, g, b]: [f64; 3]| Oklab::from_color(Srgb::new(r, g, b).into_linear());
+    let mut colors: Vec<[f64; 3]> = PALETTE
+        .iter()
+        .take(count)
+        .map(|hex| from_hex(*hex))
+        .collect();
+    let mut more: Vec<More> = candidates()
+        .map(|color| More {
+            color,
+            lab: lab(color),
+            nearest: f64::INFINITY,
+        })
+        .collect();
+    for color in &colors {
+        more.iter_mut().for_each(|m| m.meet(lab(*color)));
+    }
+    while let Some(last) = colors.last().copied().filter(|_| colors.len() < count) {
+        let last = lab(last);
+        let apart = |m: &More| m.nearest.min(f64::from(NEIGHBOR) * m.distance(last));
+        let best = more.iter().max_by(|a, b| apart(a).total_cmp(&apart(b)));
+        let Some(color) = best.map(|m| m.color) else {
+            break;
+        };
+        more.iter_mut().for_each(|m| m.meet(lab(color)));
+        colors.push(color);
+    }
+    colors
+}
+
+/// A color that may continue the palette.
+struct More {
+    color: [f64; 3],
+    lab: Oklab<f64>,
+    /// Distance to the nearest color that was taken.
+    nearest: f64,
+}
+
+impl More {
+    fn distance(&self, other: Oklab<f64>) -> f64 {
+        let lab = self.lab;
+        let [l, a, b] = [lab.l - other.l, lab.a - other.a, lab.b - other.b];
+        (l * l + a * a + b * b).sqrt()
+    }
+
+    fn meet(&mut self, taken: Oklab<f64>) {
+        self.nearest = self.nearest.min(self.distance(taken));
+    }
+}
+
+fn candidates() -> impl Iterator<Item = [f64; 3]> {
+    let hues = (0..MORE_HUES).map(|n| 360.0 * f32::from(n) / f32::from(MORE_HUES));
+    hues.flat_map(|hue| {
+        MORE_TONES.map(|(saturation, value)| {
+            let rgb: Srgb<f32> = Srgb::from_color(Hsv::new(hue, saturation, value));
+            [rgb.red, rgb.green, rgb.blue].map(f64::from)
+        })
+    })
 }
 
 /// Each color over an equal part of 0..1: two points at one position where they meet.
@@ -37,8 +108,22 @@ mod tests {
                 assert!(apart > 10.0, "{a:06x} {b:06x}: {apart}");
             }
         }
-        let again = palette(14);
-        assert!(again[0] == again[12] && again[0] != again[1]);
+    }
+
+    #[test]
+    fn many_categories_have_no_repeats_and_unlike_neighbors() {
+        let colors = palette(64);
+        assert_eq!(colors.len(), 64);
+        let bytes = colors.iter().map(|c| c.map(|v| (255.0 * v).round() as u8));
+        let bytes: Vec<[u8; 3]> = bytes.collect();
+        for (n, a) in bytes.iter().enumerate() {
+            for (m, b) in bytes[..n].iter().enumerate() {
+                let apart = ciede2000_map(&[*a], &[*b]).unwrap()[0];
+                let least = if m + 1 == n { 15.0 } else { 3.0 };
+                assert!(apart > least, "{m} and {n}: {apart}");
+            }
+        }
+        assert_eq!(palette(5), colors[..5]);
     }
 
     #[test]

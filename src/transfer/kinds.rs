@@ -1,14 +1,22 @@
 //! What kind of quantity a property is, by its name in simulators' files.
 
-/// A kind of quantity, as far as it matters for colors.
+use super::opacity::Interest;
+
+/// A kind of quantity, as far as it matters for how it looks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Quantity {
-    /// Part of the pores that a phase fills: 0 to 1.
-    Saturation,
+    /// Part of the pores that oil fills: 0 to 1.
+    Oil,
+    /// Part of the pores that water fills.
+    Water,
+    /// Part of the pores that gas, or carbon dioxide, fills.
+    Gas,
+    /// Part of the pores that another phase fills.
+    OtherPhase,
     /// A pressure.
     Pressure,
-    /// Permeabilities, transmissibilities and their multipliers: over many powers of ten.
-    Conductivity,
+    /// Permeabilities, transmissibilities and their multipliers, volumes: over many powers of ten.
+    Wide,
     /// Numbers of regions or rock types.
     Region,
     /// A part of the rock: porosity, net to gross.
@@ -22,14 +30,20 @@ pub enum Quantity {
 }
 
 /// Names, or their beginnings (`PERM*`) or ends (`*NUM`); the first that fits counts.
-const NAMES: [(Quantity, &[&str]); 6] = [
+const NAMES: [(Quantity, &[&str]); 9] = [
     (
         Quantity::Region,
         &["*NUM", "FIP*", "FACIES*", "*FACIES", "ROCKTYPE", "NNC"],
     ),
-    (Quantity::Saturation, &["SWAT", "SGAS", "SOIL", "SSOL"]),
+    (Quantity::Oil, &["SOIL"]),
+    (Quantity::Water, &["SWAT", "SWATINIT"]),
+    (Quantity::Gas, &["SGAS", "XMF*", "YMF*"]),
+    (Quantity::OtherPhase, &["SSOL*"]),
     (Quantity::Pressure, &["PRES*", "*PRES"]),
-    (Quantity::Conductivity, &["PERM*", "TRAN*", "MULT*"]),
+    (
+        Quantity::Wide,
+        &["PERM*", "TRAN*", "MULT*", "PORV", "CELL_VOLUME"],
+    ),
     (Quantity::Fraction, &["PORO", "NTG"]),
     (Quantity::Depth, &["DEPTH", "TOPS"]),
 ];
@@ -50,6 +64,21 @@ impl Quantity {
         let found = NAMES.iter().find(|(_, names)| names.iter().any(fits));
         found.map_or(Self::Other, |(quantity, _)| *quantity)
     }
+
+    /// Which of its values one looks for.
+    pub fn interest(self) -> Interest {
+        match self {
+            Self::Pressure => Interest::Low,
+            Self::Difference => Interest::Ends,
+            Self::Region | Self::Depth => Interest::Alike,
+            _ => Interest::High,
+        }
+    }
+
+    /// True of the saturation of a phase.
+    pub fn is_saturation(self) -> bool {
+        matches!(self, Self::Oil | Self::Water | Self::Gas | Self::OtherPhase)
+    }
 }
 
 #[cfg(test)]
@@ -59,19 +88,21 @@ mod tests {
     #[test]
     fn names_have_their_kind() {
         for (name, kind) in [
-            ("SWAT", Quantity::Saturation),
-            ("soil", Quantity::Saturation),
+            ("SWAT", Quantity::Water),
+            ("soil", Quantity::Oil),
+            ("SGAS", Quantity::Gas),
             ("PRESSURE", Quantity::Pressure),
-            ("PERMX", Quantity::Conductivity),
-            ("TRANZ", Quantity::Conductivity),
-            ("MULTX-", Quantity::Conductivity),
+            ("PERMX", Quantity::Wide),
+            ("TRANZ", Quantity::Wide),
+            ("MULTX-", Quantity::Wide),
             ("MULTNUM", Quantity::Region),
             ("SATNUM", Quantity::Region),
             ("FACIES", Quantity::Region),
             ("PORO", Quantity::Fraction),
             ("PRESSURE-PRESSURE@0", Quantity::Difference),
             ("DEPTH", Quantity::Depth),
-            ("SWATINIT", Quantity::Other),
+            ("PORV", Quantity::Wide),
+            ("RS", Quantity::Other),
             ("", Quantity::Other),
         ] {
             assert_eq!(Quantity::of(name), kind, "{name}");

@@ -4,6 +4,7 @@ pub mod boundaries;
 pub mod coloring;
 pub mod function;
 pub mod kinds;
+pub mod opacity;
 pub mod presets;
 mod scale;
 

@@ -1,9 +1,9 @@
 //! Named color maps, and colors as `#rrggbb`.
 
 /// Names of all color maps; the default first.
-pub const NAMES: [&str; 10] = [
+pub const NAMES: [&str; 13] = [
     "turbo", "viridis", "cividis", "coolwarm", "redblue", "rainbow", "plasma", "inferno", "magma",
-    "gray",
+    "gray", "oil", "water", "gas",
 ];
 
 /// Points that a smooth map is sampled at.
@@ -23,6 +23,9 @@ pub fn color_map(name: &str) -> Option<Vec<(f64, [f64; 3])>> {
         "coolwarm" => knots(&COOLWARM),
         "rainbow" => evenly(&RAINBOW),
         "gray" => evenly(&[[0.0; 3], [1.0; 3]]),
+        "oil" => knots(&OIL),
+        "water" => knots(&WATER),
+        "gas" => knots(&GAS),
         _ => return None,
     })
 }
@@ -116,6 +119,37 @@ const COOLWARM: [Knot; 18] = [
     (239, 0xcb3e38),
     (247, 0xc0282f),
     (255, 0xb40426),
+];
+
+/// Oil saturation: water blue where there is no oil, then from green to red. No color is so dark that edges and
+/// light cannot be seen on it, none so light that it is taken for paper.
+const OIL: [Knot; 7] = [
+    (0, 0x7fa6d3),
+    (38, 0x6fb3c4),
+    (77, 0x3f9e5c),
+    (128, 0xb5c83a),
+    (166, 0xf0c02e),
+    (204, 0xee7d22),
+    (255, 0xc4161c),
+];
+
+/// Water saturation: sand where there is none, then blue.
+const WATER: [Knot; 5] = [
+    (0, 0xd8b36a),
+    (64, 0xb9c08a),
+    (128, 0x74b9c4),
+    (191, 0x3f86cf),
+    (255, 0x1f4fa8),
+];
+
+/// Gas saturation: gray-blue where there is none, then yellow to red.
+const GAS: [Knot; 6] = [
+    (0, 0x93a8bd),
+    (38, 0xa9b48f),
+    (89, 0xe3c437),
+    (140, 0xf29a2e),
+    (191, 0xe35432),
+    (255, 0xb3123f),
 ];
 
 /// The engineers' rainbow: blue, cyan, green, yellow, red.

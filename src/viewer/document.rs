@@ -22,8 +22,6 @@ pub struct Document {
     pub case: Option<Arc<Case>>,
     /// It is being read.
     pub loading: Option<Loading>,
-    /// It has not been said yet whether it is lit at first.
-    pub is_unlit: bool,
     /// Why the last reading failed.
     pub error: Option<String>,
     /// What the user has set.
@@ -49,7 +47,6 @@ impl Document {
             path,
             case: None,
             loading: Some(loading),
-            is_unlit: true,
             error: None,
             state,
             history: History::default(),
@@ -84,9 +81,7 @@ impl Document {
                 self.case = Some(case);
                 // What was set before a case is read again stays.
                 if self.state.setup.scene.property.is_none() {
-                    let (property, look) = first;
-                    self.state.setup.looks.insert(property.clone(), look);
-                    self.state.setup.show(property);
+                    self.state.setup.scene = *first;
                 }
                 true
             }

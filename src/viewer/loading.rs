@@ -5,17 +5,17 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 
-use super::looks::{Look, look_of};
 use crate::case::Case;
 use crate::load;
-use crate::scene::default_property;
+use crate::scene::Scene;
+use crate::scene::look;
 
 /// A case, and what of it is shown at first.
 pub struct Opened {
     /// The case.
     pub case: Arc<Case>,
-    /// Name of the property, and how it looks.
-    pub first: (String, Look),
+    /// The scene in which it opens.
+    pub first: Box<Scene>,
 }
 
 /// A case that is being opened.
@@ -42,11 +42,10 @@ impl Loading {
             let case = match load::open_with(&path, &progress) {
                 Ok(Some(case)) => {
                     progress("values");
-                    let property = default_property(&case);
-                    let look = look_of(&case, &property);
-                    Ok(Opened {
+                    let first = look::opening(&case, &serde_json::Value::default());
+                    first.map_err(|e| e.to_string()).map(|first| Opened {
                         case: Arc::new(case),
-                        first: (property, look),
+                        first: Box::new(first),
                     })
                 }
                 Ok(None) => Err("opening it was cancelled".into()),

@@ -19,7 +19,6 @@ mod link;
 mod listening;
 mod loading;
 mod looking;
-mod looks;
 mod marks;
 mod mouse;
 mod orbit;
@@ -42,7 +41,6 @@ use std::path::PathBuf;
 
 pub use action::{Action, Beside};
 pub use document::Document;
-pub use looks::{Look, look_of};
 pub use reader::{Curves, Table};
 pub use settings::Settings;
 pub use state::{Comparison, Layout, Pace, Setup, State};

@@ -4,9 +4,9 @@
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 
-use super::looks::{Look, look_of};
 use crate::case::{Case, Property};
 use crate::model::CellIndex;
+use crate::scene::look::{Look, look_of};
 
 /// Cells of a case, by I, J, K from 1.
 #[derive(Clone)]

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
-use super::looks::Look;
+use crate::scene::look::Look;
 use crate::scene::{Scene, StepSpec};
 use crate::strategies::StrategyKind;
 

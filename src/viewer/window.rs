@@ -16,12 +16,10 @@ use super::reader::Reader;
 use super::settings::Settings;
 use super::sheets::Sheets;
 use super::sides::Sides;
-use super::state::{Setup, State};
+use super::state::State;
 use super::worker::{Difference, Picture};
 use super::{bar, keys};
 use crate::picking::Hit;
-use crate::scene::{Integration, LibcSettings, LightingSpec, Scene};
-use crate::strategies::StrategyKind;
 
 /// The window's state.
 pub struct Window {
@@ -79,18 +77,6 @@ impl Window {
             return;
         }
         let state = State {
-            setup: Setup {
-                scene: Scene {
-                    // Whole segments show no steps, and take less time than samples.
-                    strategy: StrategyKind::Libc.name().into(),
-                    libc: LibcSettings {
-                        integration: Integration::Segments,
-                        ..LibcSettings::default()
-                    },
-                    ..Scene::default()
-                },
-                ..Setup::default()
-            },
             pace: self.settings.pace,
             ..State::default()
         };
@@ -157,20 +143,6 @@ impl Window {
     /// How far the two pictures shown are apart, once that is known.
     pub fn difference(&self) -> Option<&Difference> {
         self.pictures.difference().map(|d| &d.difference)
-    }
-
-    /// Lights cases that came first once it is known that a GPU draws them.
-    fn light_first(&mut self) {
-        let Some((_, is_software)) = self.pictures.adapter else {
-            return;
-        };
-        for document in self.documents.iter_mut().filter(|d| d.is_unlit) {
-            document.is_unlit = false;
-            let lighting = &mut document.state.setup.scene.lighting;
-            if !is_software && *lighting == LightingSpec::default() {
-                *lighting = LightingSpec::preset("soft").unwrap_or_default();
-            }
-        }
     }
 
     pub(super) fn tell(&mut self, text: impl Into<String>) {
@@ -243,7 +215,6 @@ impl Window {
         });
         self.remember(ctx);
         self.listen(ctx);
-        self.light_first();
         for command in keys::pressed(ctx) {
             self.perform(ctx, command);
         }

@@ -62,7 +62,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let reporter = Reporter::new(arguments.verbosity);
     let options = &arguments.options;
     options.set_threads()?;
-    let mut scene = options.scene()?;
+    let mut scene = options.plain_scene()?;
     let gpu = options.open_gpu(&reporter)?;
     if options.size.is_none() && options.scene.is_none() {
         scene.size = match gpu.is_software() {

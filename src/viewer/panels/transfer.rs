@@ -6,12 +6,13 @@ use super::controls::{list, number, one_of};
 use super::{About, curve};
 use crate::model::derivatives;
 use crate::scene::ghosts::shown_grid;
+use crate::scene::look::look_of;
 use crate::scene::transfer::BANDS;
 use crate::scene::{ColorSpec, Coloring, OpacitySpec, RangeSpec, ScaleSpec, TransferSpec};
 use crate::transfer::function::color_at;
 use crate::transfer::{boundaries, presets};
 use crate::viewer::action::Action;
-use crate::viewer::{look_of, overlay};
+use crate::viewer::overlay;
 
 pub fn show(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
     let Some(picture) = about.picture else { return };
@@ -27,6 +28,9 @@ pub fn show(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
     let unit = about.case.unit(&picture.view.property);
     if curve::show(ui, &picture.view, unit, &mut points) {
         spec.opacity = Some(OpacitySpec::Points(points));
+        // Points that were found refer to the length that was found with them.
+        let length = picture.view.transfer.reference_length;
+        spec.reference_length.get_or_insert(length);
     }
     opacities(ui, about, &mut spec);
     scale(ui, &mut spec, about.scene.range, actions);
@@ -82,6 +86,11 @@ fn opacities(ui: &mut Ui, about: &About<'_>, spec: &mut TransferSpec) {
             if ui.button(name).on_hover_text(what).clicked() {
                 spec.opacity = Some(OpacitySpec::Points(points.to_vec()));
             }
+        }
+        let what = "What is rich is the most solid, the rest a haze: found in the values";
+        if ui.button("Automatic").on_hover_text(what).clicked() {
+            spec.opacity = Some(OpacitySpec::AUTOMATIC);
+            spec.reference_length = None;
         }
         let found = ui.button("Boundaries");
         let what = "Peaks where values change most from cell to cell at the step shown; a ramp where they change evenly";

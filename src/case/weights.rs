@@ -1,0 +1,117 @@
+//! What cells weigh where values are summed up, and how far one looks through them.
+
+use std::sync::Arc;
+
+use rayon::prelude::*;
+
+use super::{Case, Kind};
+use crate::model::Ijk;
+use crate::model::derived::Derived;
+
+/// What cells are weighted by.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Weighting {
+    /// PORV of the file.
+    PoreVolume,
+    /// Bulk volume times porosity, and times net-to-gross where the case has it.
+    PorosityVolume,
+    /// Bulk volume, where nothing is known of the pores.
+    BulkVolume,
+}
+
+/// A weight for each active cell.
+#[derive(Debug, Clone)]
+pub struct Weights {
+    /// What they are.
+    pub weighting: Weighting,
+    /// By active index; never negative, 0 where unknown.
+    pub values: Arc<Vec<f32>>,
+}
+
+/// Extents of an active cell in grid space.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Extent {
+    /// The shorter of its mean edges along i and j.
+    pub lateral: f32,
+    /// Its thickness, without vertical exaggeration.
+    pub vertical: f32,
+}
+
+impl Case {
+    /// The pore volume of each active cell, or what stands in for it. Found at the first call.
+    pub fn weights(&self) -> Weights {
+        self.over_steps.weights(|| self.found_weights())
+    }
+
+    fn found_weights(&self) -> Weights {
+        let field = |name: &str| {
+            let known = self
+                .properties
+                .iter()
+                .any(|p| p.name == name && p.kind != Kind::Dynamic);
+            let field = known.then(|| self.field(name, 0).ok()).flatten()?;
+            field.values().iter().any(|v| *v > 0.0).then_some(field)
+        };
+        let kept = |v: f32| if v.is_finite() && v > 0.0 { v } else { 0.0 };
+        if let Some(porv) = field("PORV") {
+            return Weights {
+                weighting: Weighting::PoreVolume,
+                values: Arc::new(porv.values().iter().map(|v| kept(*v)).collect()),
+            };
+        }
+        let bulk = Derived::Volume.field(&self.grid);
+        let mut values: Vec<f32> = bulk.values().iter().map(|v| kept(*v)).collect();
+        let mut weighting = Weighting::BulkVolume;
+        if let Some(porosity) = field("PORO") {
+            weighting = Weighting::PorosityVolume;
+            for field in [Some(porosity), field("NTG")].into_iter().flatten() {
+                for (value, factor) in values.iter_mut().zip(field.values()) {
+                    *value *= kept(*factor);
+                }
+            }
+        }
+        Weights {
+            weighting,
+            values: Arc::new(values),
+        }
+    }
+
+    /// The extents of each active cell. Found at the first call.
+    pub fn extents(&self) -> Arc<Vec<Extent>> {
+        self.over_steps.extents(|| {
+            let grid = &self.grid;
+            let extent = |ijk: Ijk| {
+                let edges = grid.hexahedron(ijk).mean_edges();
+                Extent {
+                    lateral: edges.x.min(edges.y) as f32,
+                    vertical: edges.z.abs() as f32,
+                }
+            };
+            let cells = grid.active_cells().par_iter();
+            Arc::new(cells.map(|c| extent(grid.dims().ijk(*c))).collect())
+        })
+    }
+
+    /// The thinnest extent of the whole model in world space, of its active cells alone: mean thickness of its
+    /// columns, or cells along i or j times their mean edge.
+    pub fn thinnest_extent(&self, exaggeration: f64) -> f64 {
+        let dims = self.grid.dims();
+        let extents = self.extents();
+        let sum =
+            |of: &dyn Fn(&Extent) -> f32| extents.iter().map(|e| f64::from(of(e))).sum::<f64>();
+        let mut columns: Vec<usize> = self
+            .grid
+            .active_cells()
+            .iter()
+            .map(|c| {
+                let ijk = dims.ijk(*c);
+                ijk.i + ijk.j * dims.ni
+            })
+            .collect();
+        columns.sort_unstable();
+        columns.dedup();
+        let vertical = exaggeration * sum(&|e| e.vertical) / columns.len().max(1) as f64;
+        let lateral = sum(&|e| e.lateral) / extents.len().max(1) as f64;
+        vertical.min(lateral * dims.ni.min(dims.nj) as f64)
+    }
+}
