@@ -12,7 +12,7 @@ use super::{
     Camera, CameraSpec, ClipSpec, CutFace, Filter, Inactive, Interpolation, LibcSettings, Scene,
     SrgSettings, StepSpec, Surfaces,
 };
-use crate::case::{Case, CaseError};
+use crate::case::{Case, CaseError, ValueRange};
 use crate::gpu::volume::Shape;
 use crate::model::{CellField, Dims, FaultFaces, Grid, Ijk, Spaces};
 use crate::strategies::StrategyKind;
@@ -417,10 +417,15 @@ fn mean_world_edges(case: &Case, exaggeration: f64) -> DVec3 {
 
 /// The property shown where a scene names none.
 pub fn default_property(case: &Case) -> String {
-    // A saturation that is the same everywhere tells nothing.
+    // A saturation that is the same everywhere tells nothing. Other steps are read where the last one is even.
     let varies = |name: &str| {
-        let range = case.range_over_steps(name).ok().flatten();
-        range.is_some_and(|r| r.max > r.min)
+        let last = case.last_field(name).ok().flatten();
+        let last = last.and_then(|f| ValueRange::of(&f));
+        let differs = |r: ValueRange| r.max > r.min;
+        last.is_some_and(differs) || {
+            let all = case.range_over_steps(name).ok().flatten();
+            all.is_some_and(differs)
+        }
     };
     let has = |name: &&&str| case.properties.iter().any(|p| p.name == **name);
     let saturations = ["SOIL", "SGAS", "SWAT"].iter();

@@ -77,7 +77,7 @@ pub fn find(interest: Interest, cells: &[Cell], model_extent: f64) -> Option<Opa
         let extents = cells.iter().map(|c| (c.extent, c.volume)).collect();
         return Some(Opacity {
             curve: vec![(0.0, opacity), (1.0, opacity)],
-            reference_length: share_below(extents, 0.5)?,
+            reference_length: shares_below(extents, [0.5])?[0],
         });
     }
     let weighted = |c: &Cell| {
@@ -85,8 +85,8 @@ pub fn find(interest: Interest, cells: &[Cell], model_extent: f64) -> Option<Opa
         (richness, c.volume * richness)
     };
     let weights: Vec<(f64, f64)> = cells.par_iter().map(weighted).collect();
-    let at = |share| share_below(weights.clone(), share);
-    let rich = [at(HAZE_SHARE)?, at(BODY_SHARES[0])?, at(BODY_SHARES[1])?];
+    let [veil, body] = [HAZE_SHARE, BODY_SHARES[0]];
+    let rich = shares_below(weights.clone(), [veil, body, BODY_SHARES[1]])?;
     let rising = rising(rich);
     // The length at which each cell just shows; the haze is decided after it.
     let lengths = cells
@@ -97,7 +97,7 @@ pub fn find(interest: Interest, cells: &[Cell], model_extent: f64) -> Option<Opa
             let needed = (1.0 - SHOWS).ln() / (1.0 - opacity).ln();
             (cell.extent / needed, *weight)
         });
-    let reference_length = share_below(lengths.collect(), 1.0 - SHOWN)?;
+    let [reference_length] = shares_below(lengths.collect(), [1.0 - SHOWN])?;
     let layers = (model_extent / reference_length).max(1.0);
     let haze = (1.0 - (1.0 - HAZE).powf(1.0 / layers)).min(MOST_HAZE);
     Some(Opacity {
@@ -111,16 +111,24 @@ fn ends(cells: &[Cell]) -> Option<(f64, f64)> {
     ends.reduce_with(|a, b| (a.0.min(b.0), a.1.max(b.1)))
 }
 
-/// The value below which the given share of the weight lies; `None` without weight.
-fn share_below(mut values: Vec<(f64, f64)>, share: f64) -> Option<f64> {
+/// The values below which the given shares, rising, of the weight lie; `None` without weight.
+fn shares_below<const N: usize>(
+    mut values: Vec<(f64, f64)>,
+    shares: [f64; N],
+) -> Option<[f64; N]> {
     values.par_sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
     let total: f64 = values.iter().map(|v| v.1).sum();
+    let mut rising = values.iter();
     let mut sum = 0.0;
-    let found = values.iter().find(|v| {
-        sum += v.1;
-        sum >= share * total
+    let mut last = values.first()?.0;
+    let below = shares.map(|share| {
+        while sum < share * total {
+            let Some((value, weight)) = rising.next() else { break };
+            (last, sum) = (*value, sum + weight);
+        }
+        last
     });
-    found.filter(|_| total > 0.0).map(|v| v.0)
+    (total > 0.0).then_some(below)
 }
 
 /// Opacity by richness from where the veil begins, without haze.
