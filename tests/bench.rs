@@ -58,6 +58,7 @@ fn every_case_has_figures_for_every_strategy() {
                 "frame_ms",
                 "samples",
                 "samples_per_second",
+                "longest_submission_ms",
             ] {
                 positive(strategy, name);
             }

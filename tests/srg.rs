@@ -14,7 +14,8 @@ use glam::DVec3;
 use half::f16;
 use rayon::prelude::*;
 use strataray::case::Case;
-use strataray::gpu::resample::Resampler;
+use strataray::gpu::layout::RUN;
+use strataray::gpu::resample::{Resampler, VOXEL_WORK};
 use strataray::gpu::slabs::Slabs;
 use strataray::gpu::tiles::Pace;
 use strataray::gpu::volume::{self, Volume};
@@ -330,41 +331,64 @@ fn the_volume_is_filled_anew_when_it_must_and_only_then() {
 }
 
 #[test]
-fn a_fill_is_split_into_short_submissions() {
+fn a_fill_is_split_into_parts_that_the_pace_allows() {
     let Some(gpu) = common::gpu() else { return };
     let case = load::open(&common::sample()).unwrap();
-    let view = scene::resolve(&scene([40, 30], SrgSettings::default()), &case).unwrap();
-    let mut renderer = Renderer::new(gpu, &case.grid).unwrap();
-    let (last, longest, calls) = (
-        Cell::new(std::time::Instant::now()),
-        Cell::new(Duration::ZERO),
-        Cell::new(0),
-    );
-    let parts = Cell::new([0.0f64; 2]);
-    let frame = renderer.render(&case.grid, &view, &|part| {
-        let now = std::time::Instant::now();
-        if calls.get() > 3 {
-            longest.set(longest.get().max(now - last.get()));
-        }
-        last.set(now);
-        calls.set(calls.get() + 1);
-        let [least, most] = parts.get();
-        parts.set([least.min(part), most.max(part)]);
-        true
-    });
-    let bytes = frame.unwrap().unwrap().bytes.resampled;
+    let field = case.field("PORO", 0).unwrap();
+    let mut on_device = GpuGrid::new(&gpu, &case.grid).unwrap();
+    let drawn = vec![true; field.values().len()];
+    on_device
+        .show(&gpu, &case.grid, &field, &drawn, Interpolation::Cell)
+        .unwrap();
+    let volume = Volume::new(&gpu, volume::Shape::of(case.grid.dims(), 4.0, false));
+    let [width, height, depth] = volume.shape.size.map(u64::from);
+    let voxels = width * height * depth;
+    let mut resampler = Resampler::new(&gpu, false).unwrap();
+    // Voxels of each part, made at a pace that learns from the parts or, the twin, at one that does all at once.
+    let mut parts_at = |mut pace: Pace| {
+        let done = Cell::new(0.0);
+        let parts = std::cell::RefCell::new(Vec::new());
+        let progress = |part: f64| {
+            let voxels = (part - done.replace(part)) * voxels as f64;
+            parts.borrow_mut().push(voxels.round() as u64);
+            true
+        };
+        let mut slabs = Slabs::new(&gpu, &mut pace, &progress);
+        let range = range_of(&field);
+        let fill = resampler.fill(&mut slabs, &on_device, &volume, range, Interpolation::Cell);
+        assert!(fill.unwrap() && done.get() == 1.0);
+        parts.into_inner()
+    };
+    let learned = parts_at(Pace::default());
+    let mut fast = Pace::default();
+    for _ in 0..60 {
+        fast.learn(Duration::from_micros(1), u64::MAX);
+    }
+    let at_once = parts_at(fast);
+    // However fast the device is, the first part is as small as for the slowest one, and each may be larger
+    // than the one before by the pace's growth alone; rows are not divided.
+    let row = width * depth.min(u64::from(RUN));
+    let mut most = Pace::default().pieces(1) as f64;
+    let is_short = |(voxels, most): (&u64, f64)| (voxels * VOXEL_WORK) as f64 <= most + 1.0;
+    let mut limits = || {
+        let limit = most.max((row * VOXEL_WORK) as f64);
+        most *= Pace::CHANGE[1];
+        limit
+    };
+    let limits: Vec<f64> = learned.iter().map(|_| limits()).collect();
     println!(
-        "{bytes} bytes filled and one small frame made in {} parts, the longest of {:?}",
-        calls.get(),
-        longest.get()
+        "{voxels} voxels in {} parts, the largest of {:?}; {} parts without a limit",
+        learned.len(),
+        learned.iter().max(),
+        at_once.len()
     );
-    assert!(calls.get() > 10 && parts.get()[1] <= 1.0);
-    // Stated: about 100 ms. Machines that run tests may be ten times as busy.
+    assert_eq!(learned.iter().sum::<u64>(), voxels);
+    assert!(learned.len() > 5, "{learned:?}");
     assert!(
-        longest.get() < Duration::from_secs(1),
-        "{:?}",
-        longest.get()
+        learned.iter().zip(limits.clone()).all(is_short),
+        "{learned:?}"
     );
+    assert!(!at_once.iter().zip(limits).all(is_short), "{at_once:?}");
 }
 
 #[test]

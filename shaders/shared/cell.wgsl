@@ -179,33 +179,94 @@ fn solve(cell: Cell, point: vec3f, start: vec3f, enough: f32) -> Solution {
     return s;
 }
 
-// The parameters of `point` where the pillars are vertical: x and y do not depend on w, so u solves a
-// quadratic equation, v and w linear ones.
+// The parameters of `point` where the pillars are vertical: x and y do not depend on w, so (u, v) solves a
+// bilinear equation, and w then a linear one.
 fn solve_vertical(cell: Cell, point: vec3f) -> Solution {
-    let a = cell.ku.xy;
-    let b = cell.kv.xy;
-    let c = cell.kuv.xy;
-    let p = point.xy - cell.k0.xy;
-    // cross(p - u a, b + u c) = 0; of its roots the one that stays finite as the sides become parallel.
-    let linear = cross2(p, c) - cross2(a, b);
-    let constant = cross2(p, b);
-    let discriminant = linear * linear + 4.0 * cross2(a, c) * constant;
-    let root = linear + select(-1.0, 1.0, linear >= 0.0) * sqrt(max(discriminant, 0.0));
-    var s: Solution;
-    s.uvw = vec3f(-1.0);
-    if discriminant < 0.0 || abs(root) < 1e-30 {
-        return s;
+    let q0 = cell.k0.xy - point.xy;
+    let roots = inverse_bilinear(q0, q0 + cell.ku.xy, q0 + cell.kv.xy, q0 + (cell.ku + cell.kv + cell.kuv).xy);
+    var s = below(cell, point, roots.first);
+    if !s.inside && is_between(roots.second, INSIDE_SLACK) {
+        let other = below(cell, point, roots.second);
+        if other.inside {
+            s = other;
+        }
     }
-    let u = clamp(-2.0 * constant / root, -1.0, 2.0);
-    let across = b + u * c;
-    let v = clamp(dot(p - u * a, across) / max(dot(across, across), 1e-30), -1.0, 2.0);
-    let top = evaluate(cell, vec3f(u, v, 0.0)).z;
-    let thickness = evaluate(cell, vec3f(u, v, 1.0)).z - top;
+    return s;
+}
+
+// The solution at (u, v), vertical pillars given.
+fn below(cell: Cell, point: vec3f, uv: vec2f) -> Solution {
+    let top = evaluate(cell, vec3f(uv, 0.0)).z;
+    let thickness = evaluate(cell, vec3f(uv, 1.0)).z - top;
     // Without thickness there is no inside.
     let w = select(-1.0, clamp((point.z - top) / thickness, -1.0, 2.0), abs(thickness) > 1e-9);
-    s.uvw = vec3f(u, v, w);
+    var s: Solution;
+    s.uvw = vec3f(clamp(uv, vec2f(-1.0), vec2f(2.0)), w);
     s.inside = is_inside(s.uvw);
     return s;
+}
+
+// The two parameters at which a bilinear map takes the value zero, the one nearer to the quadrilateral first.
+struct Roots {
+    first: vec2f,
+    second: vec2f,
+}
+
+// Parameters of no place in or near a quadrilateral.
+const NO_ROOT: f32 = -8.0;
+
+// Parameters of the origin in a quadrilateral with corners at (0, 0), (1, 0), (0, 1) and (1, 1); one that is
+// not convex may cover it twice.
+//
+// The ends of a line of constant u lie on one line with the origin where
+// c0 (1 - u)^2 + 2 c1 u (1 - u) + c2 u^2 = 0. In this form nothing cancels: of a point inside a convex
+// quadrilateral c0 and c2, areas to both sides of it, differ in sign, so that both terms of the discriminant
+// are positive, and numerator and denominator of u have the same sign.
+fn inverse_bilinear(q0: vec2f, q1: vec2f, q2: vec2f, q3: vec2f) -> Roots {
+    let c0 = cross2(q0, q2);
+    let c1 = 0.5 * (cross2(q0, q3) + cross2(q1, q2));
+    let c2 = cross2(q1, q3);
+    let discriminant = c1 * c1 - c0 * c2;
+    // Slightly below zero it is rounding, where the map folds.
+    if discriminant < -1e-6 * c1 * c1 {
+        return Roots(vec2f(NO_ROOT), vec2f(NO_ROOT));
+    }
+    let q = -(c1 + select(-1.0, 1.0, c1 >= 0.0) * sqrt(max(discriminant, 0.0)));
+    let a = on_line(q, q + c2, q0, q1, q2, q3);
+    let b = on_line(c0, c0 + q, q0, q1, q2, q3);
+    if off_middle(a) <= off_middle(b) {
+        return Roots(a, b);
+    }
+    return Roots(b, a);
+}
+
+// Parameters of the origin on the line of constant u = part / whole, where it lies on it.
+fn on_line(part: f32, whole: f32, q0: vec2f, q1: vec2f, q2: vec2f, q3: vec2f) -> vec2f {
+    let u = part / whole;
+    if !(abs(u - 0.5) < 8.0) {
+        return vec2f(NO_ROOT);
+    }
+    let low = mix(q0, q1, u);
+    let along = mix(q2, q3, u) - low;
+    let length2 = dot(along, along);
+    let v = clamp(-dot(low, along) / max(length2, 1e-30), -8.0, 9.0);
+    // Where an edge has no length any place on it has this u.
+    let off = low + v * along;
+    let extent = q3 - q0;
+    let across = q2 - q1;
+    if dot(off, off) > 1e-4 * (length2 + 1e-4 * (dot(extent, extent) + dot(across, across))) {
+        return vec2f(NO_ROOT);
+    }
+    return vec2f(u, v);
+}
+
+fn off_middle(uv: vec2f) -> f32 {
+    let off = abs(uv - vec2f(0.5));
+    return max(off.x, off.y);
+}
+
+fn is_between(uv: vec2f, slack: f32) -> bool {
+    return off_middle(uv) <= 0.5 + slack;
 }
 
 fn cross2(a: vec2f, b: vec2f) -> f32 {

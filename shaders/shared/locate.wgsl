@@ -98,12 +98,23 @@ fn locate_in_column(column: u32, query: Query, advance: vec3f, result: ptr<funct
         (*result).skip = min((*result).skip, SAFE_SKIP * steps_beside);
         return false;
     }
-    let uv = inverse_bilinear(q0, q1, q2, q3);
-    let outside = abs(uv - vec2f(0.5)) - vec2f(0.5 + margin);
-    if max(outside.x, outside.y) > 0.0 {
+    // A section that is not convex may cover the point twice.
+    let roots = inverse_bilinear(q0, q1, q2, q3);
+    if !is_between(roots.first, margin) {
         (*result).skip = 1.0;
         return false;
     }
+    let speed = section_speed(q0, q1, q2, q3, motion);
+    return search_column(column, query, roots.first, speed, advance.z, result)
+        || (is_between(roots.second, margin) && search_column(column, query, roots.second, speed, advance.z, result));
+}
+
+// Finds the cell of a column that holds a point, whose parameters in the column's section are about `uv`.
+fn search_column(
+    column: u32, query: Query, uv: vec2f, speed: f32, sinking: f32, result: ptr<function, Location>,
+) -> bool {
+    let lists = column_lists[column];
+    let margin = column_margin(lists);
     if (lists.x & COLUMN_FLAG) != 0u {
         (*result).skip = 1.0;
         return search_all_layers(column, query, uv, result);
@@ -111,9 +122,8 @@ fn locate_in_column(column: u32, query: Query, advance: vec3f, result: ptr<funct
     let inner = clamp(uv, vec2f(0.0), vec2f(1.0));
     let weights = vec4f((1.0 - inner.x) * (1.0 - inner.y), inner.x * (1.0 - inner.y),
         (1.0 - inner.x) * inner.y, inner.x * inner.y);
-    let speed = section_speed(q0, q1, q2, q3, motion);
-    let above = clear_of(lists, 0u, 0u, weights, query, margin, speed, advance.z);
-    let below = clear_of(lists, grid.nk - 1u, 1u, weights, query, margin, speed, advance.z);
+    let above = clear_of(lists, 0u, 0u, weights, query, margin, speed, sinking);
+    let below = clear_of(lists, grid.nk - 1u, 1u, weights, query, margin, speed, sinking);
     if max(above, below) >= 0.0 {
         (*result).skip = min((*result).skip, SAFE_SKIP * max(above, below));
         return false;
@@ -124,7 +134,7 @@ fn locate_in_column(column: u32, query: Query, advance: vec3f, result: ptr<funct
     var high = grid.nk;
     while low < high {
         let middle = (low + high) / 2u;
-        if height_above(lists, middle, 1u, weights, point.z, query.low_bits.z) > 0.0 {
+        if height_above(lists, middle, 1u, weights, query.point.z, query.low_bits.z) > 0.0 {
             high = middle;
         } else {
             low = middle + 1u;
@@ -161,13 +171,15 @@ fn steps_to_section(q0: vec2f, q1: vec2f, q2: vec2f, q3: vec2f, motion: vec2f, m
     return steps;
 }
 
-// Cell widths that a step crosses, at most.
+// Cell widths that a step crosses, at most: many where the section folds over.
 fn section_speed(q0: vec2f, q1: vec2f, q2: vec2f, q3: vec2f, motion: vec2f) -> f32 {
-    let least = min(min(abs(cross2(q1 - q0, q2 - q0)), abs(cross2(q1 - q0, q3 - q1))),
-        min(abs(cross2(q3 - q2, q2 - q0)), abs(cross2(q3 - q2, q3 - q1))));
+    let turns = vec4f(cross2(q1 - q0, q2 - q0), cross2(q1 - q0, q3 - q1), cross2(q3 - q2, q2 - q0),
+        cross2(q3 - q2, q3 - q1));
+    let low = min(min(turns.x, turns.y), min(turns.z, turns.w));
+    let high = max(max(turns.x, turns.y), max(turns.z, turns.w));
     let along = max(max(abs(cross2(motion, q1 - q0)), abs(cross2(motion, q3 - q2))),
         max(abs(cross2(motion, q2 - q0)), abs(cross2(motion, q3 - q1))));
-    return along / max(least, 1e-20);
+    return along / max(max(low, -high), 1e-20);
 }
 
 // Steps after which the point may come to a layer's top from above or to its bottom from below;
@@ -189,30 +201,6 @@ fn clear_of(
 // Depth of a layer's top or bottom below the point, bilinear in the column.
 fn height_above(lists: vec4u, layer: u32, bottom: u32, weights: vec4f, depth: f32, low_bits: f32) -> f32 {
     return dot(weights, depths_at(layer_entries(lists, layer, bottom)) - vec4f(depth)) - low_bits;
-}
-
-// Parameters of the origin in a quadrilateral, by Newton's method.
-fn inverse_bilinear(q0: vec2f, q1: vec2f, q2: vec2f, q3: vec2f) -> vec2f {
-    let a = q1 - q0;
-    let b = q2 - q0;
-    let c = (q3 - q2) - a;
-    var uv = vec2f(0.5);
-    for (var n = 0u; n < 8u; n++) {
-        let residual = -(q0 + uv.x * a + uv.y * b + uv.x * uv.y * c);
-        let tu = a + uv.y * c;
-        let tv = b + uv.x * c;
-        let determinant = tu.x * tv.y - tu.y * tv.x;
-        if abs(determinant) < 1e-30 {
-            uv = mix(uv, vec2f(0.5), 0.2) + vec2f(1e-3);
-            continue;
-        }
-        let step = vec2f(residual.x * tv.y - residual.y * tv.x, tu.x * residual.y - tu.y * residual.x) / determinant;
-        uv = clamp(uv + step, vec2f(-8.0), vec2f(9.0));
-        if max(abs(step.x), abs(step.y)) < 1e-5 {
-            break;
-        }
-    }
-    return uv;
 }
 
 // Newton in `start` and, where the result lies above or below, in the layers there.

@@ -1,6 +1,6 @@
 //! The adapter, the device and what it must be able to do.
 
-use std::sync::{Arc, Mutex, OnceLock};
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
 use super::pipeline::{Parameters, SharedLayouts};
 
@@ -40,6 +40,18 @@ pub enum GpuError {
         /// Bytes that fit.
         limit: u64,
     },
+    /// A dispatch is larger than the adapter allows.
+    #[error(
+        "the shader {shader} would need {groups:?} workgroups and the adapter takes {limit} along an axis; make the picture smaller"
+    )]
+    TooManyGroups {
+        /// Shader and entry.
+        shader: String,
+        /// Workgroups along x, y and z.
+        groups: [u32; 3],
+        /// Workgroups along an axis, at most.
+        limit: u32,
+    },
     /// The driver reported an error.
     #[error("the GPU reported an error: {0}")]
     Device(String),
@@ -56,6 +68,25 @@ pub enum GpuError {
     },
 }
 
+/// The first error of what was recorded or submitted, until someone asks.
+#[derive(Debug, Default)]
+pub(super) struct LateError(Mutex<Option<GpuError>>);
+
+impl LateError {
+    /// Keeps an error, unless there is one already.
+    pub fn keep(&self, error: GpuError) {
+        self.slot().get_or_insert(error);
+    }
+
+    fn take(&self) -> Option<GpuError> {
+        self.slot().take()
+    }
+
+    fn slot(&self) -> MutexGuard<'_, Option<GpuError>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
 /// A device with its queue. Errors that the driver reports late are kept until [`Gpu::check`].
 pub struct Gpu {
     /// The logical device.
@@ -68,7 +99,7 @@ pub struct Gpu {
     pub timestamp_period_ns: Option<f32>,
     /// Layouts of the bind groups that all strategies share.
     pub layouts: SharedLayouts,
-    late_error: Arc<Mutex<Option<String>>>,
+    pub(super) late_error: Arc<LateError>,
     /// Why the device is gone.
     lost: Arc<OnceLock<String>>,
 }
@@ -139,15 +170,12 @@ impl Gpu {
             ..Default::default()
         }))
         .map_err(|e| unsuitable(e.to_string()))?;
-        let late_error = Arc::new(Mutex::new(None));
+        let late_error = Arc::new(LateError::default());
         let keep = late_error.clone();
         device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
-            let mut slot = keep
-                .lock()
-                .unwrap_or_else(std::sync::PoisonError::into_inner);
             let words = error.to_string();
             let words: Vec<&str> = words.split_whitespace().collect();
-            slot.get_or_insert(words.join(" "));
+            keep.keep(GpuError::Device(words.join(" ")));
         }));
         let lost = Arc::new(OnceLock::new());
         let keep_lost = lost.clone();
@@ -192,11 +220,7 @@ impl Gpu {
         if let Some(why) = self.lost.get() {
             return Err(GpuError::Lost(why.clone()));
         }
-        let mut slot = self
-            .late_error
-            .lock()
-            .unwrap_or_else(std::sync::PoisonError::into_inner);
-        slot.take().map_or(Ok(()), |e| Err(GpuError::Device(e)))
+        self.late_error.take().map_or(Ok(()), Err)
     }
 
     /// Waits for all submitted work.

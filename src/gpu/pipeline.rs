@@ -1,6 +1,8 @@
 //! Pipelines, with bind group layouts read from the shaders themselves.
 
-use super::device::{Gpu, GpuError};
+use std::sync::Arc;
+
+use super::device::{Gpu, GpuError, LateError};
 use super::shader::compose;
 
 /// Bind groups that all strategies share: 0 frame, 1 grid, 2 transfer function.
@@ -173,16 +175,25 @@ struct Compiled {
     module: wgpu::ShaderModule,
     layout: wgpu::PipelineLayout,
     own: wgpu::BindGroupLayout,
-    workgroup: [u32; 3],
+    entries: Vec<wgpu::naga::EntryPoint>,
+}
+
+impl Compiled {
+    /// Invocations of a workgroup of an entry: each has its own.
+    fn workgroup(&self, name: &str, entry: &str) -> Result<[u32; 3], GpuError> {
+        let found = self.entries.iter().find(|e| e.name == entry);
+        found
+            .map(|e| e.workgroup_size)
+            .ok_or_else(|| GpuError::Shader {
+                name: name.to_owned(),
+                message: format!("has no entry {entry}"),
+            })
+    }
 }
 
 fn compile(gpu: &Gpu, name: &str) -> Result<Compiled, GpuError> {
     let text = gpu.layouts.parameters.declared(compose(name)?);
     let module = parse(name, &text)?;
-    let workgroup = module
-        .entry_points
-        .first()
-        .map_or([1; 3], |e| e.workgroup_size);
     let used = |group: usize| bindings(&module).any(|(g, _)| g as usize == group);
     let own = layout(&gpu.device, &module, SHARED_GROUPS as u32);
     let mut groups: Vec<Option<&wgpu::BindGroupLayout>> = (0..SHARED_GROUPS)
@@ -199,6 +210,7 @@ fn compile(gpu: &Gpu, name: &str) -> Result<Compiled, GpuError> {
             bind_group_layouts: &groups,
             ..Default::default()
         });
+    let entries = module.entry_points;
     let module = gpu
         .device
         .create_shader_module(wgpu::ShaderModuleDescriptor {
@@ -209,7 +221,7 @@ fn compile(gpu: &Gpu, name: &str) -> Result<Compiled, GpuError> {
         module,
         layout,
         own,
-        workgroup,
+        entries,
     })
 }
 
@@ -243,6 +255,11 @@ pub struct Pipeline {
     pub own: wgpu::BindGroupLayout,
     /// Invocations of a workgroup along x, y and z.
     pub workgroup: [u32; 3],
+    /// Shader and entry.
+    name: String,
+    /// Workgroups along an axis that the device takes at once, and where a dispatch of more is told.
+    most_groups: u32,
+    late_error: Arc<LateError>,
 }
 
 impl Pipeline {
@@ -266,6 +283,7 @@ impl Pipeline {
     ) -> Result<Self, GpuError> {
         checked(gpu, name, || {
             let compiled = compile(gpu, name)?;
+            let workgroup = compiled.workgroup(name, entry)?;
             let descriptor = wgpu::ComputePipelineDescriptor {
                 label: Some(name),
                 layout: Some(&compiled.layout),
@@ -280,7 +298,10 @@ impl Pipeline {
             Ok(Self {
                 pipeline: gpu.device.create_compute_pipeline(&descriptor),
                 own: compiled.own,
-                workgroup: compiled.workgroup,
+                workgroup,
+                name: format!("{name}, {entry}"),
+                most_groups: gpu.device.limits().max_compute_workgroups_per_dimension,
+                late_error: gpu.late_error.clone(),
             })
         })
     }
@@ -293,11 +314,26 @@ impl Pipeline {
         size: [u32; 3],
     ) {
         let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
-        pass.set_pipeline(&self.pipeline);
         for (number, group) in groups {
             pass.set_bind_group(*number, *group, &[]);
         }
-        let [x, y, z] = self.groups_for(size);
+        self.record(&mut pass, size);
+    }
+
+    /// Records what covers `size` invocations in a pass whose bind groups are set. Where the device takes
+    /// fewer workgroups nothing is recorded, and [`Gpu::check`] fails.
+    pub fn record(&self, pass: &mut wgpu::ComputePass<'_>, size: [u32; 3]) {
+        let groups = self.groups_for(size);
+        if groups.iter().any(|&n| n > self.most_groups) {
+            self.late_error.keep(GpuError::TooManyGroups {
+                shader: self.name.clone(),
+                groups,
+                limit: self.most_groups,
+            });
+            return;
+        }
+        let [x, y, z] = groups;
+        pass.set_pipeline(&self.pipeline);
         pass.dispatch_workgroups(x, y, z);
     }
 

@@ -9,7 +9,7 @@ use super::volume::Volume;
 use crate::scene::Interpolation;
 
 /// Loop iterations that a voxel costs, about: bins, column, Newton's method.
-const VOXEL_WORK: u64 = 8;
+pub const VOXEL_WORK: u64 = 8;
 /// The same for a packed voxel, of four samples.
 const PACKED_WORK: u64 = 20;
 

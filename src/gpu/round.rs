@@ -75,12 +75,10 @@ impl Round<'_> {
                 }
             }),
         });
-        pass.set_pipeline(&pipeline.pipeline);
         for (n, group) in (0..).zip(self.groups.iter().chain(own)) {
             pass.set_bind_group(n, group, &[]);
         }
-        let [x, y, _] = pipeline.groups_for([size[0], size[1], 1]);
-        pass.dispatch_workgroups(x, y, 1);
+        pipeline.record(&mut pass, [size[0], size[1], 1]);
     }
 
     /// Begins a render pass over the tile, its bind groups set; the caller sets the pipeline.

@@ -29,14 +29,10 @@ impl Rect {
 
 /// Time that one submission should take at most.
 pub const BUDGET: Duration = Duration::from_millis(70);
-/// Pixels of a tile at most: each has a state of 32 bytes on the device.
+/// Pixels of a tile at most: each has a state on the device, of 64 bytes in LIBC.
 pub const MAX_AREA: u64 = 1 << 20;
 /// Loop iterations of the first submission: few enough for the slowest adapter that was met.
 const FIRST_UNITS: f64 = 70_000.0;
-/// How much shorter or longer than the last submission the next one may be: too long counts at once,
-/// too short by and by, for neighboring tiles differ.
-const CHANGE: [f64; 2] = [0.25, 1.7];
-
 /// How much an adapter does in the time of a submission, learned from them and kept from frame to
 /// frame. As a ray pauses after a number of loop iterations, that time has a bound beforehand.
 #[derive(Debug)]
@@ -52,6 +48,10 @@ impl Default for Pace {
 }
 
 impl Pace {
+    /// How much shorter or longer than the last submission the next one may be: too long counts at once,
+    /// too short by and by, for neighboring tiles differ.
+    pub const CHANGE: [f64; 2] = [0.25, 1.7];
+
     /// How many pieces of so many loop iterations fit into a submission.
     pub fn pieces(&self, each: u64) -> u64 {
         self.units as u64 / each.max(1)
@@ -74,7 +74,8 @@ impl Pace {
         // A submission with little to do says nothing of a full one, unless it was slow; one with nothing
         // to do for the rays says nothing at all.
         if work > 0 && (change < 1.0 || work as f64 > self.units / 3.0) {
-            self.units = (self.units * change.clamp(CHANGE[0], CHANGE[1])).clamp(1e4, 1e12);
+            self.units =
+                (self.units * change.clamp(Self::CHANGE[0], Self::CHANGE[1])).clamp(1e4, 1e12);
         }
     }
 }
@@ -169,6 +170,20 @@ mod tests {
             );
             assert!(hits.iter().all(|&h| h == 1));
         }
+    }
+
+    #[test]
+    fn a_fast_adapter_gets_tiles_of_all_rays_within_a_few_submissions() {
+        // A billion loop iterations in a millisecond, whatever is asked of it.
+        let mut pace = Pace::default();
+        let mut submissions = 0;
+        while pace.area(32) < MAX_AREA {
+            let work = pace.pieces(1);
+            pace.learn(Duration::from_nanos(work / 1000), work);
+            submissions += 1;
+        }
+        assert_eq!(pace.area(32), 1 << 20);
+        assert!(submissions < 20, "{submissions}");
     }
 
     #[test]

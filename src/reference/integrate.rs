@@ -96,7 +96,7 @@ impl<'a> Integrator<'a> {
         Self {
             grid,
             view,
-            locator: Locator::new(grid),
+            locator: Locator::of_drawn(grid, &view.drawn),
             vertices: by_vertex.then(|| VertexField::new(grid, &view.field)),
             surfaces,
         }
@@ -208,10 +208,7 @@ impl<'a> Integrator<'a> {
     /// The drawn cell at a point of world space.
     fn drawn_at(&self, position: DVec3) -> Option<Located> {
         let point = self.view.spaces.grid_from_world.transform_point3(position);
-        let located = self.locator.locate(point)?;
-        let cell = self.grid.dims().cell(located.ijk);
-        let active = self.grid.active_index(cell)?;
-        self.view.drawn[active.0 as usize].then_some(located)
+        self.locator.locate(point)
     }
 }
 

@@ -16,10 +16,11 @@ pub struct Located {
     pub str: DVec3,
 }
 
-/// Finds the active cell with thickness that a point is in.
+/// Finds the drawn cell with thickness that a point is in.
 ///
-/// **Invariants**: a point of several cells (a shared face, an overlap) belongs to the one in the
-/// column that comes first (i fastest, then j), and there to the uppermost.
+/// **Invariants**: a point of several drawn cells (a shared face, an overlap) belongs to the one in the
+/// column that comes first (i fastest, then j), and there to the uppermost. Cells that are not drawn take
+/// no point from those that are.
 #[derive(Debug)]
 pub struct Locator {
     /// In the order in which a point prefers them.
@@ -28,13 +29,20 @@ pub struct Locator {
 }
 
 impl Locator {
-    /// A locator for the active cells of a grid.
+    /// A locator for all active cells of a grid.
     pub fn new(grid: &Grid) -> Self {
+        Self::of_drawn(grid, &vec![true; grid.active_cells().len()])
+    }
+
+    /// A locator for the cells of a grid that are drawn, by active index.
+    pub fn of_drawn(grid: &Grid, drawn: &[bool]) -> Self {
         let dims = grid.dims();
         let mut numbers: Vec<Ijk> = grid
             .active_cells()
             .iter()
-            .map(|&cell| dims.ijk(cell))
+            .zip(drawn)
+            .filter(|(_, is_drawn)| **is_drawn)
+            .map(|(&cell, _)| dims.ijk(cell))
             .filter(|&ijk| grid.has_thickness(ijk))
             .collect();
         numbers.sort_by_key(|ijk| (ijk.j, ijk.i, ijk.k));

@@ -1,5 +1,6 @@
 //! The figures of one case.
 
+use std::cell::Cell;
 use std::path::Path;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -53,10 +54,14 @@ pub struct StrategyTimes {
     pub first_frame_ms: f64,
     /// Of it, what the strategy makes beside the grid.
     pub prepare_ms: f64,
+    /// Longest time of the first frame in which it told no progress, once it had begun to: how long the device
+    /// works without a break, and a user waits to cancel.
+    pub longest_wait_ms: f64,
     /// The rays by the adapter's clock, where it has one.
     pub frame_ms: f64,
     pub frame_wall_ms: f64,
     pub frame_cpu_ms: f64,
+    pub longest_submission_ms: f64,
     pub samples: u64,
     pub samples_per_second: f64,
     pub newton_iterations_per_sample: f64,
@@ -127,10 +132,18 @@ fn strategy(
     frames: u32,
     reporter: &Reporter,
 ) -> anyhow::Result<(StrategyTimes, LightTimes)> {
+    let (last, longest_wait) = (Cell::new(None::<Instant>), Cell::new(Duration::ZERO));
     let mut render = || -> anyhow::Result<Frame> {
         let cpu = cpu_time();
+        last.set(None);
         let frame = reporter.bar("rendering", |progress| {
-            renderer.render(&case.grid, view, &|f| progress(f))
+            let told = |fraction| {
+                let now = Instant::now();
+                let wait = last.replace(Some(now)).map_or(Duration::ZERO, |l| now - l);
+                longest_wait.set(longest_wait.get().max(wait));
+                progress(fraction)
+            };
+            renderer.render(&case.grid, view, &told)
         })?;
         let mut frame = frame.context("the picture was cancelled")?;
         frame.stats.cpu = cpu_time().saturating_sub(cpu);
@@ -138,6 +151,7 @@ fn strategy(
     };
     let (warm_up, first_frame) = timed(&mut render);
     let warm_up = warm_up?;
+    let longest_wait_ms = ms(longest_wait.get());
     let mut times = Vec::new();
     for _ in 0..frames {
         times.push(render()?);
@@ -149,9 +163,11 @@ fn strategy(
         strategy: view.strategy.name(),
         first_frame_ms: ms(first_frame),
         prepare_ms: ms(warm_up.prepare),
+        longest_wait_ms,
         frame_ms: ms(stats.frame),
         frame_wall_ms: ms(stats.wall),
         frame_cpu_ms: ms(stats.cpu),
+        longest_submission_ms: ms(stats.longest_submission),
         samples: stats.samples,
         samples_per_second: samples / stats.frame.as_secs_f64(),
         newton_iterations_per_sample: stats.newton_iterations as f64 / samples.max(1.0),

@@ -71,6 +71,8 @@ fn frames(bench: &Bench) -> Vec<Row> {
         "frame ms",
         "wall ms",
         "CPU ms",
+        "longest wait ms",
+        "longest submission ms",
         "Msamples/s",
         "Newton/sample",
         "lost rays",
@@ -89,6 +91,8 @@ fn frames(bench: &Bench) -> Vec<Row> {
                 s.frame_ms,
                 s.frame_wall_ms,
                 s.frame_cpu_ms,
+                s.longest_wait_ms,
+                s.longest_submission_ms,
             ];
             cells.extend(times.map(|ms| format!("{ms:.1}")));
             cells.push(format!("{:.2}", 1e-6 * s.samples_per_second));
