@@ -120,9 +120,9 @@ impl Renderer {
             surfaces,
             ..
         } = self;
-        let tables = match tables.take().filter(|t| t.are_of(&view.transfer)) {
+        let tables = match tables.take().filter(|t| t.are_of(view)) {
             Some(known) => tables.insert(known),
-            None => tables.insert(TransferTables::new(gpu, &view.transfer)?),
+            None => tables.insert(TransferTables::new(gpu, view)?),
         };
         if !light.update(gpu, on_device, view, tables, progress)? {
             return Ok(None);

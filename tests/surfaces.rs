@@ -16,7 +16,6 @@ use strataray::scene::{
     LightingSpec, OpacitySpec, Projection, RangeSpec, Scene, Surfaces, View,
 };
 use strataray::strategies::StrategyKind;
-use strataray::transfer::function::linear_from_srgb;
 use strataray::{load, reference};
 
 const NONE: Surfaces = Surfaces {
@@ -86,8 +85,8 @@ fn pixel(image: &Image, x: u32, y: u32) -> [f64; 4] {
     image.pixels[(x + image.size[0] * y) as usize].map(f64::from)
 }
 
-fn linear(srgb: [f64; 3]) -> DVec3 {
-    DVec3::from_array(srgb.map(linear_from_srgb))
+fn blended(view: &View, srgb: [f64; 3]) -> DVec3 {
+    DVec3::from_array(view.blending.of_srgb(srgb))
 }
 
 /// A scene of test grids: nothing ends a ray early.
@@ -329,7 +328,7 @@ fn the_hull_of_a_box_has_the_color_of_its_values() {
     let mut renderer = Renderer::new(gpu, &case.grid).unwrap();
     let view = scene::resolve(&plain(camera(205.0, 35.0, 1.0), 0.3), &case).unwrap();
     let view = with(&view, HULL);
-    let [color, other] = [0.5, 0.51].map(|at| DVec3::from_array(view.transfer.linear_rgb(at)));
+    let [color, other] = [0.5, 0.51].map(|at| DVec3::from_array(view.color_at(at)));
     let truth = picture(&mut renderer, &case, &view, None);
     for by in all() {
         let image = picture(&mut renderer, &case, &view, by);
@@ -372,7 +371,7 @@ fn behind_half(view: &View, ray: reference::Ray, sheet: DVec3) -> Option<[f64; 4
         return None;
     }
     let tau = view.transfer.extinction(0.5);
-    let color = DVec3::from_array(view.transfer.linear_rgb(0.5));
+    let color = DVec3::from_array(view.color_at(0.5));
     let [front, back] = [0, 1].map(|n| (-tau * step * (at[n + 1].ceil() - at[n].ceil())).exp());
     let behind = SHEET_OPACITY * sheet + (1.0 - SHEET_OPACITY) * (1.0 - back) * color;
     let rgb = (1.0 - front) * color + front * behind;
@@ -407,7 +406,7 @@ fn a_sheet_is_blended_between_what_is_before_and_behind_it() {
                     Some(pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max))
                 };
                 // The twin: the sheet of another fault.
-                let errors = [sheet, PALETTE[2]].map(|color| error(linear(color)));
+                let errors = [sheet, PALETTE[2]].map(|color| error(blended(&view, color)));
                 if let [Some(error), Some(other)] = errors {
                     seen += 1;
                     worst = worst.max(error);

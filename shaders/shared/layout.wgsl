@@ -47,7 +47,7 @@ struct Frame {
     is_parallel: f32,
     origin_up: vec3f,
     reserved: f32,
-    // Linear color and extinction of inactive cells.
+    // Color and extinction of inactive cells.
     ghost: vec4f,
     // Kept is where dot(xyz, point) + w >= 0, grid space relative to the origin.
     clip_planes: array<vec4f, MAX_CLIP_PLANES>,
@@ -191,7 +191,7 @@ struct Emitter {
     axis: vec3f,
     // Cosines of the angle at which a spot's light ends, and at which it begins to fade.
     cos_outer: f32,
-    // Linear color times intensity.
+    // Color times intensity.
     color: vec3f,
     cos_inner: f32,
     // First of its sections, and how many have one part, three and seven.
@@ -208,7 +208,7 @@ struct Emitter {
 
 // A layer of surface points that gets its colors.
 struct PaintInfo {
-    // Linear colors of faults.
+    // Colors of faults.
     palette: array<vec4f, FAULT_COLORS>,
     // Faces that lie on faults.
     faults: u32,

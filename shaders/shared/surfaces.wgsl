@@ -1,5 +1,5 @@
 // Layers of surface points that rays meet, blended between the samples. They lie behind the states of the
-// rays, nearest first: the bits of distance and of linear red, green and blue, for each pixel of the part of
+// rays, nearest first: the bits of distance and of red, green and blue, for each pixel of the part of
 // the picture that the tile lies in (`Surfaces` in scene/surfaces.rs says what is seen).
 #import frame
 #import grid

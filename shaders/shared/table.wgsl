@@ -1,7 +1,7 @@
 // The transfer function's table, and what it says at a position.
 #import layout
 
-// Linear red, green, blue and extinction per world-space length at LUT_SIZE positions over the range.
+// Red, green, blue, as they are blended, and extinction per world-space length at LUT_SIZE positions over the range.
 @group(2) @binding(0) var<storage, read> transfer_table: array<vec4f>;
 
 // Integrals of extinction times color, and of extinction, over the position from 0 to each entry.

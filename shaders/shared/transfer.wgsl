@@ -25,7 +25,7 @@ fn transfer_integral(position: f32) -> vec4f {
     return mix(transfer_integrals[entry], transfer_integrals[entry + 1u], at - f32(entry));
 }
 
-// Front-to-back emission and absorption; linear light, premultiplied.
+// Front-to-back emission and absorption; colors as they are blended, premultiplied.
 struct Accumulated {
     color: vec3f,
     transmittance: f32,

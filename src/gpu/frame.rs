@@ -15,7 +15,6 @@ use super::tiles::{self, Pace, Rect};
 use crate::picture::Image;
 use crate::scene::{View, ghosts};
 use crate::strategies::RenderStrategy;
-use crate::transfer::function::linear_from_srgb;
 
 /// What a frame cost.
 #[derive(Debug, Clone, Copy, Default)]
@@ -181,6 +180,7 @@ impl FrameRenderer {
         Ok(Some((
             Image {
                 size: view.size,
+                blending: view.blending,
                 pixels,
             },
             stats,
@@ -418,9 +418,9 @@ fn frame_uniform(grid: &GpuGrid, view: &View) -> Frame {
     }
 }
 
-/// Linear color and extinction of inactive cells.
+/// Color, as it is blended, and extinction of inactive cells.
 pub(super) fn ghost(view: &View) -> [f32; 4] {
-    let [r, g, b] = ghosts::COLOR.map(|v| linear_from_srgb(v) as f32);
+    let [r, g, b] = view.blending.of_srgb(ghosts::COLOR).map(|v| v as f32);
     [r, g, b, view.transfer.extinction_of(ghosts::OPACITY) as f32]
 }
 

@@ -662,7 +662,13 @@ fn emitters(grid: &GpuGrid, view: &View, software: bool) -> Result<Emitters, Gpu
         software,
     )?;
     for light in &lighting.lights {
-        let emitter = Emitter::at(&light.source, light.color, grid, view, &space);
+        let emitter = Emitter::at(
+            &light.source,
+            light.blended(view.blending),
+            grid,
+            view,
+            &space,
+        );
         all.add(
             emitter,
             lighting.shadows,

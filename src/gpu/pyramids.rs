@@ -3,7 +3,7 @@
 use super::device::{Gpu, GpuError};
 use super::layout::{BRICK, BricksInfo, LUT_SIZE, Slab};
 use super::pipeline::Pipeline;
-use super::transfer_tables::transfer_table;
+use super::transfer_tables::extinctions;
 
 use super::slabs::Slabs;
 use super::volume::{Volume, Voxel};
@@ -130,7 +130,7 @@ fn levels(bricks: [u32; 3]) -> impl Iterator<Item = [u32; 3]> {
 
 /// Largest extinctions of a table: entry n of level l is that of 2^l entries from n on.
 fn range_maxima(transfer: &TransferFunction) -> Vec<f32> {
-    let entries: Vec<f32> = transfer_table(transfer).iter().map(|e| e[3]).collect();
+    let entries = extinctions(transfer);
     let wider = |(level, below): &(u32, Vec<f32>)| {
         let half = 1 << level;
         let maximum = |n: usize| below[n].max(*below.get(n + half).unwrap_or(&0.0));
@@ -341,7 +341,7 @@ mod tests {
             bands: None,
             reference_length: 1.0,
         };
-        let entries: Vec<f32> = transfer_table(&transfer).iter().map(|e| e[3]).collect();
+        let entries = extinctions(&transfer);
         let maxima = range_maxima(&transfer);
         let mut random = fastrand::Rng::with_seed(3);
         let mut unlike_first = 0;

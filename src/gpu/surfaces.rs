@@ -15,8 +15,7 @@ use super::pipeline::{Pipeline, RasterPipeline, flag};
 use super::round::{Place, Round};
 use crate::model::Grid;
 use crate::scene::surfaces::{PALETTE, UNNAMED};
-use crate::scene::{Surfaces, View};
-use crate::transfer::function::linear_from_srgb;
+use crate::scene::{Blending, Surfaces, View};
 
 /// Names and values of the `override` constants of shaders that blend surfaces.
 pub fn constants(surfaces: Surfaces) -> [(&'static str, f64); 3] {
@@ -35,6 +34,7 @@ pub struct SurfacePainter {
     look: (Surfaces, Shading),
     shown: Option<Shown>,
     gap: f32,
+    blending: Blending,
     work: u64,
     targets: Vec<Option<FaceTarget>>,
     /// What is bound in place of a layer before the first one.
@@ -62,6 +62,7 @@ impl SurfacePainter {
             look: <(Surfaces, Shading)>::default(),
             shown: None,
             gap: 0.0,
+            blending: Blending::default(),
             work: 0,
             targets: Vec::new(),
             nothing: faces::texture(gpu, [1; 2], FORMAT),
@@ -105,6 +106,7 @@ impl SurfacePainter {
         };
         self.shown = Some(shown);
         self.gap = view.fault_gap() as f32;
+        self.blending = view.blending;
         self.work = u64::from(layout::PAINT_WORK + work);
         Ok(())
     }
@@ -167,7 +169,7 @@ impl SurfacePainter {
             return;
         };
         let info = PaintInfo {
-            palette: palette(),
+            palette: palette(self.blending),
             faults: shown.faults,
             layer,
             first_row: rows.start,
@@ -240,10 +242,10 @@ fn faults(model: &Grid, view: &View) -> Result<Vec<(u32, u32)>, GpuError> {
     Ok(faults)
 }
 
-/// Linear colors of faults; the last one is that of faults without a name.
-fn palette() -> [[f32; 4]; layout::FAULT_COLORS] {
+/// Colors of faults as they are blended; the last one is that of faults without a name.
+fn palette(blending: Blending) -> [[f32; 4]; layout::FAULT_COLORS] {
     std::array::from_fn(|n| {
-        let [r, g, b] = PALETTE.get(n).unwrap_or(&UNNAMED);
-        [r, g, b, &1.0].map(|v| linear_from_srgb(*v) as f32)
+        let [r, g, b] = blending.of_srgb(*PALETTE.get(n).unwrap_or(&UNNAMED));
+        [r, g, b, 1.0].map(|v| v as f32)
     })
 }

@@ -2,7 +2,7 @@
 
 use super::device::{Gpu, GpuError};
 
-/// A texture of linear, premultiplied RGBA that shaders write.
+/// A texture of premultiplied RGBA that shaders write.
 pub fn create(gpu: &Gpu, size: [u32; 2]) -> wgpu::Texture {
     let usage = wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::COPY_SRC;
     gpu.flat_texture("target", size, wgpu::TextureFormat::Rgba32Float, usage)

@@ -2,12 +2,14 @@
 
 use super::device::{Gpu, GpuError};
 use super::layout::LUT_SIZE;
+use crate::scene::{Blending, View};
 use crate::transfer::TransferFunction;
 
-/// Its table and the integrals over it, for one transfer function.
+/// Its table and the integrals over it, for one transfer function and blending.
 pub struct TransferTables {
     transfer: TransferFunction,
-    /// Linear color and extinction at equal distances over the range.
+    blending: Blending,
+    /// Color, as it is blended, and extinction at equal distances over the range.
     pub table: wgpu::Buffer,
     /// Integrals over the position of extinction times color, and of extinction.
     pub integrals: wgpu::Buffer,
@@ -18,30 +20,44 @@ impl TransferTables {
     ///
     /// # Errors
     /// When the device refuses.
-    pub fn new(gpu: &Gpu, transfer: &TransferFunction) -> Result<Self, GpuError> {
-        let table = transfer_table(transfer);
+    pub fn new(gpu: &Gpu, view: &View) -> Result<Self, GpuError> {
+        let table = transfer_table(view);
         Ok(Self {
             integrals: gpu.storage("transfer integrals", &transfer_integrals(&table))?,
             table: gpu.storage("transfer table", &table)?,
-            transfer: transfer.clone(),
+            transfer: view.transfer.clone(),
+            blending: view.blending,
         })
     }
 
-    /// True where they are those of `transfer`.
-    pub fn are_of(&self, transfer: &TransferFunction) -> bool {
-        self.transfer == *transfer
+    /// True where they are those of a view.
+    pub fn are_of(&self, view: &View) -> bool {
+        self.transfer == view.transfer && self.blending == view.blending
     }
 }
 
-/// Linear red, green, blue and extinction at equal distances over the range.
-pub(super) fn transfer_table(transfer: &TransferFunction) -> Vec<[f32; 4]> {
-    (0..LUT_SIZE)
-        .map(|n| {
-            let position = f64::from(n) / f64::from(LUT_SIZE - 1);
-            let [r, g, b] = transfer.linear_rgb(position).map(|v| v as f32);
-            [r, g, b, transfer.extinction(position) as f32]
+/// Red, green, blue, as they are blended, and extinction at equal distances over the range.
+fn transfer_table(view: &View) -> Vec<[f32; 4]> {
+    let color = |position| view.color_at(position).map(|v| v as f32);
+    let extinctions = extinctions(&view.transfer).into_iter();
+    positions()
+        .zip(extinctions)
+        .map(|(position, extinction)| {
+            let [r, g, b] = color(position);
+            [r, g, b, extinction]
         })
         .collect()
+}
+
+/// Extinctions at equal distances over the range.
+pub(super) fn extinctions(transfer: &TransferFunction) -> Vec<f32> {
+    positions()
+        .map(|position| transfer.extinction(position) as f32)
+        .collect()
+}
+
+fn positions() -> impl Iterator<Item = f64> {
+    (0..LUT_SIZE).map(|n| f64::from(n) / f64::from(LUT_SIZE - 1))
 }
 
 /// Integrals over the position, from 0 to each entry of the table, of extinction times color and of

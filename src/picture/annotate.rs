@@ -149,6 +149,7 @@ pub(super) mod tests {
                 bands: None,
                 reference_length: 1.0,
             },
+            blending: crate::scene::Blending::Linear,
             sampling_step: 1.0,
             early_termination: 0.0,
             surfaces: crate::scene::Surfaces::default(),
@@ -187,6 +188,7 @@ pub(super) mod tests {
         let pixels = vec![[0.0, 0.0, 0.0, alpha]; (view.size[0] * view.size[1]) as usize];
         let image = Image {
             size: view.size,
+            blending: view.blending,
             pixels,
         };
         let before = image.over_background_8bit(view.background);

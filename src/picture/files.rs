@@ -99,14 +99,15 @@ pub(super) fn save_png(path: &Path, size: [u32; 2], rgb: &[[u8; 3]]) -> image::I
     )
 }
 
-/// Writes linear, premultiplied RGBA.
+/// Writes linear, premultiplied RGBA, whatever the picture was blended in.
 ///
 /// # Errors
 /// When the file cannot be written.
 pub fn write_exr(path: &Path, image: &Image) -> Result<(), PictureError> {
     whole(path, |temporary| {
         matching(image.size, image.pixels.len())?;
-        let bytes: &[u8] = bytemuck::cast_slice(&image.pixels);
+        let pixels = image.linear_pixels();
+        let bytes: &[u8] = bytemuck::cast_slice(&pixels);
         image::save_buffer_with_format(
             temporary,
             bytes,
@@ -144,6 +145,7 @@ fn whole(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::Blending;
 
     #[test]
     fn ok_exr_gives_back_the_same_floats() {
@@ -154,6 +156,7 @@ mod tests {
             .collect();
         let image = Image {
             size: [4, 3],
+            blending: Blending::Linear,
             pixels,
         };
         write_exr(&path, &image).unwrap();
@@ -185,6 +188,7 @@ mod tests {
         assert_eq!(std::fs::read(&path).unwrap(), b"older");
         let image = Image {
             size: [2, 2],
+            blending: Blending::Linear,
             pixels: Vec::new(),
         };
         assert!(write_exr(&folder.path().join("a.exr"), &image).is_err());

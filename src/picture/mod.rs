@@ -1,4 +1,4 @@
-//! From linear, premultiplied pixels to files and films with legend, title and axes; difference maps,
+//! From premultiplied pixels to files and films with legend, title and axes; difference maps,
 //! plots and contact sheets.
 
 mod annotate;
@@ -26,32 +26,53 @@ pub use orientation::{Arrow, Orientation, Paper, Text, on_screen};
 pub use plot::{Plot, Series};
 pub use sheet::{SheetError, Tile, contact_sheet};
 
+use std::borrow::Cow;
+
 use canvas::Canvas;
 
-use crate::transfer::function::{linear_from_srgb, srgb_from_linear};
+use crate::scene::Blending;
 
-/// A picture in linear light, alpha premultiplied, without background.
+/// A picture without background, alpha premultiplied.
 ///
 /// **Shape**: `pixels[y * width + x]`, the top row first.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Image {
     /// Width and height in pixels.
     pub size: [u32; 2],
-    /// Linear red, green, blue, each times alpha, and alpha.
+    /// The numbers in which its colors were blended.
+    pub blending: Blending,
+    /// Red, green, blue, each times alpha, and alpha.
     pub pixels: Vec<[f32; 4]>,
 }
 
 impl Image {
-    /// The picture over a background (sRGB, 0..1), added in linear light, as 8-bit sRGB.
+    /// The picture over a background (sRGB, 0..1), blended as the picture is, as 8-bit sRGB.
     pub fn over_background_8bit(&self, background: [f64; 3]) -> Vec<[u8; 3]> {
-        let background = background.map(linear_from_srgb);
+        let background = self.blending.of_srgb(background);
         let encode = |p: &[f32; 4]| {
-            std::array::from_fn(|c| {
-                let linear = f64::from(p[c]) + (1.0 - f64::from(p[3])) * background[c];
-                (255.0 * srgb_from_linear(linear.clamp(0.0, 1.0))).round() as u8
-            })
+            let [r, g, b, alpha] = p.map(f64::from);
+            let color = [r, g, b];
+            let over = std::array::from_fn(|c| color[c] + (1.0 - alpha) * background[c]);
+            srgb_8bit(self.blending.to_srgb(over))
         };
         self.pixels.iter().map(encode).collect()
+    }
+
+    /// Its pixels in linear light, premultiplied: of each the color by itself, decoded, times alpha.
+    pub fn linear_pixels(&self) -> Cow<'_, [[f32; 4]]> {
+        let decode = |p: &[f32; 4]| {
+            let [r, g, b, alpha] = p.map(f64::from);
+            if alpha <= 0.0 {
+                return [0.0, 0.0, 0.0, p[3]];
+            }
+            let own = [r, g, b].map(|v| v / alpha);
+            let [r, g, b] = self.blending.to_linear(own).map(|v| (v * alpha) as f32);
+            [r, g, b, p[3]]
+        };
+        match self.blending {
+            Blending::Linear => Cow::Borrowed(&self.pixels),
+            Blending::Display => Cow::Owned(self.pixels.iter().map(decode).collect()),
+        }
     }
 }
 
@@ -130,13 +151,36 @@ mod tests {
     #[test]
     fn background_shows_where_nothing_covers_it() {
         let pixels = vec![[0.0; 4], [0.5, 0.5, 0.5, 1.0], [0.25, 0.0, 0.0, 0.5]];
-        let image = Image {
+        let image = |blending| Image {
             size: [3, 1],
-            pixels,
+            blending,
+            pixels: pixels.clone(),
         };
-        let over_white = image.over_background_8bit([1.0; 3]);
+        let over_white = |blending| image(blending).over_background_8bit([1.0; 3]);
         // Linear 0.5 is sRGB 0.7354 = 188; half white and a quarter red: 0.75 -> 225, 0.5 -> 188.
-        assert_eq!(over_white, [[255; 3], [188; 3], [225, 188, 188]]);
+        let linear = [[255; 3], [188; 3], [225, 188, 188]];
+        assert_eq!(over_white(Blending::Linear), linear);
+        let display = [[255; 3], [128; 3], [191, 128, 128]];
+        assert_eq!(over_white(Blending::Display), display);
+    }
+
+    #[test]
+    fn linear_pixels_hold_the_light_of_each_color() {
+        let pixels = vec![[0.0; 4], [0.5, 1.0, 0.0, 1.0], [0.25, 0.5, 0.0, 0.5]];
+        let image = |blending| Image {
+            size: [3, 1],
+            blending,
+            pixels: pixels.clone(),
+        };
+        assert_eq!(*image(Blending::Linear).linear_pixels(), pixels);
+        let decoded = image(Blending::Display);
+        // sRGB 0.5 is linear 0.21404, whatever the opacity.
+        for (pixel, alpha) in decoded.linear_pixels().iter().zip([0.0, 1.0, 0.5]) {
+            let expected = [0.214_041 * alpha, alpha, 0.0, alpha];
+            for c in 0..4 {
+                assert!((pixel[c] - expected[c]).abs() < 1e-6, "{pixel:?}");
+            }
+        }
     }
 
     #[test]

@@ -8,7 +8,6 @@ use crate::model::corner_point::weights;
 use crate::model::{CellField, Grid, VertexField};
 use crate::scene::ghosts::{self, shown_grid};
 use crate::scene::{ClipPlane, Interpolation, View};
-use crate::transfer::function::linear_from_srgb;
 
 /// A ray in world space.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -102,7 +101,7 @@ impl<'a> Integrator<'a> {
         }
     }
 
-    /// Linear red, green, blue, each times alpha, and alpha of what a ray passes through.
+    /// Red, green, blue, as they are blended, each times alpha, and alpha of what a ray passes through.
     pub fn ray(&self, ray: Ray) -> [f64; 4] {
         let Some([enter, leave]) = ray.within(self.view.world_bounds) else {
             return [0.0; 4];
@@ -182,12 +181,12 @@ impl<'a> Integrator<'a> {
         (extinction > 0.0).then_some((sample, extinction))
     }
 
-    /// Linear color of a sample without any light.
+    /// Color of a sample without any light.
     pub(super) fn unlit(&self, sample: &Sample) -> [f64; 3] {
         let transfer = &self.view.transfer;
         match sample.value {
-            Some(value) => transfer.linear_rgb(transfer.position(value)),
-            None => ghosts::COLOR.map(linear_from_srgb),
+            Some(value) => self.view.color_at(transfer.position(value)),
+            None => self.view.blending.of_srgb(ghosts::COLOR),
         }
     }
 

@@ -27,13 +27,13 @@ struct Surface {
 }
 
 impl Integrator<'_> {
-    /// Linear color of a sample of a primary ray; what it is by itself where nothing shades it.
+    /// Color of a sample of a primary ray; what it is by itself where nothing shades it.
     pub(super) fn lit(&self, point: DVec3, sample: &Sample) -> [f64; 3] {
         let valued = sample.value.map(|_| sample);
         self.shaded(point, self.unlit(sample), valued)
     }
 
-    /// A linear color at a point of a primary ray as light makes it. `valued` is the sample there, of what
+    /// A color at a point of a primary ray as light makes it. `valued` is the sample there, of what
     /// carries a number.
     pub(super) fn shaded(
         &self,
@@ -52,7 +52,8 @@ impl Integrator<'_> {
         let mut specular = DVec3::ZERO;
         for light in &lighting.lights {
             let incident = Incident::new(light.source, point);
-            let arriving = light.color * self.arriving(light, &incident, point, &mut random);
+            let arriving = light.blended(self.view.blending)
+                * self.arriving(light, &incident, point, &mut random);
             diffuse += arriving * surface.diffuse(incident.direction);
             specular += arriving * surface.specular(incident.direction, viewer);
         }

@@ -10,7 +10,6 @@ use crate::model::topology::Face;
 use crate::model::{Grid, Ijk};
 use crate::scene::surfaces::{EDGE_DARKNESS, EDGE_FADE, EDGE_WIDTH, SHEET_OPACITY, fault_color};
 use crate::scene::{ClipPlane, View};
-use crate::transfer::function::linear_from_srgb;
 
 /// Barycentric coordinates below zero by less than this still count as inside.
 const ON_EDGE: f64 = 1e-12;
@@ -33,7 +32,7 @@ struct SurfaceFace {
     corners: [DVec3; 4],
     /// Middle of the cell.
     inside: DVec3,
-    /// Linear color of the fault that it lies on.
+    /// Color of the fault that it lies on, as it is blended.
     fault: Option<DVec3>,
 }
 
@@ -42,7 +41,7 @@ struct SurfaceFace {
 pub(super) struct Layer {
     /// Distance along the ray.
     pub distance: f64,
-    /// Linear color, shaded.
+    /// Color as it is blended, shaded.
     pub color: DVec3,
     /// Opacity.
     pub alpha: f64,
@@ -69,7 +68,7 @@ impl SurfaceFaces {
             true => view.fault_faces(grid),
             false => Vec::new(),
         };
-        let color = |fault| DVec3::from_array(fault_color(fault).map(linear_from_srgb));
+        let color = |fault| DVec3::from_array(view.blending.of_srgb(fault_color(fault)));
         let faces: Vec<SurfaceFace> = match surfaces.hull {
             false => faults
                 .into_par_iter()

@@ -120,6 +120,7 @@ fn view(grid: &Grid, field: CellField, extinction: f64, sampling_step: f64) -> V
             bands: None,
             reference_length: 1.0,
         },
+        blending: crate::scene::Blending::Linear,
         sampling_step,
         early_termination: 0.0,
         surfaces: crate::scene::Surfaces::default(),

@@ -6,8 +6,8 @@
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
+use super::Blending;
 use super::resolve::{SceneError, wrong};
-use crate::transfer::function::linear_from_srgb;
 use crate::transfer::presets::parse_color;
 
 /// Occlusion and lights as a scene has them; nothing is shaded by default.
@@ -323,10 +323,19 @@ pub const SPOT_EDGE: f64 = 0.1;
 pub struct Light {
     /// Where it is.
     pub source: Source,
-    /// Linear color times intensity.
-    pub color: DVec3,
+    /// Color (sRGB, 0..1).
+    pub color: [f64; 3],
+    /// Factor on its color.
+    pub intensity: f64,
     /// Its cone.
     pub cone: Cone,
+}
+
+impl Light {
+    /// Its color times intensity, in the numbers that are blended.
+    pub fn blended(&self, blending: Blending) -> DVec3 {
+        self.intensity * DVec3::from_array(blending.of_srgb(self.color))
+    }
 }
 
 /// Occlusion toward the viewer, checked.
@@ -342,7 +351,7 @@ pub struct Occlusion {
 
 /// All of a view's lighting, checked.
 ///
-/// A sample's linear color `c` becomes `c * (ambient * (1 - strength * (1 - occlusion)) + sum of l * shadow *
+/// A sample's color `c`, in the numbers that are blended, becomes `c * (ambient * (1 - strength * (1 - occlusion)) + sum of l * shadow *
 /// diffuse) + sum of l * shadow * specular` over the lights, `l` a light's color. Occlusion and shadow are
 /// transmittances of a cone from the sample toward the viewer, or toward the light. Light does not fade
 /// with distance; a spot's fades to nothing over the edge of its cone, by a smooth step of the cosine.
@@ -467,12 +476,12 @@ pub(crate) fn resolve(
     let checked = |light| -> Result<Light, SceneError> {
         let (source, half_angle, intensity, color) = source(light)?;
         let intensity = intensity.unwrap_or(share);
-        let rgb = parse_color(color)
+        let color = parse_color(color)
             .ok_or_else(|| wrong("lighting.lights.color", "must be a color like #ffffff"))?;
         Ok(Light {
             source,
-            color: DVec3::from_array(rgb.map(linear_from_srgb))
-                * within("lighting.lights.intensity", intensity, [0.0, 10.0])?,
+            color,
+            intensity: within("lighting.lights.intensity", intensity, [0.0, 10.0])?,
             cone: cone(half_angle)?,
         })
     };

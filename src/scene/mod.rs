@@ -1,5 +1,6 @@
 //! The scene file: what to look at and how, as JSON. Every field has a default.
 
+mod blending;
 pub mod camera;
 mod colors;
 pub mod film;
@@ -14,6 +15,7 @@ pub mod transfer;
 
 use serde::{Deserialize, Serialize};
 
+pub use blending::Blending;
 pub use camera::{Camera, Projection};
 pub use film::{Sequence, Turn};
 pub use half_turns::{NamedView, TurnAxis, half_turns};
@@ -50,6 +52,8 @@ pub struct Scene {
     pub range: RangeSpec,
     /// Color and opacity.
     pub transfer: TransferSpec,
+    /// How colors are blended.
+    pub blending: Blending,
     /// Ray-casting strategy by name.
     pub strategy: String,
     /// Distance of samples in world space; an eighth of the smallest mean cell edge where absent.
@@ -83,6 +87,7 @@ impl Default for Scene {
             interpolation: Interpolation::Vertex,
             range: RangeSpec::STEP,
             transfer: TransferSpec::default(),
+            blending: Blending::default(),
             strategy: "plts".into(),
             sampling_step: None,
             early_termination: 0.01,

@@ -9,8 +9,8 @@ use super::colors::{self, Asked, Colors, interpolation};
 use super::ghosts::{Ghosts, shown_grid};
 use super::lighting::{self, Lighting};
 use super::{
-    Camera, CameraSpec, ClipSpec, CutFace, Filter, Inactive, Interpolation, LibcSettings, Scene,
-    SrgSettings, StepSpec, Surfaces,
+    Blending, Camera, CameraSpec, ClipSpec, CutFace, Filter, Inactive, Interpolation, LibcSettings,
+    Scene, SrgSettings, StepSpec, Surfaces,
 };
 use crate::case::{Case, CaseError, ValueRange};
 use crate::gpu::volume::Shape;
@@ -89,6 +89,8 @@ pub struct View {
     pub interpolation: Interpolation,
     /// Value to color and extinction.
     pub transfer: TransferFunction,
+    /// The numbers in which colors are shaded and blended.
+    pub blending: Blending,
     /// Samples lie at distances `(n + 1/2) * sampling_step` from where rays start.
     pub sampling_step: f64,
     /// Transmittance at which a ray ends.
@@ -148,6 +150,11 @@ impl View {
     /// The value that a number of [`Self::field`], or between such numbers, stands for.
     pub fn true_value(&self, shown: f64) -> f64 {
         self.transfer.scale.true_value(shown)
+    }
+
+    /// Color of a position in the range of values, in the numbers that are blended.
+    pub fn color_at(&self, position: f64) -> [f64; 3] {
+        self.blending.of_srgb(self.transfer.srgb(position))
     }
 
     /// Width over height.
@@ -243,6 +250,7 @@ pub(super) fn resolve_over(
         step,
         interpolation: interpolation(scene),
         transfer,
+        blending: scene.blending,
         sampling_step: sampling_step(scene, edges, world_bounds)?,
         early_termination: scene.early_termination,
         property,

@@ -57,11 +57,6 @@ impl TransferFunction {
         color_at(&self.color, position)
     }
 
-    /// Color at a position in linear light, in which pictures are composited.
-    pub fn linear_rgb(&self, position: f64) -> [f64; 3] {
-        self.srgb(position).map(linear_from_srgb)
-    }
-
     /// Opacity per reference length at a position.
     pub fn opacity(&self, position: f64) -> f64 {
         let (a, b, f) = segment(&self.opacity, position);

@@ -140,7 +140,7 @@ fn dark_ghosts(exact_colors: bool) -> [f64; 4] {
         ..LightingSpec::default()
     };
     light(&mut view, spec, DVec3::ONE);
-    view.lighting.lights[0].color = DVec3::ZERO;
+    view.lighting.lights[0].intensity = 0.0;
     central_ray(&grid, &view)
 }
 
