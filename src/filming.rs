@@ -3,7 +3,7 @@
 use crate::case::Case;
 use crate::gpu::GpuError;
 use crate::picture::film::Film;
-use crate::picture::{PictureError, finished};
+use crate::picture::{Layout, PictureError, finished};
 use crate::renderer::Renderer;
 use crate::scene::{SceneError, Sequence};
 
@@ -21,8 +21,9 @@ pub enum FilmingError {
     Picture(#[from] PictureError),
 }
 
-/// Makes the pictures of a sequence and writes them, with title, legend and axes unless `plain`; false where
-/// `progress`, which is told the fraction done, returned false: nothing was written then.
+/// Makes the pictures of a sequence, whose size is that of the film, and writes them; with what stands beside and
+/// over the volume unless `plain`, at the same places in all. False where `progress`, which is told the fraction
+/// done, returned false: nothing was written then.
 ///
 /// # Errors
 /// When a view cannot be shown, a picture cannot be made or the film cannot be written.
@@ -34,6 +35,8 @@ pub fn shoot(
     plain: bool,
     progress: &dyn Fn(f64) -> bool,
 ) -> Result<bool, FilmingError> {
+    let layout = Layout::of_picture(case, &sequence.view(0, case)?, plain);
+    let sequence = sequence.clone().sized(layout.volume_size())?;
     let count = sequence.count() as f64;
     for n in 0..sequence.count() {
         let done = |f: f64| progress((n as f64 + f) / count);
@@ -41,7 +44,7 @@ pub fn shoot(
         let Some(frame) = renderer.render(&case.grid, &view, &done)? else {
             return Ok(false);
         };
-        film.add(&finished(&frame.image, case, &view, plain))?;
+        film.add(&finished(&frame.image, case, &view, &layout).pixels)?;
         if !done(1.0) {
             return Ok(false);
         }

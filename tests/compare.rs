@@ -210,13 +210,13 @@ fn middle(view: &View) -> DVec3 {
     view.box_corners.iter().sum::<DVec3>() / 8.0
 }
 
-/// True where the whole box is in the picture.
-fn frames_the_box(named: &NamedView) -> bool {
-    let inside = |corner: &DVec3| {
-        let at = named.view.camera.project(*corner, 96.0 / 72.0);
+/// True where all of the model is in the picture.
+fn frames_all(named: &NamedView) -> bool {
+    let inside = |point: &DVec3| {
+        let at = named.view.camera.project(*point, 96.0 / 72.0);
         at.is_some_and(|at| at.min_element() > 0.0 && at.max_element() < 1.0)
     };
-    named.view.box_corners.iter().all(inside)
+    named.view.subject.points.iter().all(inside)
 }
 
 #[test]
@@ -236,7 +236,7 @@ fn the_camera_turns_at_constant_distance() {
     for spec in [scene.camera.clone(), CameraSpec::Explicit(explicit)] {
         scene.camera = spec;
         let start = scene::resolve(&scene, &case).unwrap();
-        let is_framing = matches!(scene.camera, CameraSpec::Framing(_));
+        let is_framing = scene.camera.framing_zoom().is_some();
         for about in [TurnAxis::X, TurnAxis::Y, TurnAxis::Z, TurnAxis::All] {
             let views = half_turns(&scene, &start, about, 9);
             let distance = |v: &NamedView| v.view.camera.eye.distance(middle(&v.view));
@@ -247,7 +247,7 @@ fn the_camera_turns_at_constant_distance() {
                     .all(|v| (distance(v) / first - 1.0).abs() < 1e-9)
             );
             // Framing cameras stand back for all; others stay where they are, whatever is seen.
-            let all_framed = views.iter().all(frames_the_box);
+            let all_framed = views.iter().all(frames_all);
             let tips_over = about != TurnAxis::Z;
             assert!(all_framed == is_framing || !tips_over, "{about:?}");
             let same = views[0].view.camera == start.camera;

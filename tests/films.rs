@@ -12,7 +12,7 @@ use glam::DVec3;
 use strataray::case::{Case, CaseError, Source};
 use strataray::load;
 use strataray::metrics::psnr_8bit;
-use strataray::picture::{Annotations, finished};
+use strataray::picture::{Annotations, Layout, finished};
 use strataray::renderer::Renderer;
 use strataray::scene::film::steps;
 use strataray::scene::{
@@ -85,8 +85,9 @@ fn pictures_are_those_of_render_with_the_range_of_all_steps() {
     let mut renderer = Renderer::new(gpu, &case.grid).unwrap();
     let mut picture = |view: &View| {
         let frame = renderer.render(&case.grid, view, &|_| true).unwrap();
-        let picture = finished(&frame.unwrap().image, &case, view, false);
-        picture.into_flattened()
+        let layout = Layout::of_picture(&case, view, true);
+        let picture = finished(&frame.unwrap().image, &case, view, &layout);
+        picture.pixels.into_flattened()
     };
     let scene = scene("PRESSURE");
     let sequence = over_steps(&scene, &case, &[5, 20]);
@@ -110,14 +111,23 @@ fn step_and_date_stand_in_every_picture() {
     let case = load::open(&common::sample()).unwrap();
     for property in ["SWAT", "SOIL", "PRESSURE-PRESSURE@0"] {
         let sequence = over_steps(&scene(property), &case, &[0, 7]);
-        for (n, words) in [(0, ["step 0", "2005-01-01"]), (1, ["step 7", "2012-01-01"])] {
+        for (n, words) in [
+            (0, ["report 0", "2005-01-01"]),
+            (1, ["report 7", "2012-01-01"]),
+        ] {
             let view = sequence.view(n, &case).unwrap();
-            let when = Annotations::of(&case, &view).when;
-            assert!(words.iter().all(|w| when.contains(w)), "{property}: {when}");
+            let annotations = Annotations::of(&case, &view);
+            let facts = annotations.info.unwrap().whole();
+            for text in [&annotations.when, &facts] {
+                assert!(words.iter().all(|w| text.contains(w)), "{property}: {text}");
+                assert!(!text.contains("step"), "{text}");
+            }
         }
     }
     let still = resolve(&scene("PORO"), &case).unwrap();
-    assert_eq!(Annotations::of(&case, &still).when, "");
+    let annotations = Annotations::of(&case, &still);
+    assert_eq!(annotations.when, "");
+    assert!(!annotations.info.unwrap().whole().contains("report"));
 }
 
 #[test]
@@ -178,12 +188,11 @@ fn only_chosen_steps_are_read_and_those_without_values_are_left_out() {
     assert!(cancelled.unwrap().is_none());
 }
 
-/// True where the whole box of the model is in the picture.
-fn box_is_inside(view: &View) -> bool {
-    let aspect = f64::from(view.size[0]) / f64::from(view.size[1]);
-    let mut corners = view.box_corners.iter();
-    corners.all(|&corner| {
-        let at = view.camera.project(corner, aspect).unwrap();
+/// True where all of the model is in the picture.
+fn all_is_inside(view: &View) -> bool {
+    let mut points = view.subject.points.iter();
+    points.all(|&point| {
+        let at = view.camera.project(point, view.aspect()).unwrap();
         at.min_element() >= 0.0 && at.max_element() <= 1.0
     })
 }
@@ -211,7 +220,7 @@ fn a_turn_keeps_its_distance_and_the_model_in_the_picture() {
         .collect();
     let distance = |view: &View| view.camera.eye.distance(middle);
     for view in &views {
-        assert!(box_is_inside(view));
+        assert!(all_is_inside(view));
         assert!((distance(view) - distance(&views[0])).abs() < 1e-6 * distance(view));
     }
     // With the distance of the first view alone the model would not stay in the picture.
@@ -220,8 +229,8 @@ fn a_turn_keeps_its_distance_and_the_model_in_the_picture() {
         near.camera.eye += near.camera.forward * (distance(view) - distance(&still));
         near
     };
-    assert!(box_is_inside(&still));
-    assert!(views.iter().any(|view| !box_is_inside(&near(view))));
+    assert!(all_is_inside(&still));
+    assert!(views.iter().any(|view| !all_is_inside(&near(view))));
 }
 
 #[test]

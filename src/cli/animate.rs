@@ -57,7 +57,7 @@ pub struct Arguments {
     /// Film to write: .png (animated), .gif, .mp4 (see below), or a folder DIR/.
     #[arg(short, long)]
     output: PathBuf,
-    /// No legend, title or axes.
+    /// The model alone: no title, legend, info line or axes.
     #[arg(long)]
     plain: bool,
     #[command(flatten)]

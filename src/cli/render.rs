@@ -8,10 +8,9 @@ use serde_json::json;
 use strataray::case::Case;
 use strataray::gpu::Gpu;
 use strataray::gpu::illumination::LightTimes;
-use strataray::picture::{self, Image};
+use strataray::picture::{self, Image, Shot};
 use strataray::reference;
 use strataray::renderer::{Frame, Renderer};
-use strataray::scene::{self, View};
 
 use super::Verbosity;
 use super::process::cpu_time;
@@ -37,7 +36,7 @@ pub struct Arguments {
     /// Frames to time, after one that is not timed.
     #[arg(long, default_value_t = 1)]
     frames: usize,
-    /// No legend, title or axes.
+    /// The model alone: no title, legend, info line or axes.
     #[arg(long)]
     plain: bool,
     /// Render with the f64 reference on the CPU instead of the GPU.
@@ -68,22 +67,23 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
     stages.open = start.elapsed();
     let start = Instant::now();
     let scene = arguments.options.scene(&case)?;
-    let view = scene::resolve(&scene, &case)?;
+    let plain = arguments.plain || format == picture::Format::Exr;
+    let shot = Shot::of(&scene, &case, plain)?;
     stages.read = start.elapsed();
     let image = if arguments.reference {
         reporter
             .bar("reference", |progress| {
-                reference::render(&case.grid, &view, progress)
+                reference::render(&case.grid, &shot.view, progress)
             })
             .context("the reference was cancelled")?
     } else {
-        on_gpu(arguments, &case, &view, stages, &reporter)?
+        on_gpu(arguments, &case, &shot, stages, &reporter)?
     };
     match format {
         picture::Format::Exr => picture::write_exr(&arguments.output, &image)?,
         picture::Format::Png => {
-            let rgb = picture::finished(&image, &case, &view, arguments.plain);
-            picture::write_png(&arguments.output, image.size, &rgb)?;
+            let picture = shot.finished(&image, &case);
+            picture::write_png(&arguments.output, picture.size, &picture.pixels)?;
         }
     }
     Ok(())
@@ -92,10 +92,11 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
 fn on_gpu(
     arguments: &Arguments,
     case: &Case,
-    view: &View,
+    shot: &Shot,
     mut stages: Stages,
     reporter: &Reporter,
 ) -> anyhow::Result<Image> {
+    let view = &shot.view;
     let gpu = arguments.options.open_gpu(reporter)?;
     let start = Instant::now();
     let mut renderer = Renderer::new(gpu.clone(), &case.grid)?;
@@ -132,7 +133,7 @@ fn on_gpu(
         timed.push(again);
     }
     let median = Frame::median(timed).context("no frame was timed")?;
-    let stats = statistics(case, view, &gpu, &median, &stages);
+    let stats = statistics(case, shot, &gpu, &median, &stages);
     write_json(path, &stats)?;
     Ok(median.image)
 }
@@ -144,7 +145,7 @@ fn write_json(path: &Path, value: &serde_json::Value) -> anyhow::Result<()> {
 
 fn statistics(
     case: &Case,
-    view: &View,
+    shot: &Shot,
     gpu: &Gpu,
     frame: &Frame,
     stages: &Stages,
@@ -153,9 +154,10 @@ fn statistics(
     let load = case.about.load_times;
     let stats = &frame.stats;
     json!({
-        "strategy": view.strategy.name(),
+        "strategy": shot.view.strategy.name(),
         "adapter": gpu.describe(),
-        "size": view.size,
+        "size": shot.layout.size.to_array().map(|n| n as u32),
+        "volume_size": shot.view.size,
         "frame_ms": ms(stats.frame),
         "frame_wall_ms": ms(stats.wall),
         "frame_cpu_ms": ms(stats.cpu),

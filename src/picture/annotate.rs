@@ -1,20 +1,24 @@
-//! Title, legend, orientation axes and the model's box, drawn into the 8-bit picture.
+//! What is written and drawn around and over the volume in the 8-bit picture.
 
 use glam::DVec2;
 
 use super::canvas::Canvas;
-use super::orientation::{Orientation, Paper};
+use super::info::Info;
+use super::layout::{LINE, Layout, Parts};
+use super::legend::Key;
+use super::orientation::{Area, Orientation, Paper};
 use super::pen::Pen;
-use super::{Image, axes, legend};
-use crate::case::Case;
-use crate::scene::View;
+use super::{Image, Rgb8, axes, srgb_8bit};
+use crate::case::{Case, Step};
+use crate::scene::{Scene, SceneError, View, resolve};
+use crate::transfer::TransferFunction;
 
 /// What to write and draw.
 #[derive(Debug, Clone, Default)]
 pub struct Annotations {
     /// Line at the top; its end is left out where there is no room.
     pub title: String,
-    /// Step and date behind the title, which are never left out; may be empty.
+    /// Date and report behind the title, which are never left out; may be empty.
     pub when: String,
     /// Name over the legend.
     pub property: String,
@@ -24,26 +28,64 @@ pub struct Annotations {
     pub length_unit: String,
     /// Draw title and legend.
     pub show_legend: bool,
-    /// Draw the box with coordinates, the directions, a scale bar and the vertical exaggeration.
+    /// Draw the box with coordinates, the directions and a scale bar.
     pub show_box: bool,
+    /// Facts on what is drawn; `None` where they are hidden.
+    pub info: Option<Info>,
 }
 
 impl Annotations {
-    /// What belongs to a view of a case: its name, the property and, where that changes, the step.
+    /// What belongs to a view of a case: its name, the property, when it was so, and what is drawn in numbers.
     pub fn of(case: &Case, view: &View) -> Self {
-        let step = case.steps.get(view.step);
-        let shown = step.filter(|_| case.is_dynamic(&view.property));
+        let when = when(case, view);
+        let facts = view.facts.as_ref();
         Self {
             title: format!("{}   {}", case.about.name, view.property),
-            when: shown.map_or_else(String::new, |step| {
-                format!("   step {}   {}", view.step, step.date)
-            }),
+            info: facts.map(|facts| Info::of(case, view, facts, &when)),
+            when: match when.is_empty() {
+                true => when,
+                false => format!("   {when}"),
+            },
             property: view.property.clone(),
             unit: case.unit(&view.property).to_owned(),
             length_unit: short_unit(&case.about.length_unit),
             show_legend: view.show_legend,
             show_box: view.show_box,
         }
+    }
+
+    /// The legend of a transfer function.
+    pub fn key<'a>(
+        &'a self,
+        transfer: &'a TransferFunction,
+        unit: f64,
+        width: &'a dyn Fn(&str) -> f64,
+    ) -> Key<'a> {
+        Key {
+            transfer,
+            heading: [&self.property, &self.unit],
+            unit,
+            width,
+        }
+    }
+}
+
+/// Date and report of the step that a view shows; empty where its property does not change with time.
+pub fn when(case: &Case, view: &View) -> String {
+    let step = case.steps.get(view.step);
+    let step = step.filter(|_| case.is_dynamic(&view.property));
+    let Some(step) = step else {
+        return String::new();
+    };
+    // Where a file has no report numbers, they do not rise.
+    let has_reports = case
+        .steps
+        .is_sorted_by(|a: &Step, b: &Step| a.report < b.report);
+    match (step.date.is_empty(), has_reports) {
+        (false, true) => format!("{}   report {}", step.date, step.report),
+        (false, false) => step.date.clone(),
+        (true, true) => format!("report {}", step.report),
+        (true, false) => format!("step {}", view.step),
     }
 }
 
@@ -56,55 +98,146 @@ pub fn short_unit(name: &str) -> String {
     }
 }
 
-/// The picture as users see it: over the background, with what [`Annotations::of`] says unless `plain`.
-pub fn finished(image: &Image, case: &Case, view: &View, plain: bool) -> Vec<[u8; 3]> {
-    let mut rgb = image.over_background_8bit(view.background);
-    if !plain {
-        annotate(&mut rgb, image, view, &Annotations::of(case, view));
-    }
-    rgb
+/// A view of the volume, and where that stands in the picture.
+#[derive(Debug, Clone)]
+pub struct Shot {
+    /// What is rendered, in the size of the volume's rectangle.
+    pub view: View,
+    /// The parts of the picture.
+    pub layout: Layout,
 }
 
-/// Pictures lower or narrower than this get no annotations: nothing would be readable.
-const SMALLEST: [u32; 2] = [200, 150];
-
-/// Draws annotations into a picture that was put over its background.
-///
-/// Pictures narrower than 200 or lower than 150 pixels stay as they are.
-pub fn annotate(rgb: &mut [[u8; 3]], image: &Image, view: &View, annotations: &Annotations) {
-    if image.size[0] < SMALLEST[0] || image.size[1] < SMALLEST[1] {
-        return;
+impl Shot {
+    /// Of a scene, whose size is that of the whole picture; the volume alone where it is `plain`.
+    ///
+    /// # Errors
+    /// When the scene cannot be shown.
+    pub fn of(scene: &Scene, case: &Case, plain: bool) -> Result<Self, SceneError> {
+        let view = resolve(scene, case)?;
+        let layout = Layout::of_picture(case, &view, plain);
+        let view = match layout.volume_size() == view.size {
+            true => view,
+            false => view.seen_from(&scene.camera, layout.volume_size())?,
+        };
+        Ok(Self { view, layout })
     }
-    let canvas = Canvas::new(image.size, rgb);
-    let mut pen = Pen::new(canvas, view.background, Pen::unit_of(image.size));
+
+    /// The picture as users see it, from the image of its view.
+    pub fn finished(&self, image: &Image, case: &Case) -> Rgb8 {
+        finished(image, case, &self.view, &self.layout)
+    }
+}
+
+impl Layout {
+    /// The layout of the picture of a view that has the whole picture's size; the volume alone where it is
+    /// `plain`.
+    pub fn of_picture(case: &Case, view: &View, plain: bool) -> Self {
+        let size = DVec2::from_array(view.size.map(f64::from));
+        let unit = Pen::unit_of(view.size);
+        if plain {
+            return Self::plain(size, unit);
+        }
+        let canvas = Canvas::new(view.size, &mut []);
+        let width = |text: &str| canvas.text_width(text, unit);
+        let annotations = Annotations::of(case, view);
+        let key = annotations.key(&view.transfer, unit, &width);
+        Self::of(size, unit, &annotations.parts(&key, size.y))
+    }
+}
+
+impl Annotations {
+    /// The parts of a picture of a height.
+    pub fn parts(&self, key: &Key<'_>, height: f64) -> Parts {
+        Parts {
+            title: self.show_legend,
+            info: self.info.is_some(),
+            legend: self.show_legend.then(|| key.widths(0.85 * height)),
+            left_legend: None,
+        }
+    }
+}
+
+/// The picture as users see it: the image of a view over the background in its place, with what
+/// [`Annotations::of`] says around it and over it.
+pub fn finished(image: &Image, case: &Case, view: &View, layout: &Layout) -> Rgb8 {
+    composed(image, view, layout, &Annotations::of(case, view))
+}
+
+/// [`finished`], with given annotations.
+fn composed(image: &Image, view: &View, layout: &Layout, annotations: &Annotations) -> Rgb8 {
+    let mut volume = Rgb8 {
+        size: image.size,
+        pixels: image.over_background_8bit(view.background),
+    };
+    if !layout.is_plain {
+        over_volume(&mut volume, image, view, layout.unit, annotations);
+    }
+    let size = layout.size.to_array().map(|n| n as u32);
+    if size == image.size {
+        return volume;
+    }
+    let mut picture = Rgb8::filled(size, srgb_8bit(view.background));
+    picture.paste(&volume, layout.volume_corner());
+    beside_volume(&mut picture, view, layout, annotations);
+    picture
+}
+
+/// Draws what belongs to the model; on a canvas of the volume alone, so that nothing leaves that.
+fn over_volume(
+    volume: &mut Rgb8,
+    image: &Image,
+    view: &View,
+    unit: f64,
+    annotations: &Annotations,
+) {
     let size = DVec2::from_array(image.size.map(f64::from));
+    let mut pen = Pen::new(volume.canvas(), view.background, unit);
     axes::draw_connections(&mut pen, view, size);
     if annotations.show_box {
         axes::draw_edges(&mut pen, image, &Orientation::box_edges(view, size));
-    }
-    let mut taken = Vec::new();
-    if annotations.show_legend {
-        taken.push(pen.title_until(&annotations.title, &annotations.when));
-        let heading = [&annotations.property, &annotations.unit];
-        taken.push(legend::draw(
-            &mut pen,
-            &view.transfer,
-            heading.map(String::as_str),
-        ));
-    }
-    if annotations.show_box {
         let orientation = Orientation::of(
             view,
             &annotations.length_unit,
             Paper {
                 size,
-                unit: pen.unit,
-                width: &|text| pen.canvas.text_width(text, pen.unit),
+                unit,
+                width: &|text| pen.canvas.text_width(text, unit),
                 is_dark: pen.dark_paper,
-                taken,
+                taken: Vec::new(),
             },
         );
         axes::draw_marks(&mut pen, &orientation);
+    }
+}
+
+/// Draws title, legend and facts.
+fn beside_volume(picture: &mut Rgb8, view: &View, layout: &Layout, annotations: &Annotations) {
+    let unit = layout.unit;
+    let mut pen = Pen::new(picture.canvas(), view.background, unit);
+    if layout.title.is_some() {
+        pen.title_until(&annotations.title, &annotations.when);
+    }
+    if let Some(strip) = layout.legend {
+        let legend = {
+            let width = |text: &str| pen.canvas.text_width(text, unit);
+            let key = annotations.key(&view.transfer, unit, &width);
+            key.laid_out(strip, layout.is_narrow)
+        };
+        pen.legend(&legend);
+    }
+    if let (Some(area), Some(info)) = (layout.info, &annotations.info) {
+        draw_info(&mut pen, area, layout, info);
+    }
+}
+
+fn draw_info(pen: &mut Pen, [low, high]: Area, layout: &Layout, info: &Info) {
+    let unit = layout.unit;
+    let width = |text: &str| pen.canvas.text_width(text, unit);
+    let room = high.x - low.x - 2.0 * unit;
+    let lines = info.lines(room, layout.info_lines, layout.title.is_some(), &width);
+    for (n, line) in lines.iter().enumerate() {
+        let y = low.y + (0.3 + LINE * n as f64) * unit;
+        pen.write(line, [low.x + unit, y]);
     }
 }
 
@@ -136,6 +269,7 @@ pub(super) mod tests {
             vertical_exaggeration: 2.0,
             world_bounds: [DVec3::new(0.0, 0.0, -4.0), DVec3::new(10.0, 9.0, 0.0)],
             box_corners,
+            subject: crate::scene::Subject::of_box(box_corners).into(),
             strategy: StrategyKind::ALL[0],
             property: "SWAT".into(),
             step: 0,
@@ -168,40 +302,87 @@ pub(super) mod tests {
             srg: crate::scene::SrgSettings::default(),
             show_box: true,
             show_legend: true,
+            facts: None,
         }
     }
 
     fn notes(title: &str, show_legend: bool, show_box: bool) -> Annotations {
         Annotations {
             title: title.into(),
-            when: String::new(),
             property: "SWAT".into(),
             unit: "m3".into(),
             length_unit: "m".into(),
             show_legend,
             show_box,
+            ..Annotations::default()
         }
     }
 
-    /// Pixels before and after, of a picture that the volume covers with the given alpha.
-    fn drawn(view: &View, notes: &Annotations, alpha: f32) -> [Vec<[u8; 3]>; 2] {
-        let pixels = vec![[0.0, 0.0, 0.0, alpha]; (view.size[0] * view.size[1]) as usize];
-        let image = Image {
-            size: view.size,
-            blending: view.blending,
-            pixels,
-        };
-        let before = image.over_background_8bit(view.background);
-        let mut after = before.clone();
-        annotate(&mut after, &image, view, notes);
-        [before, after]
+    fn with_info(notes: Annotations) -> Annotations {
+        Annotations {
+            info: Some(Info::of_items(&["12,204 of 35,817 cells", "SWAT 0 to 1"])),
+            ..notes
+        }
     }
 
-    fn changed([before, after]: &[Vec<[u8; 3]>; 2]) -> Vec<usize> {
-        (0..before.len())
-            .filter(|&p| before[p] != after[p])
-            .collect()
+    fn layout(size: [u32; 2], transfer: &TransferFunction, notes: &Annotations) -> Layout {
+        let unit = Pen::unit_of(size);
+        let canvas = Canvas::new(size, &mut []);
+        let width = |text: &str| canvas.text_width(text, unit);
+        let key = notes.key(transfer, unit, &width);
+        let parts = notes.parts(&key, f64::from(size[1]));
+        Layout::of(DVec2::from_array(size.map(f64::from)), unit, &parts)
     }
+
+    /// A picture of a size of a volume that covers the background by the given alpha.
+    fn drawn_of(
+        size: [u32; 2],
+        background: f64,
+        notes: &Annotations,
+        alpha: f32,
+        change: impl Fn(&mut View),
+    ) -> (Layout, Rgb8) {
+        let mut seen = view(size, background);
+        change(&mut seen);
+        let layout = layout(size, &seen.transfer, notes);
+        seen = view(layout.volume_size(), background);
+        change(&mut seen);
+        let count = seen.size[0] as usize * seen.size[1] as usize;
+        let image = Image {
+            size: seen.size,
+            blending: seen.blending,
+            // A color that nothing beside the volume has.
+            pixels: vec![[0.0, alpha, 0.0, alpha]; count],
+        };
+        let picture = composed(&image, &seen, &layout, notes);
+        assert_eq!(picture.size, size);
+        assert_eq!(picture.pixels.len(), (size[0] * size[1]) as usize);
+        (layout, picture)
+    }
+
+    fn drawn(size: [u32; 2], notes: &Annotations, alpha: f32) -> (Layout, Rgb8) {
+        drawn_of(size, 1.0, notes, alpha, |_| ())
+    }
+
+    /// Pixels in an area that are not of a color.
+    fn other_than(color: [u8; 3], picture: &Rgb8, [low, high]: Area) -> usize {
+        let width = picture.size[0] as usize;
+        let rows = picture.pixels.chunks(width).enumerate();
+        let inside = |n: usize, low: f64, high: f64| (low..high).contains(&(n as f64 + 0.5));
+        let pixels = rows.flat_map(|(y, row)| row.iter().enumerate().map(move |(x, p)| (x, y, p)));
+        pixels
+            .filter(|(x, y, p)| {
+                **p != color && inside(*x, low.x, high.x) && inside(*y, low.y, high.y)
+            })
+            .count()
+    }
+
+    fn area(area: Area) -> usize {
+        (area[1] - area[0]).element_product() as usize
+    }
+
+    const WHITE: [u8; 3] = [255; 3];
+    const GREEN: [u8; 3] = [0, 255, 0];
 
     #[test]
     fn ok_every_size_and_title_is_drawn_without_panic() {
@@ -215,10 +396,10 @@ pub(super) mod tests {
             [250, 1500],
         ] {
             for title in ["", "REEK", &long] {
-                let view = view(size, 1.0);
+                let (_, picture) = drawn(size, &with_info(notes(title, true, true)), 0.0);
                 let small = size[0] < 200 || size[1] < 150;
-                let pictures = drawn(&view, &notes(title, true, true), 0.0);
-                assert_eq!(changed(&pictures).is_empty(), small, "{size:?}");
+                let is_bare = picture.pixels.iter().all(|p| *p == WHITE);
+                assert_eq!(is_bare, small, "{size:?}");
             }
         }
     }
@@ -227,41 +408,83 @@ pub(super) mod tests {
     fn ok_odd_views_are_drawn_without_panic() {
         let all = notes("REEK", true, true);
         for odd in [f64::NAN, f64::INFINITY, 0.0, -1e300] {
-            let mut view = view([300, 200], 0.2);
-            view.camera.right *= odd;
-            view.box_corners[3].x = odd;
-            view.transfer.range = [odd, 1.0];
-            view.transfer.opacity = vec![(0.0, odd)];
-            view.vertical_exaggeration = odd;
-            drawn(&view, &all, 0.5);
+            drawn_of([300, 200], 0.2, &all, 0.5, |view| {
+                view.camera.right *= odd;
+                let mut corners = view.box_corners;
+                corners[3].x = odd;
+                view.subject = crate::scene::Subject::of_box(corners).into();
+                view.transfer.range = [odd, 1.0];
+                view.transfer.opacity = vec![(0.0, odd)];
+                view.vertical_exaggeration = odd;
+            });
+        }
+    }
+
+    #[test]
+    fn nothing_beside_the_volume_covers_it() {
+        let notes = with_info(notes(&"REEK ".repeat(30), true, false));
+        for size in [
+            [1000, 750],
+            [640, 480],
+            [300, 200],
+            [1600, 600],
+            [480, 640],
+            [250, 1500],
+        ] {
+            let (layout, picture) = drawn(size, &notes, 1.0);
+            let volume = layout.volume;
+            assert_eq!(other_than(GREEN, &picture, volume), 0, "{size:?}");
+            // And all of it is there.
+            let whole = [DVec2::ZERO, layout.size];
+            let green = area(whole) - other_than(GREEN, &picture, whole);
+            assert_eq!(green, area(volume), "{size:?}");
+            for part in [layout.title, layout.info, layout.legend] {
+                assert!(other_than(WHITE, &picture, part.unwrap()) > 50, "{size:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_belongs_to_the_model_stays_in_its_rectangle() {
+        let bare = drawn([640, 480], &notes("REEK", true, false), 0.0);
+        let boxed = drawn([640, 480], &notes("REEK", true, true), 0.0);
+        assert_eq!(bare.0, boxed.0);
+        let [low, high] = bare.0.volume;
+        let pairs = bare.1.pixels.iter().zip(&boxed.1.pixels).enumerate();
+        let changed: Vec<usize> = pairs.filter(|(_, (a, b))| a != b).map(|(n, _)| n).collect();
+        assert!(changed.len() > 500);
+        for n in changed {
+            let at = DVec2::new((n % 640) as f64, (n / 640) as f64);
+            assert!(at.cmpge(low).all() && at.cmplt(high).all(), "{at}");
         }
     }
 
     #[test]
     fn nothing_changes_where_nothing_is_drawn() {
-        let view = view([400, 300], 1.0);
-        assert!(changed(&drawn(&view, &notes("REEK", false, false), 0.0)).is_empty());
-        // The title stands at the top left, the legend at the right; all else stays.
-        let pictures = drawn(&view, &notes("REEK", true, false), 0.0);
-        let pixels = changed(&pictures);
-        let (title, legend): (Vec<usize>, Vec<_>) = pixels.into_iter().partition(|p| p / 400 < 30);
-        assert!(!title.is_empty() && title.iter().all(|p| p % 400 < 100));
-        assert!(!legend.is_empty() && legend.iter().all(|p| p % 400 > 300));
+        let (layout, picture) = drawn([400, 300], &notes("REEK", false, false), 0.0);
+        assert!(picture.pixels.iter().all(|p| *p == WHITE));
+        assert_eq!(layout.volume, [DVec2::ZERO, layout.size]);
+        // With title and legend all else stays.
+        let (layout, picture) = drawn([400, 300], &notes("REEK", true, false), 0.0);
+        assert_eq!(other_than(WHITE, &picture, layout.volume), 0);
+        assert!(layout.info.is_none());
     }
 
     #[test]
     fn text_follows_the_title_and_stands_out_from_the_background() {
         let picture = |background, title| {
-            let [_, after] = drawn(
-                &view([400, 300], background),
-                &notes(title, true, false),
-                0.0,
-            );
-            after[..400 * 30].to_vec()
+            let notes = with_info(notes(title, true, false));
+            let (_, picture) = drawn_of([400, 300], background, &notes, 0.0, |_| ());
+            let rows = |from: usize, to: usize| picture.pixels[400 * from..400 * to].to_vec();
+            [rows(0, 24), rows(270, 300)]
         };
-        assert_ne!(picture(1.0, "REEK"), picture(1.0, "NORNE"));
-        assert!(picture(1.0, "REEK").iter().any(|p| p[0] < 80));
-        assert!(picture(0.1, "REEK").iter().any(|p| p[0] > 190));
+        assert_ne!(picture(1.0, "REEK")[0], picture(1.0, "NORNE")[0]);
+        for part in picture(1.0, "REEK") {
+            assert!(part.iter().any(|p| p[0] < 80));
+        }
+        for part in picture(0.1, "REEK") {
+            assert!(part.iter().any(|p| p[0] > 190));
+        }
     }
 
     #[test]
@@ -271,27 +494,24 @@ pub(super) mod tests {
                 when: when.into(),
                 ..notes(title, true, false)
             };
-            let [_, after] = drawn(&view([200, 150], 1.0), &notes, 0.0);
-            after[..200 * 25].to_vec()
+            let (_, picture) = drawn([200, 150], &notes, 0.0);
+            picture.pixels[..200 * 25].to_vec()
         };
         for title in ["REEK", &"REEK ".repeat(100)] {
-            let first = picture(title, "   step 1   2001-01-01");
-            assert_eq!(first, picture(title, "   step 1   2001-01-01"));
-            assert_ne!(first, picture(title, "   step 1   2001-01-02"));
+            let first = picture(title, "   2001-01-01   report 1");
+            assert_eq!(first, picture(title, "   2001-01-01   report 1"));
+            assert_ne!(first, picture(title, "   2001-01-02   report 1"));
         }
     }
 
     #[test]
     fn box_lies_under_the_volume() {
-        let view = view([400, 300], 1.0);
         let boxed = notes("", false, true);
-        let middle = |pixels: Vec<usize>| {
-            // Right of the axes.
-            let inside = |p: &&usize| *p % 400 > 120 && *p / 400 < 250;
-            pixels.iter().filter(inside).count()
-        };
-        assert!(middle(changed(&drawn(&view, &boxed, 0.0))) > 100);
-        let covered = changed(&drawn(&view, &boxed, 1.0));
-        assert_eq!(middle(covered), 0);
+        // Right of the axes, and above the coordinates.
+        let middle = [DVec2::new(120.0, 0.0), DVec2::new(400.0, 200.0)];
+        let (_, picture) = drawn([400, 300], &boxed, 0.0);
+        assert!(other_than(WHITE, &picture, middle) > 100);
+        let (_, picture) = drawn([400, 300], &boxed, 1.0);
+        assert_eq!(other_than(GREEN, &picture, middle), 0);
     }
 }

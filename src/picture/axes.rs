@@ -53,11 +53,7 @@ pub fn draw_marks(pen: &mut Pen, orientation: &Orientation) {
         arrow(pen, one);
     }
     for text in &orientation.texts {
-        let width = pen.canvas.text_width(&text.text, text.height);
-        let corner = text.middle - 0.5 * DVec2::new(width, text.height);
-        let ink = pen.ink;
-        pen.canvas
-            .text(&text.text, corner.to_array(), text.height, ink);
+        pen.write_at(text);
     }
 }
 

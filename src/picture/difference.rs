@@ -1,8 +1,11 @@
 //! Where two pictures differ: colors for differences, alone or with title and scale.
 
+use glam::DVec2;
+
+use super::legend::Key;
 use super::pen::Pen;
 use super::ticks::label;
-use super::{Rgb8, legend, srgb_8bit};
+use super::{Rgb8, srgb_8bit};
 use crate::transfer::{TransferFunction, presets};
 
 /// CIEDE2000 differences as colors, from black for none to pale yellow for `scale` and more.
@@ -23,10 +26,8 @@ pub fn difference_picture(differences: &[f64], size: [u32; 2], scale: f64, title
     let unit = Pen::unit_of(size);
     let units = |n: f64| (n * unit).round() as u32;
     // Room for title and scale, also beside tiny pictures.
-    let framed = [
-        size[0].max(units(12.0)) + units(10.0),
-        size[1].max(units(10.0)) + units(3.8),
-    ];
+    let beside = size[0].max(units(12.0)) + units(2.0);
+    let framed = [beside + units(10.0), size[1].max(units(10.0)) + units(3.8)];
     let white = [1.0; 3];
     let mut picture = Rgb8::filled(framed, srgb_8bit(white));
     let map = difference_colors(differences, size, scale);
@@ -35,7 +36,16 @@ pub fn difference_picture(differences: &[f64], size: [u32; 2], scale: f64, title
     pen.title(title);
     let largest = differences.iter().copied().fold(0.0, f64::max);
     let largest = format!("largest {}", label(largest, largest, 0.01 * largest));
-    legend::draw(&mut pen, &colors(scale), ["CIEDE2000", &largest]);
+    let low = DVec2::new(f64::from(beside), 2.2 * unit);
+    let high = DVec2::from_array(framed.map(f64::from));
+    let legend = Key {
+        transfer: &colors(scale),
+        heading: ["CIEDE2000", &largest],
+        unit,
+        width: &|text| pen.canvas.text_width(text, unit),
+    }
+    .laid_out([low, high], false);
+    pen.legend(&legend);
     picture
 }
 

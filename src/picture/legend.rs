@@ -1,45 +1,390 @@
-//! The legend: a bar of the transfer function's colors with round values and the opacity curve.
+//! The legend, laid out as rectangles, lines and texts for pictures and the window alike: a bar of the transfer
+//! function's colors with its true ends, round values between and the opacity beside it, or a swatch for each
+//! category.
 
 use glam::DVec2;
 
-use super::orientation::Area;
-use super::pen::Pen;
+use super::layout::{LINE, LegendWidths};
+use super::orientation::{Area, Text};
 use super::srgb_8bit;
-use super::ticks::{label, labels, log_labels};
+use super::ticks::{label, labels, log_labels, shortened};
 use crate::transfer::{Scale, TransferFunction};
+
+/// A legend on a ground of its own.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Legend {
+    /// What it stands on.
+    pub ground: Area,
+    /// Rectangles of one color.
+    pub blocks: Vec<(Area, [u8; 3])>,
+    /// Rows of the opacity curve, as long as the opacity is high.
+    pub opacities: Vec<Area>,
+    /// Frames and ticks.
+    pub strokes: Vec<[DVec2; 2]>,
+    /// Heading, labels and notes.
+    pub texts: Vec<Text>,
+}
+
+/// How much ink there is in the ground of a legend.
+pub const GROUND: f64 = 0.05;
+
+/// What a legend is made from.
+pub struct Key<'a> {
+    /// Colors and opacities.
+    pub transfer: &'a TransferFunction,
+    /// Name of the property, and its unit, which may be empty.
+    pub heading: [&'a str; 2],
+    /// Text height; the unit of every size here.
+    pub unit: f64,
+    /// Width of a text of this height.
+    pub width: &'a dyn Fn(&str) -> f64,
+}
+
+/// Sizes in text heights: free around the ground, and within it; the bar and its opacities; a tick and the gap
+/// behind it; the most that a heading widens a legend to; a row of categories and its swatch.
+const OUTSIDE: f64 = 0.5;
+const INSIDE: f64 = 0.6;
+const BAR: f64 = 1.3;
+const OPACITIES: f64 = 1.7;
+const TICK: f64 = 0.3;
+const GAP: f64 = 0.3;
+const WIDEST_HEADING: f64 = 9.0;
+const ROW: f64 = 1.35;
+const SWATCH: f64 = 1.0;
+/// Height of the bar at most; where less than the least is left, the heading gives way.
+const HIGHEST: f64 = 24.0;
+const LEAST: f64 = 6.0;
+/// Parts of a text height between the middles of labels at least.
+const APART: f64 = 1.3;
+/// What is written below the opacities.
+const OPACITY: &str = "opacity";
+
+impl Key<'_> {
+    /// Widths of the legend in a strip about so high.
+    pub fn widths(&self, height: f64) -> LegendWidths {
+        let unit = self.unit;
+        let heading = self.heading_lines().into_iter().map(|l| self.text_width(l));
+        let heading = heading.fold(0.0, f64::max);
+        let content = |is_narrow: bool| match &self.transfer.scale {
+            Scale::Categories(values) => {
+                let rows = self.rows(height, is_narrow);
+                let columns = if values.len() > rows && !is_narrow {
+                    2.0
+                } else {
+                    1.0
+                };
+                columns * self.column_width(values)
+            }
+            _ => {
+                let count = if is_narrow {
+                    2
+                } else {
+                    self.most(HIGHEST * unit)
+                };
+                let labels = marks(self.transfer, WANTED, count);
+                let widest = labels.iter().map(|l| self.text_width(&l.1));
+                let opacities = if is_narrow { 0.0 } else { self.opacity_width() };
+                opacities + (BAR + TICK + GAP) * unit + widest.fold(0.0, f64::max)
+            }
+        };
+        let around = 2.0 * (OUTSIDE + INSIDE) * unit;
+        // Whole text heights, so that the volume beside it seldom changes its size.
+        let whole = |width: f64| ((width + around) / unit).ceil() * unit;
+        LegendWidths {
+            full: whole(content(false).max(heading)),
+            narrow: whole(content(true)),
+        }
+    }
+
+    /// Lays the legend out in a strip; a narrow one without heading and opacities.
+    pub fn laid_out(&self, strip: Area, is_narrow: bool) -> Legend {
+        let unit = self.unit;
+        let [low, high] = [strip[0] + OUTSIDE * unit, strip[1] - OUTSIDE * unit];
+        let (left, right) = (low.x + INSIDE * unit, high.x - INSIDE * unit);
+        let room = high.y - low.y - 2.0 * INSIDE * unit;
+        let mut heading = match is_narrow {
+            true => Vec::new(),
+            false => self.heading_lines(),
+        };
+        if room - LINE * unit * heading.len() as f64 <= LEAST * unit {
+            heading.clear();
+        }
+        let head =
+            LINE * unit * heading.len() as f64 + if heading.is_empty() { 0.0 } else { 0.3 * unit };
+        let mut legend = Legend::default();
+        let body = [
+            DVec2::new(left, low.y + INSIDE * unit + head),
+            DVec2::new(right, high.y - INSIDE * unit),
+        ];
+        let height = match &self.transfer.scale {
+            Scale::Categories(values) => self.categories(&mut legend, values, body, is_narrow),
+            _ => self.bar(&mut legend, body, is_narrow),
+        };
+        let mut top = body[0].y - head;
+        for line in heading {
+            let text = self.cut(line, right - left);
+            legend.write(&text, [left, top + 0.5 * LINE * unit], self);
+            top += LINE * unit;
+        }
+        let bottom = (body[0].y + height + INSIDE * unit).min(high.y);
+        legend.ground = [low, DVec2::new(high.x, bottom)];
+        // In the middle of the strip.
+        legend.shifted(DVec2::Y * (0.5 * (high.y - bottom)).round())
+    }
+
+    /// The bar with all that belongs to it; the height that it takes.
+    fn bar(&self, legend: &mut Legend, body: Area, is_narrow: bool) -> f64 {
+        let unit = self.unit;
+        let beside = if is_narrow { 0.0 } else { self.opacity_width() };
+        let caption = if beside > 0.0 { LINE * unit } else { 0.0 };
+        let left = (body[0].x + beside).round();
+        let right = (left + BAR * unit).round();
+        let top = (body[0].y + 0.5 * unit).round();
+        let height = (body[1].y - top - 0.5 * unit - caption).min(HIGHEST * unit);
+        let height = height.max(unit).round();
+        let bottom = top + height;
+        let [low, high] = self.transfer.range;
+        for n in 0..height as u32 {
+            let y = top + f64::from(n);
+            // Every value of an empty range has the color at 0.
+            let position = match high > low {
+                true => 1.0 - (f64::from(n) + 0.5) / height,
+                false => 0.0,
+            };
+            let row = |from: f64, to: f64| [DVec2::new(from, y), DVec2::new(to, y + 1.0)];
+            let color = srgb_8bit(self.transfer.srgb(position));
+            legend.blocks.push((row(left, right), color));
+            if beside > 0.0 {
+                let part = self.transfer.opacity(position) / self.largest_opacity();
+                let reach = (beside - 0.3 * unit) * part.clamp(0.0, 1.0);
+                let edge = left - 0.3 * unit;
+                legend.opacities.push(row(edge - reach, edge));
+            }
+        }
+        legend.frame([DVec2::new(left, top), DVec2::new(right, bottom)]);
+        let most = if is_narrow { 2 } else { self.most(height) };
+        let wanted = ((height / (2.4 * unit)) as usize).clamp(2, WANTED);
+        for (position, text) in marks(self.transfer, wanted, most) {
+            let y = bottom - height * position;
+            let tick = right + TICK * unit;
+            legend
+                .strokes
+                .push([DVec2::new(right, y), DVec2::new(tick, y)]);
+            let room = body[1].x - tick - GAP * unit;
+            // Labels are rounded up to whole text heights in the strip's width, and so always fit.
+            legend.write(&self.cut(&text, room + unit), [tick + GAP * unit, y], self);
+        }
+        if beside > 0.0 {
+            let text = self.cut(OPACITY, body[1].x - body[0].x);
+            legend.write(
+                &text,
+                [body[0].x, bottom + 0.5 * unit + 0.5 * caption],
+                self,
+            );
+        }
+        height + unit + caption
+    }
+
+    /// Swatches with their numbers, from the top; the height that they take.
+    fn categories(&self, legend: &mut Legend, values: &[f64], body: Area, is_narrow: bool) -> f64 {
+        let unit = self.unit;
+        let height = body[1].y - body[0].y;
+        let rows = ((height / (ROW * unit)) as usize).max(1);
+        let column_width = self.column_width(values);
+        let has_two = !is_narrow && body[1].x - body[0].x >= 2.0 * column_width - 0.5 * unit;
+        let columns = if values.len() > rows && has_two { 2 } else { 1 };
+        // The note on those left out takes a row.
+        let (rows, every) = match values.len() <= rows * columns {
+            true => (rows, 1),
+            false => {
+                let rows = rows.saturating_sub(1).max(1);
+                (rows, values.len().div_ceil(rows * columns))
+            }
+        };
+        let shown: Vec<usize> = (0..values.len()).step_by(every).collect();
+        let rows = rows.min(shown.len().div_ceil(columns));
+        for (place, n) in shown.iter().enumerate() {
+            let (column, row) = (place / rows.max(1), place % rows.max(1));
+            let at =
+                body[0] + DVec2::new(column as f64 * column_width, row as f64 * ROW * unit).round();
+            let inset = (0.5 * (ROW - SWATCH) * unit).round();
+            let low = (at + DVec2::Y * inset).round();
+            let swatch = [low, low + (SWATCH * unit).round()];
+            let position = (*n as f64 + 0.5) / values.len() as f64;
+            let color = srgb_8bit(self.transfer.srgb(position));
+            legend.blocks.push((swatch, color));
+            legend.frame(swatch);
+            let middle = [swatch[1].x + 0.4 * unit, 0.5 * (swatch[0].y + swatch[1].y)];
+            legend.write(&values[*n].to_string(), middle, self);
+        }
+        let taken = ROW * unit * rows as f64;
+        if every == 1 {
+            return taken;
+        }
+        let note = self.cut(&format!("1 of {every} shown"), body[1].x - body[0].x);
+        legend.write(
+            &note,
+            [body[0].x, body[0].y + taken + 0.5 * ROW * unit],
+            self,
+        );
+        taken + ROW * unit
+    }
+
+    /// Name and unit, a long difference in two lines.
+    fn heading_lines(&self) -> Vec<&str> {
+        let [name, unit] = self.heading;
+        let is_long = self.text_width(name) > WIDEST_HEADING * self.unit;
+        let lines = match name.split_at_checked(name.find('-').map_or(0, |n| n + 1)) {
+            Some((first, second)) if is_long => [first, second, unit],
+            _ => [name, "", unit],
+        };
+        lines.into_iter().filter(|l| !l.is_empty()).collect()
+    }
+
+    /// Rows of categories in a strip about so high.
+    fn rows(&self, height: f64, is_narrow: bool) -> usize {
+        let head = if is_narrow {
+            0.0
+        } else {
+            LINE * self.heading_lines().len() as f64 + 0.3
+        };
+        let taken = (2.0 * (OUTSIDE + INSIDE) + head) * self.unit;
+        ((height - taken) / (ROW * self.unit)).max(1.0) as usize
+    }
+
+    fn column_width(&self, values: &[f64]) -> f64 {
+        let widest = values.iter().map(|v| self.text_width(&v.to_string()));
+        (SWATCH + 0.9) * self.unit + widest.fold(0.0, f64::max)
+    }
+
+    /// Labels that a bar of a height has room for.
+    fn most(&self, height: f64) -> usize {
+        (height / (APART * self.unit)) as usize
+    }
+
+    fn largest_opacity(&self) -> f64 {
+        let opacity = self.transfer.opacity.iter();
+        opacity.fold(0.0, |most: f64, o| most.max(o.1))
+    }
+
+    /// Width of the opacities; 0 where they are the same everywhere, which a curve would not show.
+    fn opacity_width(&self) -> f64 {
+        let opacities = self.transfer.opacity.iter().map(|o| o.1);
+        let least = opacities.fold(f64::INFINITY, f64::min);
+        let largest = self.largest_opacity();
+        match largest > least && largest.is_finite() {
+            true => OPACITIES * self.unit,
+            false => 0.0,
+        }
+    }
+
+    fn text_width(&self, text: &str) -> f64 {
+        (self.width)(text)
+    }
+
+    /// The text, cut with an ellipsis where it would be wider than `room`.
+    fn cut(&self, text: &str, room: f64) -> String {
+        cut(text, room, self.width)
+    }
+}
+
+/// The text, cut with an ellipsis where it would be wider than `room`.
+pub fn cut(text: &str, room: f64, width: &dyn Fn(&str) -> f64) -> String {
+    if width(text) <= room {
+        return text.to_owned();
+    }
+    let fits = |end: &usize| width(&text[..*end]) + width("…") <= room;
+    let ends = text.char_indices().map(|(n, _)| n);
+    let end = ends.take_while(fits).last().unwrap_or(0);
+    text[..end].trim_end().to_owned() + "…"
+}
+
+impl Legend {
+    fn frame(&mut self, [low, high]: Area) {
+        let corners = [
+            low,
+            DVec2::new(high.x, low.y),
+            high,
+            DVec2::new(low.x, high.y),
+            low,
+        ];
+        let sides = corners.windows(2).map(|side| [side[0], side[1]]);
+        self.strokes.extend(sides);
+    }
+
+    /// Writes a text from the middle of its left end.
+    fn write(&mut self, text: &str, [left, y]: [f64; 2], key: &Key<'_>) {
+        self.texts.push(Text {
+            text: text.to_owned(),
+            middle: DVec2::new(left + 0.5 * key.text_width(text), y),
+            height: key.unit,
+        });
+    }
+
+    fn shifted(mut self, by: DVec2) -> Self {
+        let shift = |area: &mut Area| area.iter_mut().for_each(|p| *p += by);
+        shift(&mut self.ground);
+        self.blocks.iter_mut().for_each(|(area, _)| shift(area));
+        self.opacities.iter_mut().for_each(shift);
+        self.strokes.iter_mut().for_each(shift);
+        self.texts.iter_mut().for_each(|text| text.middle += by);
+        self
+    }
+}
+
+/// Round values between the ends of a bar, about.
+const WANTED: usize = 7;
 
 /// What stands beside a legend's bar: positions from 0 at the low end to 1, rising, each with its label.
 ///
-/// About `wanted` round values; where the bar has parts of one color, the limits of the bands, or every
-/// category in its middle, of them each so many that at most `most` are left.
+/// The true ends, and between them about `wanted` round values; where the bar has parts of one color, the limits
+/// of the bands, or every category in its middle. Of them each so many that at most `most` are left.
 pub fn marks(transfer: &TransferFunction, wanted: usize, most: usize) -> Vec<(f64, String)> {
-    let placed = |(value, text): (f64, String)| {
-        let [low, high] = transfer.range;
-        // An empty range is shown in its middle.
-        let position = match high > low {
-            true => transfer.position(transfer.scale.shown(value, low)),
-            false => 0.5,
-        };
-        (position, text)
-    };
-    match (&transfer.scale, transfer.bands) {
+    let [low, high] = transfer.range;
+    let placed =
+        |(value, text): (f64, String)| (transfer.position(transfer.scale.shown(value, low)), text);
+    let round = match (&transfer.scale, transfer.bands) {
         (Scale::Categories(values), _) => {
             let every = values.len().div_ceil(most.max(1)).max(1);
             let count = values.len() as f64;
             let middle = |(n, v): (usize, &f64)| ((n as f64 + 0.5) / count, v.to_string());
             let all = values.iter().enumerate();
-            all.step_by(every).map(middle).collect()
+            return all.step_by(every).map(middle).collect();
         }
-        (_, Some(bands)) => limits(transfer, bands, most),
-        (Scale::Log, None) => {
-            let labels = log_labels(transfer.true_range(), wanted);
-            labels.into_iter().map(placed).collect()
+        (_, Some(bands)) => return limits(transfer, bands, most),
+        (Scale::Log, None) if high > low => log_labels(transfer.true_range(), wanted),
+        _ if high > low => labels(transfer.range, wanted),
+        // An empty range is shown in its middle.
+        _ => {
+            let one = labels([transfer.scale.true_value(low); 2], 1).into_iter();
+            return one.map(|(_, text)| (0.5, text)).collect();
         }
-        _ => labels(transfer.range, wanted)
-            .into_iter()
-            .map(placed)
-            .collect(),
-    }
+    };
+    let [first, last] = ends(transfer);
+    let apart = 1.0 / most.max(1) as f64;
+    let is_between = |mark: &(f64, String)| mark.0 >= apart && mark.0 <= 1.0 - apart;
+    let between = round.into_iter().map(placed).filter(is_between);
+    [(0.0, first)]
+        .into_iter()
+        .chain(between)
+        .chain([(1.0, last)])
+        .collect()
+}
+
+/// The true ends of the range, with the digits that the range needs.
+fn ends(transfer: &TransferFunction) -> [String; 2] {
+    let range = transfer.true_range();
+    let largest = range[0].abs().max(range[1].abs());
+    range.map(|value| {
+        let text = match transfer.scale {
+            Scale::Log => label(value, value, 5e-3 * value),
+            _ => label(value, largest, 2e-3 * (range[1] - range[0])),
+        };
+        match text.contains('e') {
+            true => text,
+            false => shortened(&text).to_owned(),
+        }
+    })
 }
 
 /// The ends of the bands.
@@ -58,126 +403,10 @@ fn limits(transfer: &TransferFunction, bands: usize, most: usize) -> Vec<(f64, S
         };
         label(value(n), largest, 0.1 * width)
     };
-    let all = (0..=bands).step_by(every);
-    all.map(|n| (at(n), text(n))).collect()
-}
-
-/// Where the bar is, in pixels.
-struct Bar {
-    left: f64,
-    right: f64,
-    top: f64,
-    bottom: f64,
-}
-
-impl Bar {
-    /// Height of a position in the range.
-    fn y(&self, position: f64) -> f64 {
-        self.bottom + (self.top - self.bottom) * position
-    }
-
-    /// Rows from top to bottom, each with its position in the range.
-    fn rows(&self, transfer: &TransferFunction) -> Vec<(i64, f64)> {
-        let [low, high] = transfer.range;
-        let height = self.bottom - self.top;
-        let position = |y: i64| match high > low {
-            true => 1.0 - (y as f64 + 0.5 - self.top) / height,
-            // Every value has the color at 0.
-            false => 0.0,
-        };
-        let rows = self.top as i64..self.bottom as i64;
-        rows.map(|y| (y, position(y))).collect()
-    }
-}
-
-/// Draws the legend at the right edge and says what it covers; empty lines of the heading take no room.
-pub fn draw(pen: &mut Pen, transfer: &TransferFunction, heading: [&str; 2]) -> Area {
-    let [w, h] = pen.canvas.size.map(f64::from);
-    let unit = pen.unit;
-    let height = match &transfer.scale {
-        Scale::Categories(values) => (1.8 * unit * values.len().max(1) as f64).min(20.0 * unit),
-        _ => 20.0 * unit,
-    };
-    let height = height.min(0.5 * h);
-    let wanted = (height / (2.2 * unit)).clamp(2.0, 7.0) as usize;
-    let labels = marks(transfer, wanted, (height / (1.3 * unit)) as usize);
-    let label_width = |l: &(f64, String)| pen.canvas.text_width(&l.1, unit);
-    let widest = labels.iter().map(label_width).fold(0.0, f64::max);
-    let right = (w - 1.6 * unit - widest).max(0.5 * w).round();
-    let top = (0.5 * (h - height) + 0.5 * unit).round();
-    let bar = Bar {
-        left: (right - 1.2 * unit).round(),
-        right,
-        top,
-        bottom: (top + height).round(),
-    };
-    let heading = heading
-        .into_iter()
-        .filter(|line| !line.is_empty())
-        .map(|line| pen.canvas.cut(line, unit, 0.45 * w))
-        .collect::<Vec<_>>();
-    let width = |line: &String| pen.canvas.text_width(line, unit);
-    let heading_left = heading
-        .iter()
-        .map(|line| bar.left.min(w - unit - width(line)))
-        .fold(bar.left, f64::min);
-    let first_line = bar.top - 0.4 * unit - 1.2 * unit * heading.len() as f64;
-    let plate_left = heading_left.min(bar.left - 1.5 * unit) - 0.5 * unit;
-    let covered = [
-        [plate_left, first_line - 0.4 * unit],
-        [w, bar.bottom + unit],
-    ];
-    pen.plate(covered[0], covered[1]);
-    for (n, line) in heading.iter().enumerate() {
-        pen.write(line, [heading_left, first_line + 1.2 * unit * n as f64]);
-    }
-    colors(pen, &bar, transfer);
-    opacity(pen, &bar, transfer);
-    values(pen, &bar, &labels);
-    covered.map(DVec2::from_array)
-}
-
-fn colors(pen: &mut Pen, bar: &Bar, transfer: &TransferFunction) {
-    for (y, position) in bar.rows(transfer) {
-        let color = srgb_8bit(transfer.srgb(position));
-        for x in bar.left as i64..bar.right as i64 {
-            pen.canvas.blend(x, y, color, 1.0);
-        }
-    }
-    let boxes = match &transfer.scale {
-        Scale::Categories(values) => values.len().max(1),
-        _ => 1,
-    };
-    let end = |n: usize| bar.y(n as f64 / boxes as f64).round();
-    for n in 0..boxes {
-        pen.frame([bar.left, end(n + 1)], [bar.right, end(n)], 0.8);
-    }
-}
-
-/// The opacity curve as a shape left of the bar, widest where the opacity is largest.
-fn opacity(pen: &mut Pen, bar: &Bar, transfer: &TransferFunction) {
-    let largest = transfer.opacity.iter().fold(0.0, |m: f64, o| m.max(o.1));
-    if !(largest > 0.0 && largest.is_finite()) {
-        return;
-    }
-    let ink = pen.ink;
-    let edge = (bar.left - 0.25 * pen.unit).floor() as i64;
-    for (y, position) in bar.rows(transfer) {
-        let width = 1.2 * pen.unit * (transfer.opacity(position) / largest).clamp(0.0, 1.0);
-        for n in 0..width.ceil() as i64 {
-            let coverage = (width - n as f64).min(1.0);
-            pen.canvas.blend(edge - n - 1, y, ink, 0.35 * coverage);
-        }
-    }
-}
-
-fn values(pen: &mut Pen, bar: &Bar, labels: &[(f64, String)]) {
-    let unit = pen.unit;
-    for (position, text) in labels {
-        let (x, y) = (bar.right, bar.y(*position));
-        pen.stroke([[x, y], [x + 0.35 * unit, y]], 1.0);
-        pen.write(text, [x + 0.6 * unit, y - 0.55 * unit]);
-    }
+    let inner = (0..bands).step_by(every);
+    let apart = inner.filter(|n| bands - n >= every);
+    let shown = apart.chain([bands]);
+    shown.map(|n| (at(n), text(n))).collect()
 }
 
 #[cfg(test)]

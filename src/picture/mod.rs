@@ -8,6 +8,8 @@ mod difference;
 mod draft;
 mod files;
 pub mod film;
+mod info;
+mod layout;
 mod legend;
 mod orientation;
 mod pen;
@@ -17,12 +19,14 @@ mod ticks;
 
 #[cfg(test)]
 pub(crate) use annotate::tests::view as test_view;
-pub use annotate::{Annotations, annotate, finished, short_unit};
+pub use annotate::{Annotations, Shot, finished, short_unit, when};
 pub use axes::CONNECTION;
 pub use difference::{difference_colors, difference_picture};
 pub use files::{Format, PictureError, write_exr, write_png};
-pub use legend::marks as legend_marks;
-pub use orientation::{Arrow, Orientation, Paper, Text, on_screen};
+pub use info::Info;
+pub use layout::{LINE, Layout, LegendWidths, Parts};
+pub use legend::{GROUND, Key, Legend, cut};
+pub use orientation::{Area, Arrow, Orientation, Paper, Text, on_screen};
 pub use plot::{Plot, Series};
 pub use sheet::{SheetError, Tile, contact_sheet};
 

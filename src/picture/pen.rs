@@ -1,9 +1,8 @@
 //! What all drawings share: a canvas with ink, paper and sizes, title and thin lines.
 
-use glam::DVec2;
-
 use super::canvas::Canvas;
-use super::orientation::Area;
+use super::legend::{GROUND, Legend};
+use super::orientation::Text;
 use super::srgb_8bit;
 use crate::transfer::function::linear_from_srgb;
 
@@ -52,6 +51,14 @@ impl<'a> Pen<'a> {
         self.canvas.text(text, at, self.unit, self.ink);
     }
 
+    /// A text about its middle.
+    pub fn write_at(&mut self, text: &Text) {
+        let width = self.canvas.text_width(&text.text, text.height);
+        let [x, y] = text.middle.to_array();
+        let corner = [x - 0.5 * width, y - 0.5 * text.height];
+        self.canvas.text(&text.text, corner, text.height, self.ink);
+    }
+
     /// A rectangle of thin lines.
     pub fn frame(&mut self, [left, top]: [f64; 2], [right, bottom]: [f64; 2], strength: f64) {
         let corners = [
@@ -72,13 +79,36 @@ impl<'a> Pen<'a> {
         self.canvas.line(ends, widths, self.ink, |_, _| strength);
     }
 
+    /// A legend, as it was laid out.
+    pub fn legend(&mut self, legend: &Legend) {
+        let [low, high] = legend.ground.map(|p| p.to_array());
+        self.canvas.fill(low, high, self.ink, GROUND);
+        for ([low, high], color) in &legend.blocks {
+            let [low, high] = [low, high].map(|p| p.to_array());
+            self.canvas.fill(low, high, *color, 1.0);
+        }
+        for [low, high] in &legend.opacities {
+            let (from, to, y) = (low.x, high.x, low.y as i64);
+            for x in from.floor() as i64..to.ceil() as i64 {
+                let covered = (to.min(x as f64 + 1.0) - from.max(x as f64)).clamp(0.0, 1.0);
+                self.canvas.blend(x, y, self.ink, 0.4 * covered);
+            }
+        }
+        for line in &legend.strokes {
+            self.stroke(line.map(|p| p.to_array()), 0.8);
+        }
+        for text in &legend.texts {
+            self.write_at(text);
+        }
+    }
+
     /// The line at the top of a picture, above 2.2 units.
     pub fn title(&mut self, title: &str) {
         self.title_until(title, "");
     }
 
-    /// The same, of two parts: only the first one becomes shorter where there is no room. Says what it covers.
-    pub fn title_until(&mut self, title: &str, end: &str) -> Area {
+    /// The same, of two parts: only the first one becomes shorter where there is no room.
+    pub fn title_until(&mut self, title: &str, end: &str) {
         let margin = self.unit;
         let room = f64::from(self.canvas.size[0]) - 2.0 * margin;
         let wanted = 1.25 * self.unit;
@@ -88,14 +118,7 @@ impl<'a> Pen<'a> {
         let height = wanted * fit.clamp(0.7, 1.0);
         let left = room - width(end, height);
         let title = self.canvas.cut(title, height, left) + end;
-        let end = margin + self.canvas.text_width(&title, height);
         let top = 0.7 * margin;
-        let covered = [
-            [0.5 * margin, 0.5 * top],
-            [end + 0.5 * margin, top + 1.2 * height],
-        ];
-        self.plate(covered[0], covered[1]);
         self.canvas.text(&title, [margin, top], height, self.ink);
-        covered.map(DVec2::from_array)
     }
 }

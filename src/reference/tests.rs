@@ -97,6 +97,10 @@ fn view(grid: &Grid, field: CellField, extinction: f64, sampling_step: f64) -> V
     let center = 0.5 * (a + b);
     let eye = center - 100.0 * DVec3::X;
     let srgb = [0.25, 0.5, 1.0].map(crate::transfer::function::srgb_from_linear);
+    let box_corners = std::array::from_fn(|c| {
+        let pick = |axis: usize| world_bounds[c >> axis & 1][axis];
+        DVec3::new(pick(0), pick(1), pick(2))
+    });
     View {
         size: [9, 9],
         background: [1.0; 3],
@@ -104,10 +108,8 @@ fn view(grid: &Grid, field: CellField, extinction: f64, sampling_step: f64) -> V
         spaces,
         vertical_exaggeration: 2.0,
         world_bounds,
-        box_corners: std::array::from_fn(|c| {
-            let pick = |axis: usize| world_bounds[c >> axis & 1][axis];
-            DVec3::new(pick(0), pick(1), pick(2))
-        }),
+        box_corners,
+        subject: crate::scene::Subject::of_box(box_corners).into(),
         strategy: StrategyKind::ALL[0],
         property: "TEST".into(),
         step: 0,
@@ -135,6 +137,7 @@ fn view(grid: &Grid, field: CellField, extinction: f64, sampling_step: f64) -> V
         field: field.into(),
         show_box: false,
         show_legend: false,
+        facts: None,
     }
 }
 

@@ -3,6 +3,8 @@
 use glam::{DQuat, DVec2, DVec3};
 use serde::{Deserialize, Serialize};
 
+use super::fit::MARGINS;
+
 /// How a camera maps the world to its picture.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
@@ -49,10 +51,10 @@ pub struct Camera {
     pub parallel: Option<f64>,
 }
 
-/// Room around what is framed, as a factor on its size: in perspective its nearest corner alone comes so close
-/// to the rim.
-const FRAME: f64 = 1.08;
-const PARALLEL_FRAME: f64 = 1.2;
+/// Vertical field of view of cameras that frame something.
+const FOVY: f64 = std::f64::consts::PI / 6.0;
+/// Size of the picture over that of what is framed from all around, about one point.
+const AROUND: f64 = 1.08;
 
 impl Camera {
     /// A perspective camera at `eye` that looks at `target`; `None` where the three do not span a frame.
@@ -69,20 +71,14 @@ impl Camera {
         })
     }
 
-    /// A camera that frames a box, given by its corners in world space, from a direction.
+    /// A camera that looks at the origin from a direction.
     ///
-    /// `azimuth` is the compass direction of the camera as seen from the box (0 north, 90 east),
-    /// `aspect` width over height; a `zoom` above 1 comes closer.
-    pub fn framing(
-        corners: &[DVec3; 8],
+    /// `azimuth` is the compass direction in which the camera stands (0 north, 90 east).
+    pub fn facing(
         azimuth_radians: f64,
         elevation_radians: f64,
-        zoom: f64,
-        aspect: f64,
         projection: Projection,
     ) -> Option<Self> {
-        let fovy = 30f64.to_radians();
-        let center = middle(corners);
         let (sin_a, cos_a) = azimuth_radians.sin_cos();
         let (sin_e, cos_e) = elevation_radians.sin_cos();
         let towards_eye = DVec3::new(sin_a * cos_e, cos_a * cos_e, sin_e);
@@ -92,56 +88,67 @@ impl Camera {
         } else {
             DVec3::Z
         };
-        let camera = Self::look_at(center + towards_eye, center, up, fovy)?;
-        let camera = camera.with(projection, center).framed(corners, aspect);
-        Some(camera.closer(center, zoom))
+        let camera = Self::look_at(towards_eye, DVec3::ZERO, up, FOVY)?;
+        Some(camera.with(projection, DVec3::ZERO))
     }
 
-    /// The camera that looks at the middle of a box, given by its corners, in this one's direction, and has
-    /// all of them in its picture. The plane of a parallel one does not cut the box, however it is turned
-    /// about its middle.
+    /// A camera that frames points from a direction; see [`Self::facing`] and [`Self::framed`].
+    ///
+    /// `aspect` is width over height; a `zoom` above 1 comes closer.
+    pub fn framing(
+        points: &[DVec3],
+        azimuth_radians: f64,
+        elevation_radians: f64,
+        zoom: f64,
+        aspect: f64,
+        projection: Projection,
+    ) -> Option<Self> {
+        let camera = Self::facing(azimuth_radians, elevation_radians, projection)?;
+        Some(camera.framed_within(points, aspect, MARGINS, zoom))
+    }
+
+    /// The camera in this one's direction that looks at a point and has all others in its picture.
     #[must_use]
-    pub fn framed(self, corners: &[DVec3; 8], aspect: f64) -> Self {
-        let center = middle(corners);
-        let need = self.need(corners, aspect);
+    pub fn framed_around(self, points: &[DVec3], pivot: DVec3, aspect: f64) -> Self {
+        let need = self.need(points, pivot, aspect);
+        let radii = points.iter().map(|p| p.distance(pivot));
         let distance = match self.parallel {
             None => need,
-            Some(_) => (need / self.tan_half_fovy).max(1.01 * corners[0].distance(center)),
+            Some(_) => (need / self.tan_half_fovy).max(1.01 * radii.fold(0.0, f64::max)),
         };
         Self {
-            eye: center - distance * self.forward,
+            eye: pivot - distance * self.forward,
             parallel: self.parallel.map(|_| need),
             ..self
         }
     }
 
-    /// What a camera in this one's direction that looks at the middle of a box needs to have all corners in
-    /// its picture: in perspective the distance, in parallel half the height.
-    fn need(&self, corners: &[DVec3; 8], aspect: f64) -> f64 {
-        let center = middle(corners);
-        let needs = corners.iter().map(|corner| {
-            let corner = corner - center;
-            let (x, y) = (corner.dot(self.right).abs(), corner.dot(self.up).abs());
-            let half_height = (x / aspect).max(y);
+    /// What a camera in this one's direction that looks at a point needs to have others in its picture: in
+    /// perspective the distance, in parallel half the height.
+    fn need(&self, points: &[DVec3], pivot: DVec3, aspect: f64) -> f64 {
+        let needs = points.iter().map(|point| {
+            let point = *point - pivot;
+            let (x, y) = (point.dot(self.right).abs(), point.dot(self.up).abs());
+            let half_height = AROUND * (x / aspect).max(y);
             match self.parallel {
-                None => FRAME * half_height / self.tan_half_fovy - corner.dot(self.forward),
-                Some(_) => PARALLEL_FRAME * half_height,
+                None => half_height / self.tan_half_fovy - point.dot(self.forward),
+                Some(_) => half_height,
             }
         });
         needs.fold(1e-9, f64::max)
     }
 
-    /// Takes cameras that look at the middle of a box, each from as far as the first one, as far away as
-    /// the one that needs the most: with one distance the box does not shrink and grow between them. How
+    /// Takes cameras that look at a point, each from as far as the first one, as far away as the one that needs
+    /// the most to have others in its picture: with one distance these do not shrink and grow between them. How
     /// close the first one is (its zoom) counts for all. Of parallel ones it is the height that counts.
-    pub fn stand_back(cameras: &mut [Self], corners: &[DVec3; 8], aspect: f64) {
-        let needs = |camera: &Self| camera.need(corners, aspect);
+    pub fn stand_back(cameras: &mut [Self], points: &[DVec3], pivot: DVec3, aspect: f64) {
+        let needs = |camera: &Self| camera.need(points, pivot, aspect);
         let Some(first) = cameras.first().map(needs) else {
             return;
         };
         let most = cameras.iter().map(needs).fold(0.0, f64::max);
         for camera in cameras {
-            *camera = camera.closer(middle(corners), first / most);
+            *camera = camera.closer(pivot, first / most);
         }
     }
 

@@ -2,9 +2,8 @@
 
 use glam::DQuat;
 
-use super::camera::middle;
 use super::resolve::{default_property, resolve_over};
-use super::{Camera, CameraSpec, RangeSpec, ScaleSpec, Scene, SceneError, StepSpec, View, resolve};
+use super::{Camera, RangeSpec, ScaleSpec, Scene, SceneError, StepSpec, View, resolve};
 use crate::case::{Case, CaseError};
 
 /// A way around the model.
@@ -45,7 +44,9 @@ enum Views {
         range: [f64; 2],
     },
     Turn {
+        scene: Box<Scene>,
         view: Box<View>,
+        turn: Turn,
         cameras: Vec<Camera>,
     },
 }
@@ -111,8 +112,9 @@ impl Sequence {
         }))
     }
 
-    /// The scene from all around the vertical line through the model's middle, beginning where its
-    /// camera is. A camera that frames the model stands back as far as the whole turn needs.
+    /// The scene from all around the vertical line through the middle of what is drawn, beginning where its
+    /// camera is. A camera that frames what is drawn looks at that middle and stands back as far as the whole
+    /// turn needs.
     ///
     /// # Errors
     /// When the scene cannot be shown, or the turn has no views or no finite angle.
@@ -121,22 +123,35 @@ impl Sequence {
             return Err(SceneError::Turn);
         }
         let view = resolve(scene, case)?;
-        let middle = middle(&view.box_corners);
-        let turned = |a: f64| {
-            let turned = view.camera.turned(middle, DQuat::from_rotation_z(-a));
-            turned.before(&view.box_corners)
-        };
-        let mut cameras: Vec<Camera> = turn.radians().map(turned).collect();
-        if matches!(scene.camera, CameraSpec::Framing(_)) {
-            Camera::stand_back(&mut cameras, &view.box_corners, view.aspect());
-        }
         Ok(Self {
             views: Views::Turn {
+                cameras: cameras(scene, &view, turn),
+                scene: Box::new(scene.clone()),
                 view: Box::new(view),
-                cameras,
+                turn,
             },
             left_out: Vec::new(),
         })
+    }
+
+    /// The same views in another size.
+    ///
+    /// # Errors
+    /// When the size is not allowed.
+    pub fn sized(mut self, size: [u32; 2]) -> Result<Self, SceneError> {
+        match &mut self.views {
+            Views::Steps { scene, .. } => scene.size = size,
+            Views::Turn {
+                scene,
+                view,
+                turn,
+                cameras: all,
+            } => {
+                **view = view.seen_from(&scene.camera, size)?;
+                *all = cameras(scene, view, *turn);
+            }
+        }
+        Ok(self)
     }
 
     /// Number of views.
@@ -172,12 +187,27 @@ impl Sequence {
                 steps,
                 range,
             } => resolve_over(&at_step(scene, steps[n]), case, Some(*range))?,
-            Views::Turn { view, cameras } => View {
+            Views::Turn { view, cameras, .. } => View {
                 camera: cameras[n],
                 ..View::clone(view)
             },
         })
     }
+}
+
+/// The cameras of a turn of a scene, whose own view is given.
+fn cameras(scene: &Scene, view: &View, turn: Turn) -> Vec<Camera> {
+    let middle = view.subject.middle;
+    let start = view.turning_camera(&scene.camera);
+    let turned = |a: f64| {
+        let turned = start.turned(middle, DQuat::from_rotation_z(-a));
+        turned.before(&view.box_corners)
+    };
+    let mut cameras: Vec<Camera> = turn.radians().map(turned).collect();
+    if scene.camera.framing_zoom().is_some() {
+        Camera::stand_back(&mut cameras, &view.subject.points, middle, view.aspect());
+    }
+    cameras
 }
 
 /// The steps that `chosen` names: `A..B` with both ends, each a number, a date, `first` or `last`;

@@ -34,30 +34,36 @@ impl Ghosts {
     /// Makes ghosts of the inactive cells of `grid`, with field and selection extended to them.
     pub fn new(grid: &Grid, field: &CellField, drawn: &[bool]) -> (Self, CellField, Vec<bool>) {
         let all = grid.with_inactive();
-        let cells = all.active_cells();
-        let active: Vec<Option<usize>> = cells
-            .iter()
-            .map(|&cell| grid.active_index(cell).map(|a| a.0 as usize))
-            .collect();
+        let active: Vec<Option<usize>> = active_in(grid, &all).collect();
         let values = active
             .iter()
             .map(|a| a.map_or(f32::NAN, |a| field.values()[a]));
         let field = CellField::new(values.collect());
-        let shown = cells.iter().zip(&active).map(|(&cell, a)| match a {
-            Some(a) => drawn[*a],
+        let is_ghost = active.iter().map(Option::is_none).collect();
+        let made = Self {
+            grid: all,
+            is_ghost,
+        };
+        let drawn = made.with(grid, drawn);
+        (made, field, drawn)
+    }
+
+    /// A selection of the active cells of `grid`, the case's, extended to the ghosts that have a thickness.
+    pub fn with(&self, grid: &Grid, selected: &[bool]) -> Vec<bool> {
+        let all = &self.grid;
+        let cells = all.active_cells().iter().zip(active_in(grid, all));
+        let shown = cells.map(|(&cell, active)| match active {
+            Some(active) => selected[active],
             None => all.has_thickness(all.dims().ijk(cell)),
         });
-        let drawn = shown.collect();
-        let is_ghost = active.iter().map(Option::is_none).collect();
-        (
-            Self {
-                grid: all,
-                is_ghost,
-            },
-            field,
-            drawn,
-        )
+        shown.collect()
     }
+}
+
+/// For each cell of `all` its active index in `grid`.
+fn active_in<'a>(grid: &'a Grid, all: &'a Grid) -> impl Iterator<Item = Option<usize>> + 'a {
+    let cells = all.active_cells().iter();
+    cells.map(|&cell| grid.active_index(cell).map(|a| a.0 as usize))
 }
 
 /// What a view's field and selection go by: the case's grid, or the one with the ghosts.

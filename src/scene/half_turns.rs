@@ -4,8 +4,7 @@ use std::f64::consts::PI;
 
 use glam::{DQuat, DVec3};
 
-use super::camera::middle;
-use super::{Camera, CameraSpec, Scene, View};
+use super::{Camera, Scene, View};
 
 /// A view of a row of them.
 #[derive(Debug, Clone)]
@@ -81,24 +80,25 @@ impl TurnAxis {
 }
 
 /// `count` views in all on the way of a scene's camera in half turns, at constant distance from the
-/// model's middle. `view` is the scene's own, which comes first.
+/// middle of what is drawn. `view` is the scene's own, in whose direction the first one looks.
 ///
 /// Half a turn about one axis ends with the view from the other side. Half turns about x, y and z, one
-/// after another, lead back to the start, which is not shown again. A camera that frames the model
-/// stands as far away as the view that needs the most.
+/// after another, lead back to the start, which is not shown again. A camera that frames what is drawn
+/// looks at the middle and stands as far away as the view that needs the most.
 pub fn half_turns(scene: &Scene, view: &View, about: TurnAxis, count: usize) -> Vec<NamedView> {
-    let middle = middle(&view.box_corners);
+    let middle = view.subject.middle;
+    let start = view.turning_camera(&scene.camera);
     let placed: Vec<_> = (0..count).map(|n| about.place(n, count)).collect();
     let camera = |&(at, angle): &(usize, f64)| {
         let done = about.axes()[..at].iter().map(|axis| axis.turn(PI));
         let done = done.fold(DQuat::IDENTITY, |before, turn| turn * before);
-        view.camera
+        start
             .turned(middle, about.axes()[at].turn(angle) * done)
             .before(&view.box_corners)
     };
     let mut cameras: Vec<Camera> = placed.iter().map(camera).collect();
-    if matches!(scene.camera, CameraSpec::Framing(_)) {
-        Camera::stand_back(&mut cameras, &view.box_corners, view.aspect());
+    if scene.camera.framing_zoom().is_some() {
+        Camera::stand_back(&mut cameras, &view.subject.points, middle, view.aspect());
     }
     let named = |((at, angle), camera): ((usize, f64), Camera)| NamedView {
         name: format!("{} {:.0}°", about.axes()[at].name, angle.to_degrees()),

@@ -3,7 +3,11 @@
 mod blending;
 pub mod camera;
 mod colors;
+pub mod facts;
 pub mod film;
+mod filter_words;
+mod fit;
+pub mod framing;
 pub mod ghosts;
 mod half_turns;
 pub mod lighting;
@@ -17,7 +21,9 @@ use serde::{Deserialize, Serialize};
 
 pub use blending::Blending;
 pub use camera::{Camera, Projection};
+pub use facts::Facts;
 pub use film::{Sequence, Turn};
+pub use framing::{Direction, Extents, Subject};
 pub use half_turns::{NamedView, TurnAxis, half_turns};
 pub use lighting::{LightMode, Lighting, LightingSpec};
 pub use resolve::{ClipPlane, SceneError, View, default_property, model_corners, resolve};
@@ -37,7 +43,7 @@ pub struct Scene {
     pub size: [u32; 2],
     /// `#rrggbb`.
     pub background: String,
-    /// Where to look from.
+    /// Where to look from; chosen from the shape of what is drawn where absent.
     pub camera: CameraSpec,
     /// Vertical exaggeration; chosen from the model's shape where absent.
     pub vertical_exaggeration: Option<f64>,
@@ -101,14 +107,16 @@ impl Default for Scene {
     }
 }
 
-/// A camera in world coordinates, or one that frames the model.
+/// A camera in world coordinates, or one that frames what is drawn.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum CameraSpec {
     /// Explicit position.
     Explicit(ExplicitCamera),
-    /// Direction only; distance frames the model.
+    /// Direction only; position and distance frame what is drawn.
     Framing(FramingCamera),
+    /// The same from the direction that suits the shape of what is drawn.
+    Automatic(AutomaticCamera),
 }
 
 /// A camera placed in world coordinates.
@@ -131,7 +139,7 @@ pub struct ExplicitCamera {
     pub projection: Projection,
 }
 
-/// A camera that looks at the middle of the model from a direction.
+/// A camera that frames what is drawn from a direction.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FramingCamera {
@@ -142,9 +150,29 @@ pub struct FramingCamera {
     /// Above 1 comes closer.
     #[serde(default = "one")]
     pub zoom: f64,
-    /// Perspective or parallel; either frames the model.
+    /// Perspective or parallel; either frames what is drawn.
     #[serde(default, skip_serializing_if = "Projection::is_default")]
     pub projection: Projection,
+}
+
+/// A camera that frames what is drawn from the direction that suits its shape; see [`Extents::direction`].
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct AutomaticCamera {
+    /// Above 1 comes closer.
+    pub zoom: f64,
+    /// Perspective or parallel.
+    #[serde(skip_serializing_if = "Projection::is_default")]
+    pub projection: Projection,
+}
+
+impl Default for AutomaticCamera {
+    fn default() -> Self {
+        Self {
+            zoom: 1.0,
+            projection: Projection::Perspective,
+        }
+    }
 }
 
 impl CameraSpec {
@@ -153,18 +181,23 @@ impl CameraSpec {
         match self {
             Self::Explicit(camera) => camera.projection,
             Self::Framing(camera) => camera.projection,
+            Self::Automatic(camera) => camera.projection,
+        }
+    }
+
+    /// Its zoom where it frames what is drawn; `None` of an explicit camera.
+    pub fn framing_zoom(&self) -> Option<f64> {
+        match self {
+            Self::Explicit(_) => None,
+            Self::Framing(camera) => Some(camera.zoom),
+            Self::Automatic(camera) => Some(camera.zoom),
         }
     }
 }
 
 impl Default for CameraSpec {
     fn default() -> Self {
-        Self::Framing(FramingCamera {
-            azimuth_degrees: 205.0,
-            elevation_degrees: 35.0,
-            zoom: 1.0,
-            projection: Projection::Perspective,
-        })
+        Self::Automatic(AutomaticCamera::default())
     }
 }
 
@@ -257,6 +290,8 @@ pub struct Show {
     pub r#box: bool,
     /// Legend and title.
     pub legend: bool,
+    /// The line below: date, cells, values, exaggeration, filters.
+    pub info: bool,
 }
 
 impl Default for Show {
@@ -270,6 +305,7 @@ impl Default for Show {
             cell_edges: false,
             r#box: true,
             legend: true,
+            info: true,
         }
     }
 }

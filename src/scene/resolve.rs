@@ -6,6 +6,8 @@ use glam::{DVec3, DVec4};
 use rayon::prelude::*;
 
 use super::colors::{self, Asked, Colors, interpolation};
+use super::facts::{self, Facts};
+use super::framing::{self, Direction, Subject};
 use super::ghosts::{Ghosts, shown_grid};
 use super::lighting::{self, Lighting};
 use super::{
@@ -77,6 +79,8 @@ pub struct View {
     pub world_bounds: [DVec3; 2],
     /// Corners of the model's box in world space; bit n of the index is the end along axis n.
     pub box_corners: [DVec3; 8],
+    /// The cells that cameras frame.
+    pub subject: Arc<Subject>,
     /// The strategy asked for.
     pub strategy: StrategyKind,
     /// Name of the property shown.
@@ -117,6 +121,8 @@ pub struct View {
     pub show_box: bool,
     /// Draw legend and title.
     pub show_legend: bool,
+    /// What is drawn in numbers, for the line below the picture; `None` where that is hidden.
+    pub facts: Option<Arc<Facts>>,
 }
 
 impl View {
@@ -125,7 +131,9 @@ impl View {
     /// # Errors
     /// When camera or size are not allowed.
     pub fn seen_from(&self, camera_spec: &CameraSpec, size: [u32; 2]) -> Result<Self, SceneError> {
-        let camera = camera(camera_spec, checked_size(size)?, &self.box_corners)?;
+        let size = checked_size(size)?;
+        let of = (&*self.subject, &self.box_corners);
+        let camera = camera(camera_spec, size, of, self.show_box)?;
         Ok(Self {
             size,
             camera,
@@ -213,53 +221,54 @@ pub(super) fn resolve_over(
         mean_edge: edges.element_sum() / 3.0,
         exaggeration,
     };
-    let Colors { field, transfer } = colors::resolve(&asked, &field)?;
-    let (field, drawn) = filtered(case, field, &scene.filter, step)?;
-    let connections = match scene.show.nnc {
-        true => connections(case, &spaces, &drawn),
-        false => Vec::new(),
-    };
-    let (ghosts, field, drawn) = match scene.show.inactive {
-        Inactive::Hidden => (None, field, drawn),
-        Inactive::Ghost => {
-            let (ghosts, field, drawn) = Ghosts::new(&case.grid, &field, &drawn);
-            (Some(Arc::new(ghosts)), Arc::new(field), drawn)
-        }
-    };
-    let bounds = shown_grid(&case.grid, ghosts.as_ref()).bounds();
-    let box_corners = box_corners(&spaces, bounds.unwrap_or(active_bounds));
+    let Colors {
+        field: shown,
+        transfer,
+    } = colors::resolve(&asked, &field)?;
+    let clip = clip(&scene.clip)?;
+    let Cells {
+        field,
+        drawn,
+        ghosts,
+        connections,
+        facts,
+        subject,
+        box_corners,
+    } = cells(&asked, [field, shown], step, &spaces, &clip)?;
     let start = [DVec3::INFINITY, DVec3::NEG_INFINITY];
-    let bounds = box_corners.iter();
-    let world_bounds = bounds.fold(start, |[a, b], p| [a.min(*p), b.max(*p)]);
-    let strategy = StrategyKind::from_name(&scene.strategy)
-        .ok_or_else(|| wrong("strategy", StrategyKind::refusal(&scene.strategy)))?;
-    if !(0.0..1.0).contains(&scene.early_termination) {
-        return Err(wrong("early_termination", "must be at least 0 and below 1"));
-    }
+    let world_bounds = box_corners
+        .iter()
+        .fold(start, |[a, b], p| [a.min(*p), b.max(*p)]);
     let size = checked_size(scene.size)?;
     Ok(View {
         size,
         background: presets::parse_color(&scene.background)
             .ok_or_else(|| wrong("background", "must be a color like #ffffff"))?,
-        camera: camera(&scene.camera, size, &box_corners)?,
+        camera: camera(
+            &scene.camera,
+            size,
+            (&subject, &box_corners),
+            scene.show.r#box,
+        )?,
         spaces,
         vertical_exaggeration: exaggeration,
         world_bounds,
         box_corners,
-        strategy,
+        subject: Arc::new(subject),
+        strategy: strategy(scene)?,
         step,
         interpolation: interpolation(scene),
         transfer,
         blending: scene.blending,
         sampling_step: sampling_step(scene, edges, world_bounds)?,
-        early_termination: scene.early_termination,
+        early_termination: early_termination(scene)?,
         property,
         field,
         drawn: Arc::new(drawn),
         ghosts,
-        clip: clip(&scene.clip)?,
+        clip,
         surfaces: Surfaces::from(&scene.show),
-        connections: Arc::new(connections),
+        connections,
         named_faults: case.fault_faces.clone(),
         lighting: lighting::resolve(
             &scene.lighting,
@@ -270,6 +279,7 @@ pub(super) fn resolve_over(
         srg: srg(scene, case.grid.dims())?,
         show_box: scene.show.r#box,
         show_legend: scene.show.legend,
+        facts,
     })
 }
 
@@ -279,6 +289,18 @@ fn check_version(scene: &Scene) -> Result<(), SceneError> {
         return Err(wrong("version", problem));
     }
     Ok(())
+}
+
+fn strategy(scene: &Scene) -> Result<StrategyKind, SceneError> {
+    let kind = StrategyKind::from_name(&scene.strategy);
+    kind.ok_or_else(|| wrong("strategy", StrategyKind::refusal(&scene.strategy)))
+}
+
+fn early_termination(scene: &Scene) -> Result<f64, SceneError> {
+    match (0.0..1.0).contains(&scene.early_termination) {
+        true => Ok(scene.early_termination),
+        false => Err(wrong("early_termination", "must be at least 0 and below 1")),
+    }
 }
 
 fn checked_size(size: [u32; 2]) -> Result<[u32; 2], SceneError> {
@@ -387,7 +409,7 @@ fn automatic_exaggeration(bounds: [DVec3; 2]) -> f64 {
 }
 
 /// Corners of the model's box, whose sides follow the grid's axes, in world space.
-fn box_corners(spaces: &Spaces, [low, high]: [DVec3; 2]) -> [DVec3; 8] {
+pub(super) fn box_corners(spaces: &Spaces, [low, high]: [DVec3; 2]) -> [DVec3; 8] {
     std::array::from_fn(|c| {
         let pick = |axis: usize| {
             if c >> axis & 1 == 1 {
@@ -496,6 +518,62 @@ fn drawn(
     Ok(drawn)
 }
 
+/// Which cells are drawn, and what follows from that.
+struct Cells {
+    field: Arc<CellField>,
+    drawn: Vec<bool>,
+    ghosts: Option<Arc<Ghosts>>,
+    connections: Arc<Vec<[DVec3; 2]>>,
+    facts: Option<Arc<Facts>>,
+    subject: Subject,
+    /// Of all cells that could be drawn.
+    box_corners: [DVec3; 8],
+}
+
+/// The cells of a scene, from the values of the property: true ones, and those in the scale of its colors.
+fn cells(
+    asked: &Asked<'_>,
+    [values, field]: [Arc<CellField>; 2],
+    step: usize,
+    spaces: &Spaces,
+    clip: &[ClipPlane],
+) -> Result<Cells, SceneError> {
+    let Asked { scene, case, .. } = *asked;
+    let (field, drawn) = filtered(case, field, &scene.filter, step)?;
+    let framed = match framing::still(&scene.filter, case) {
+        Some(still) => self::drawn(case, &values, &still, step)?,
+        None => drawn.clone(),
+    };
+    let facts = scene.show.info.then(|| {
+        let seen = facts::uncut(&case.grid, &drawn, clip, spaces);
+        Arc::new(Facts::of(case, asked.property, &values, &seen, scene))
+    });
+    let connections = match scene.show.nnc {
+        true => connections(case, spaces, &drawn),
+        false => Vec::new(),
+    };
+    let (ghosts, field, drawn, framed) = match scene.show.inactive {
+        Inactive::Hidden => (None, field, drawn, framed),
+        Inactive::Ghost => {
+            let (ghosts, field, drawn) = Ghosts::new(&case.grid, &field, &drawn);
+            let framed = ghosts.with(&case.grid, &framed);
+            (Some(Arc::new(ghosts)), Arc::new(field), drawn, framed)
+        }
+    };
+    let grid = shown_grid(&case.grid, ghosts.as_ref());
+    let subject = Subject::of(grid, &framed, spaces).ok_or(SceneError::Empty)?;
+    let bounds = grid.bounds().ok_or(SceneError::Empty)?;
+    Ok(Cells {
+        box_corners: box_corners(spaces, bounds),
+        field,
+        drawn,
+        ghosts,
+        connections: Arc::new(connections),
+        facts,
+        subject,
+    })
+}
+
 /// Which cells are drawn, and their values: averages at vertices are of drawn cells, so that no color of a cell
 /// shows that is filtered away.
 fn filtered(
@@ -534,9 +612,20 @@ fn connections(case: &Case, spaces: &Spaces, drawn: &[bool]) -> Vec<[DVec3; 2]> 
     case.connections.iter().filter_map(ends).collect()
 }
 
-/// The camera that a scene asks for, given the corners of the model's box.
-fn camera(spec: &CameraSpec, size: [u32; 2], corners: &[DVec3; 8]) -> Result<Camera, SceneError> {
+/// The camera that a scene asks for, given what it frames and the corners of the model's box.
+fn camera(
+    spec: &CameraSpec,
+    size: [u32; 2],
+    (subject, corners): (&Subject, &[DVec3; 8]),
+    has_box: bool,
+) -> Result<Camera, SceneError> {
     let aspect = f64::from(size[0]) / f64::from(size[1]);
+    let framing = |from, zoom| -> Result<Option<Camera>, SceneError> {
+        let zoom = positive("camera.zoom", zoom)?;
+        let camera = subject.camera(from, zoom, spec.projection(), aspect, has_box);
+        // The plane of a parallel one stays before the whole model, of which only a part may be framed.
+        Ok(camera.map(|c| c.before(corners)))
+    };
     let camera = match spec {
         CameraSpec::Explicit(c) => {
             if !(c.fovy_degrees > 0.0 && c.fovy_degrees < 180.0) {
@@ -547,19 +636,13 @@ fn camera(spec: &CameraSpec, size: [u32; 2], corners: &[DVec3; 8]) -> Result<Cam
             camera.map(|camera| camera.with(c.projection, target))
         }
         CameraSpec::Framing(c) => {
-            let (azimuth, elevation) = (
-                c.azimuth_degrees.to_radians(),
-                c.elevation_degrees.to_radians(),
-            );
-            Camera::framing(
-                corners,
-                azimuth,
-                elevation,
-                positive("camera.zoom", c.zoom)?,
-                aspect,
-                c.projection,
-            )
+            let from = Direction {
+                azimuth: c.azimuth_degrees,
+                elevation: c.elevation_degrees,
+            };
+            framing(Some(from), c.zoom)?
         }
+        CameraSpec::Automatic(c) => framing(None, c.zoom)?,
     };
     camera
         .filter(|c| c.eye.is_finite() && c.forward.is_finite() && c.right.is_finite())

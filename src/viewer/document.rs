@@ -12,7 +12,7 @@ use super::state::State;
 use super::watch::Watch;
 use crate::case::Case;
 use crate::picking::Hit;
-use crate::scene::StepSpec;
+use crate::scene::{CameraSpec, StepSpec};
 
 /// A tab.
 pub struct Document {
@@ -95,6 +95,12 @@ impl Document {
     /// Makes a change that can be undone.
     pub fn apply(&mut self, action: Action) {
         self.history.apply(&mut self.state, action);
+    }
+
+    /// Makes a change of the filter that can be undone. The camera stays where it is, which is given where it would
+    /// follow what is drawn.
+    pub fn apply_filter(&mut self, action: Action, camera: Option<CameraSpec>) {
+        self.history.apply_from(&mut self.state, action, camera);
     }
 
     /// A property whose look is not known yet and has to be found before it is shown.

@@ -10,9 +10,9 @@ use crate::case::Case;
 use crate::filming::shoot;
 use crate::gpu::Gpu;
 use crate::picture::film::{Film, FilmShape};
-use crate::picture::{Format, finished, write_exr, write_png};
+use crate::picture::{Format, Shot, write_exr, write_png};
 use crate::renderer::Renderer;
-use crate::scene::{Scene, Sequence, Turn, film, resolve};
+use crate::scene::{Scene, Sequence, Turn, film};
 
 /// What is to be made.
 #[derive(Clone)]
@@ -175,16 +175,16 @@ fn make(spec: &ExportSpec, path: &Path, progress: &dyn Fn(f64) -> bool) -> Falli
 
 fn still(spec: &ExportSpec, path: &Path, progress: &dyn Fn(f64) -> bool) -> Fallible<bool> {
     let format = Format::from_path(path)?;
-    let view = resolve(&spec.scene, &spec.case)?;
+    let shot = Shot::of(&spec.scene, &spec.case, spec.plain || format == Format::Exr)?;
     let mut renderer = Renderer::new(Arc::new(Gpu::new(None)?), &spec.case.grid)?;
-    let Some(frame) = renderer.render(&spec.case.grid, &view, progress)? else {
+    let Some(frame) = renderer.render(&spec.case.grid, &shot.view, progress)? else {
         return Ok(false);
     };
     match format {
         Format::Exr => write_exr(path, &frame.image)?,
         Format::Png => {
-            let rgb = finished(&frame.image, &spec.case, &view, spec.plain);
-            write_png(path, frame.image.size, &rgb)?;
+            let picture = shot.finished(&frame.image, &spec.case);
+            write_png(path, picture.size, &picture.pixels)?;
         }
     }
     Ok(true)

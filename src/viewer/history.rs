@@ -2,6 +2,7 @@
 
 use super::action::Action;
 use super::state::{Setup, State};
+use crate::scene::CameraSpec;
 
 /// Setups that can be gone back to, at most.
 const MOST: usize = 200;
@@ -19,11 +20,19 @@ impl History {
     /// Makes a change. While a gesture lasts, changes of one name count as one. What is no part of the
     /// setup is changed without being remembered.
     pub fn apply(&mut self, state: &mut State, action: Action) {
+        self.apply_from(state, action, None);
+    }
+
+    /// The same, seen from another camera afterward where one is given.
+    pub fn apply_from(&mut self, state: &mut State, action: Action, camera: Option<CameraSpec>) {
         let name = action.name();
         let before = state.setup.clone();
         action.apply(state);
         if state.setup == before {
             return;
+        }
+        if let Some(camera) = camera {
+            state.setup.scene.camera = camera;
         }
         let joins = self.joins && self.past.last().is_some_and(|(last, _)| *last == name);
         if !joins {

@@ -57,8 +57,8 @@ impl Link {
 
 fn moved(camera: &CameraSpec, to: impl Fn(DVec3) -> DVec3) -> CameraSpec {
     match camera {
-        // One that frames the model does so with each.
-        CameraSpec::Framing(_) => camera.clone(),
+        // One that frames what is drawn does so with each.
+        CameraSpec::Framing(_) | CameraSpec::Automatic(_) => camera.clone(),
         CameraSpec::Explicit(c) => CameraSpec::Explicit(ExplicitCamera {
             eye: to(DVec3::from_array(c.eye)).to_array(),
             target: to(DVec3::from_array(c.target)).to_array(),

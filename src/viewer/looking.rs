@@ -64,6 +64,17 @@ impl Window {
     }
 }
 
+impl Window {
+    /// The camera of the picture as a place in the world, where that of the scene would follow what is drawn.
+    pub(super) fn held_camera(&self) -> Option<CameraSpec> {
+        let camera = &self.document()?.state.setup.scene.camera;
+        camera.framing_zoom()?;
+        let view = &self.picture(0)?.0.view;
+        let now = view.seen_from(camera, view.size).ok()?;
+        Some(orbit::spec(&now.camera, &now.box_corners))
+    }
+}
+
 fn changed(
     look: Look,
     spec: &CameraSpec,
@@ -77,7 +88,10 @@ fn changed(
     let center = || orbit::point_under(now, now.drawn_bounds(&case.grid), DVec2::splat(0.5));
     let camera = match look {
         Look::From(n) => return Some(orbit::standard(n, spec.projection())),
-        Look::FrameAll => return Some(orbit::frame_all(spec, camera, corners, aspect)),
+        Look::FrameAll => {
+            let points = &now.subject.points;
+            return Some(orbit::frame_all(spec, camera, points, corners, aspect));
+        }
         Look::Projection => return Some(orbit::switched(spec, camera, corners)),
         Look::FrameSelection => {
             let cells = selected

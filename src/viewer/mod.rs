@@ -23,6 +23,7 @@ mod marks;
 mod mouse;
 mod orbit;
 mod overlay;
+mod pages;
 mod panels;
 mod pictures;
 mod reader;

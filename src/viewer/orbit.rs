@@ -3,7 +3,9 @@
 use glam::{DQuat, DVec2, DVec3};
 
 use crate::scene::camera::middle;
-use crate::scene::{Camera, CameraSpec, ExplicitCamera, FramingCamera, Projection, View};
+use crate::scene::{
+    AutomaticCamera, Camera, CameraSpec, ExplicitCamera, FramingCamera, Projection, View,
+};
 
 /// Radians that a drag across the height of the picture turns.
 const TURN: f64 = 3.0;
@@ -113,10 +115,11 @@ pub fn standard(view: usize, projection: Projection) -> CameraSpec {
     })
 }
 
-/// A camera that frames the model, whose corners are given, from where a scene's camera looks.
+/// A camera that frames what is drawn, of which points are given, from where a scene's camera looks.
 pub fn frame_all(
     scene: &CameraSpec,
     camera: &Camera,
+    points: &[DVec3],
     corners: &[DVec3; 8],
     aspect: f64,
 ) -> CameraSpec {
@@ -127,13 +130,17 @@ pub fn frame_all(
             zoom: 1.0,
             ..framing.clone()
         }),
+        CameraSpec::Automatic(automatic) => CameraSpec::Automatic(AutomaticCamera {
+            zoom: 1.0,
+            ..automatic.clone()
+        }),
         CameraSpec::Explicit(_) if is_level => CameraSpec::Framing(FramingCamera {
             azimuth_degrees: (-x).atan2(-y).to_degrees().rem_euclid(360.0),
             elevation_degrees: (-z).clamp(-1.0, 1.0).asin().to_degrees(),
             zoom: 1.0,
             projection: camera.projection(),
         }),
-        CameraSpec::Explicit(_) => spec(&camera.framed(corners, aspect), corners),
+        CameraSpec::Explicit(_) => spec(&camera.framed(points, aspect), corners),
     }
 }
 
@@ -145,6 +152,10 @@ pub fn switched(scene: &CameraSpec, camera: &Camera, corners: &[DVec3; 8]) -> Ca
         CameraSpec::Framing(framing) => CameraSpec::Framing(FramingCamera {
             projection: other,
             ..framing.clone()
+        }),
+        CameraSpec::Automatic(automatic) => CameraSpec::Automatic(AutomaticCamera {
+            projection: other,
+            ..automatic.clone()
         }),
         CameraSpec::Explicit(_) => spec(&camera.with(other, middle(corners)), corners),
     }
@@ -164,6 +175,7 @@ mod tests {
         let mut view = crate::picture::test_view([300, 200], 1.0);
         view.spaces = crate::model::Spaces::new(None, 2.0);
         view.box_corners = view.corners_of(BOUNDS);
+        view.subject = crate::scene::Subject::of_box(view.box_corners).into();
         view.seen_from(spec, [300, 200]).unwrap()
     }
 
@@ -204,6 +216,7 @@ mod tests {
                 let all = seen(&frame_all(
                     &spec(&near, &view.box_corners),
                     &near,
+                    &view.subject.points,
                     &view.box_corners,
                     1.5,
                 ));

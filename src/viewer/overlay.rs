@@ -1,18 +1,16 @@
-//! What the viewport draws over the picture: title, legend, box, what is for orientation.
+//! What the viewport draws over the volume: connections, box, what is for orientation.
 
-use eframe::egui::{self, Align2, Color32, FontId, Painter, Pos2, Rect, Stroke, pos2, vec2};
+use eframe::egui::{self, Align2, Color32, FontId, Painter, Pos2, Rect, Stroke, vec2};
 use glam::DVec2;
 
-use super::studio::DIFFERENCE_SCALE;
 use super::worker::Picture;
-use crate::metrics::Comparison;
-use crate::picture::{Annotations, Arrow, CONNECTION, Orientation, Paper, legend_marks, on_screen};
+use crate::picture::{Annotations, Arrow, CONNECTION, Orientation, Paper, Text, on_screen};
 use crate::scene::View;
-use crate::transfer::Scale;
 
-const TEXT: f32 = 13.0;
+/// Height of letters in and beside pictures, in points.
+pub const TEXT: f32 = 13.0;
 
-/// Draws everything that the scene asks for over a picture, as it is seen from a view.
+/// Draws everything that the scene asks for over the volume, as it is seen from a view.
 pub fn draw(
     painter: &Painter,
     rect: Rect,
@@ -30,27 +28,12 @@ pub fn draw(
     }
     if annotations.show_box {
         model_box(painter, rect, picture, view, ink);
-    }
-    let mut taken = Vec::new();
-    if annotations.show_legend {
-        let title = format!("{}{}", annotations.title, annotations.when);
-        taken.push(write(
-            painter,
-            rect.left_top() + vec2(12.0, 10.0),
-            Align2::LEFT_TOP,
-            &title,
-            ink,
-            15.0,
-        ));
-        taken.push(legend(painter, rect, view, annotations, ink));
-    }
-    if annotations.show_box {
-        orientation(painter, rect, view, annotations, ink, &taken);
+        orientation(painter, rect, view, annotations, ink);
     }
 }
 
 /// A color that stands out from the background.
-fn ink(view: &View) -> Color32 {
+pub fn ink(view: &View) -> Color32 {
     let [r, g, b] = view.background;
     match 0.2126 * r + 0.7152 * g + 0.0722 * b < 0.45 {
         true => Color32::from_gray(235),
@@ -58,11 +41,24 @@ fn ink(view: &View) -> Color32 {
     }
 }
 
-fn write(painter: &Painter, at: Pos2, align: Align2, text: &str, ink: Color32, size: f32) -> Rect {
-    painter.text(at, align, text, FontId::proportional(size), ink)
+/// Writes a text that was laid out for a rectangle.
+pub fn write(painter: &Painter, rect: Rect, text: &Text, ink: Color32) {
+    let (at, font) = (
+        place(rect, text.middle),
+        FontId::proportional(text.height as f32),
+    );
+    painter.text(at, Align2::CENTER_CENTER, &text.text, font, ink);
 }
 
-fn place(rect: Rect, at: DVec2) -> Pos2 {
+/// Width of a text in points.
+pub fn width(painter: &Painter, text: &str) -> f64 {
+    let font = FontId::proportional(TEXT);
+    let galley = painter.layout_no_wrap(text.to_owned(), font, Color32::WHITE);
+    f64::from(galley.size().x)
+}
+
+/// Where in the window a place of a rectangle is.
+pub fn place(rect: Rect, at: DVec2) -> Pos2 {
     rect.left_top() + vec2(at.x as f32, at.y as f32)
 }
 
@@ -83,39 +79,28 @@ fn model_box(painter: &Painter, rect: Rect, picture: &Picture, view: &View, ink:
     }
 }
 
-fn size(rect: Rect) -> DVec2 {
+/// Width and height of a rectangle.
+pub fn size(rect: Rect) -> DVec2 {
     DVec2::new(f64::from(rect.width()), f64::from(rect.height()))
 }
 
-/// Coordinates, scale bar, directions and exaggeration, where nothing else is.
+/// Coordinates, scale bar and directions.
 fn orientation(
     painter: &Painter,
     rect: Rect,
     view: &View,
     annotations: &Annotations,
     ink: Color32,
-    taken: &[Rect],
 ) {
-    let width = |text: &str| {
-        let font = FontId::proportional(TEXT);
-        let galley = painter.layout_no_wrap(text.to_owned(), font, ink);
-        f64::from(galley.size().x)
-    };
-    let area = |taken: &Rect| {
-        [taken.min, taken.max].map(|p| {
-            let at = p - rect.min;
-            DVec2::new(f64::from(at.x), f64::from(at.y))
-        })
-    };
     let made = Orientation::of(
         view,
         &annotations.length_unit,
         Paper {
             size: size(rect),
             unit: f64::from(TEXT),
-            width: &width,
+            width: &|text| width(painter, text),
             is_dark: ink.r() > 128,
-            taken: taken.iter().map(area).collect(),
+            taken: Vec::new(),
         },
     );
     for line in &made.strokes {
@@ -126,9 +111,7 @@ fn orientation(
         arrow(painter, rect, one);
     }
     for text in &made.texts {
-        let at = place(rect, text.middle);
-        let height = text.height as f32;
-        write(painter, at, Align2::CENTER_CENTER, &text.text, ink, height);
+        write(painter, rect, text, ink);
     }
 }
 
@@ -148,55 +131,6 @@ fn arrow(painter: &Painter, rect: Rect, arrow: &Arrow) {
     let side = along.normalized().rot90() * 0.5 * head;
     let corners = vec![tip, neck + side, neck - side];
     painter.add(egui::Shape::convex_polygon(corners, color, Stroke::NONE));
-}
-
-/// Draws the legend and says what it covers.
-fn legend(
-    painter: &Painter,
-    rect: Rect,
-    view: &View,
-    annotations: &Annotations,
-    ink: Color32,
-) -> Rect {
-    let transfer = &view.transfer;
-    let wanted = (0.5 * rect.height()).min(260.0);
-    let height = match &transfer.scale {
-        Scale::Categories(values) => wanted.min(20.0 * values.len().max(1) as f32),
-        _ => wanted,
-    };
-    let top = rect.center().y - 0.5 * height;
-    let right = rect.right() - 64.0;
-    let bar = Rect::from_min_size(pos2(right - 18.0, top), vec2(18.0, height));
-    color_bar(painter, bar, |position| transfer.srgb(position));
-    let boxes = match &transfer.scale {
-        Scale::Categories(values) => values.len().max(1),
-        _ => 1,
-    };
-    for n in 0..boxes {
-        let part = |n: usize| n as f32 / boxes as f32;
-        let corners = [vec2(0.0, part(n)), vec2(1.0, part(n + 1))].map(|c| bar.lerp_inside(c));
-        let outline = Rect::from_two_pos(corners[0], corners[1]);
-        painter.rect_stroke(
-            outline,
-            0.0,
-            Stroke::new(1.0, ink),
-            egui::StrokeKind::Outside,
-        );
-    }
-    let mut covered = bar.expand(4.0);
-    for (position, label) in legend_marks(transfer, 6, (height / (1.2 * TEXT)) as usize) {
-        let y = bar.bottom() - position as f32 * height;
-        let ends = [pos2(bar.right(), y), pos2(bar.right() + 4.0, y)];
-        painter.line_segment(ends, Stroke::new(1.0, ink));
-        let at = pos2(bar.right() + 7.0, y);
-        covered |= write(painter, at, Align2::LEFT_CENTER, &label, ink, TEXT);
-    }
-    let heading = match annotations.unit.is_empty() {
-        true => annotations.property.clone(),
-        false => format!("{}\n{}", annotations.property, annotations.unit),
-    };
-    let at = pos2(bar.center().x, top - 8.0);
-    covered | write(painter, at, Align2::CENTER_BOTTOM, &heading, ink, TEXT)
 }
 
 /// Fills `bar` with the colors of positions from 0 to 1, from the lower end of its longer side to the
@@ -228,25 +162,4 @@ pub fn tip(ui: &egui::Ui, at: Pos2, text: &str) {
     let place = Rect::from_min_size(at, text.size()).expand(5.0);
     painter.rect_filled(place, 3.0, visuals.window_fill());
     painter.galley(at, text, visuals.strong_text_color());
-}
-
-/// What a picture that is compared has of its own, below its title.
-pub fn own(painter: &Painter, rect: Rect, view: &View, text: &str) {
-    let at = rect.left_top() + vec2(12.0, 30.0);
-    write(painter, at, Align2::LEFT_TOP, text, ink(view), 15.0);
-}
-
-/// The legend of a picture of which only the left part is seen.
-pub fn legend_of_part(painter: &Painter, rect: Rect, view: &View, annotations: &Annotations) {
-    legend(painter, rect, view, annotations, ink(view));
-}
-
-/// What a map of differences means.
-pub fn difference(painter: &Painter, rect: Rect, figures: &Comparison) {
-    let text = format!(
-        "CIEDE2000: mean {:.2}, 99 % below {:.2}; brightest at {DIFFERENCE_SCALE} or more",
-        figures.ciede2000_mean, figures.ciede2000_p99
-    );
-    let at = rect.left_top() + vec2(12.0, 10.0);
-    write(painter, at, Align2::LEFT_TOP, &text, Color32::WHITE, 15.0);
 }

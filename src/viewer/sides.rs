@@ -6,23 +6,24 @@ use eframe::egui::{self, Context, Rect, Sense, Ui, UiBuilder, pos2, vec2};
 use glam::DVec2;
 
 use super::action::Action;
+use super::pages::{self, Page};
 use super::panels::{self, About, Panel};
 use super::state::{Comparison, Layout};
 use super::viewport::{self, Touched, Viewport};
 use super::welcome::{self, Asked};
 use super::window::Window;
-use super::worker::{Picture, Wanted, Why};
+use super::worker::{Wanted, Why};
 use super::{handles, keys::Command, marks, overlay};
 use crate::case::Case;
 use crate::picking::Hit;
-use crate::picture::Annotations;
-use crate::scene::{CameraSpec, Scene};
+use crate::picture::{self, Annotations};
+use crate::scene::{CameraSpec, Scene, Show, View};
 
 /// Where the pictures are, and what the pointer is on.
 #[derive(Default)]
 pub struct Sides {
     viewports: [Viewport; 2],
-    /// Where each picture is, in points.
+    /// Where the volume of each picture is, in points.
     rects: [Option<Rect>; 2],
     /// What the pointer rests on.
     pub hover: Option<Hit>,
@@ -34,13 +35,11 @@ pub struct Sides {
 const WIDTH_OF_PANELS: f32 = 700.0;
 /// Seconds that the pointer rests before what is under it is looked for.
 const REST: f64 = 0.35;
-/// Points of a part of a picture that has room for a legend.
-const NARROWEST_LEGEND: f32 = 160.0;
 /// Points on both sides of a wipe's line within which it is taken.
 const GRIP: f32 = 5.0;
 
 impl Sides {
-    /// Pixels of each picture.
+    /// Pixels of the volume of each picture.
     pub fn sizes(&self, pixels_per_point: f32) -> [Option<[u32; 2]>; 2] {
         let pixels = |rect: Rect| viewport::pixels(rect, pixels_per_point, 1.0);
         self.rects.map(|r| r.map(pixels))
@@ -113,6 +112,10 @@ impl Window {
         if other.is_none() {
             rects = [Some(place), None];
         }
+        let cases = [Some(case.clone()), other.as_ref().map(|o| o.0.clone())];
+        let pages = self.pages(ui, rects, &cases, &setup.scene.show);
+        self.beside(ui, &pages, &cases, layout);
+        let rects = pages.map(|p| p.as_ref().map(Page::volume));
         self.sides.rects = rects;
         let mut touched = self.viewport(ui, case, &setup.scene, rects[0], 0);
         let mut on_other = None;
@@ -138,7 +141,6 @@ impl Window {
                 }
                 _ => self.difference_map(ui, rect),
             }
-            self.name_both(ui, rects, [case, &other], layout);
             if self.pictures.are_final() {
                 self.pictures.compare();
             }
@@ -248,36 +250,59 @@ impl Window {
         ))
     }
 
-    /// Writes what each picture has of its own, where both are seen.
-    fn name_both(
+    /// The parts of each picture, from what was shown last; pictures beside each other have the same.
+    fn pages(
         &self,
         ui: &Ui,
-        rects: [Option<Rect>; 2],
-        cases: [&Arc<Case>; 2],
+        places: [Option<Rect>; 2],
+        cases: &[Option<Arc<Case>>; 2],
+        show: &Show,
+    ) -> [Option<Page>; 2] {
+        let shown = self.shown_views(cases);
+        pages::laid_out(ui.painter(), places, &shown, show)
+    }
+
+    /// The view and case of each picture that is shown.
+    fn shown_views(&self, cases: &[Option<Arc<Case>>; 2]) -> [Option<(Arc<View>, Arc<Case>)>; 2] {
+        [0, 1].map(|n| {
+            let case = cases[n].as_ref()?;
+            let shown = self.pictures.shown(n, case)?;
+            Some((shown.picture.view.clone(), case.clone()))
+        })
+    }
+
+    /// Draws what stands beside the volume of each picture.
+    fn beside(
+        &self,
+        ui: &Ui,
+        pages: &[Option<Page>; 2],
+        cases: &[Option<Arc<Case>>; 2],
         layout: Option<Layout>,
     ) {
-        let shown = [0, 1].map(|n| self.pictures.shown(n, cases[n]));
-        let [Some(first), Some(second)] = shown.map(|s| s.map(|s| &s.picture)) else {
-            return;
+        let shown = self.shown_views(cases);
+        let own = match &shown {
+            [Some(first), Some(second)] => differing([first, second]),
+            _ => Default::default(),
         };
-        let texts = differing([first, second]);
-        for (n, picture) in [first, second].into_iter().enumerate() {
-            let Some(mut rect) = rects[n] else { continue };
-            match (layout, n) {
-                (Some(Layout::Difference), _) => continue,
-                (Some(Layout::Wipe(at)), 1) => rect.min.x += at as f32 * rect.width(),
-                (Some(Layout::Wipe(at)), _) if first.view.property != second.view.property => {
-                    // The second picture lies over the first one's legend.
-                    let part = rect.with_max_x(rect.left() + at as f32 * rect.width());
-                    let annotations = Annotations::of(cases[0], &first.view);
-                    if annotations.show_legend && part.width() > NARROWEST_LEGEND {
-                        let painter = ui.painter_at(part);
-                        overlay::legend_of_part(&painter, part, &first.view, &annotations);
-                    }
-                }
-                _ => {}
+        let figures = match layout {
+            Some(Layout::Difference) => self.pictures.difference(),
+            _ => None,
+        };
+        let figures = figures.map(|d| pages::figures(&d.difference.figures));
+        let is_shared = matches!(layout, Some(Layout::Wipe(_)));
+        if is_shared && let ([Some(page), _], [Some(first), Some(second)]) = (pages, &shown) {
+            pages::draw_shared(ui.painter(), page, [first, second], &own);
+            return;
+        }
+        for (n, page) in pages.iter().enumerate() {
+            if let (Some(page), Some(shown)) = (page, &shown[n]) {
+                let title = figures.as_deref();
+                pages::draw(ui.painter(), page, shown, title, &own[n]);
             }
-            overlay::own(&ui.painter_at(rect), rect, &picture.view, &texts[n]);
+            // Both have the same place.
+            if layout == Some(Layout::Difference) {
+                break;
+            }
         }
     }
 
@@ -289,7 +314,6 @@ impl Window {
         let painter = ui.painter_at(rect);
         let uv = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
         painter.image(shown.texture.id(), rect, uv, egui::Color32::WHITE);
-        overlay::difference(&painter, rect, &shown.difference.figures);
     }
 
     /// Asks for the cell that was clicked, in the first picture or the second one.
@@ -365,15 +389,12 @@ impl Window {
 }
 
 /// What two pictures have each of its own: case, property, step, strategy.
-fn differing(pictures: [&Picture; 2]) -> [String; 2] {
-    let facts = pictures.map(|picture| {
-        let (view, case) = (&picture.view, &picture.wanted.case);
-        let when = case.steps.get(view.step);
-        let when = when.filter(|_| case.is_dynamic(&view.property));
+fn differing(shown: [&(Arc<View>, Arc<Case>); 2]) -> [String; 2] {
+    let facts = shown.map(|(view, case)| {
         [
             case.about.name.clone(),
             view.property.clone(),
-            when.map_or_else(String::new, |s| format!("step {}   {}", view.step, s.date)),
+            picture::when(case, view),
             view.strategy.name().to_uppercase(),
         ]
     });

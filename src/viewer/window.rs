@@ -105,6 +105,10 @@ impl Window {
     /// Makes a change of the document in front. A property that was never shown comes once it is known how
     /// it looks.
     pub fn apply(&mut self, action: Action) {
+        let held = match action {
+            Action::Filter(_) => self.held_camera(),
+            _ => None,
+        };
         let Some(document) = self.documents.get_mut(self.current) else {
             return;
         };
@@ -113,6 +117,7 @@ impl Window {
                 self.reader.look(case.clone(), property.clone());
                 self.awaited = Some(property.clone());
             }
+            (Action::Filter(_), _) => document.apply_filter(action, held),
             _ => document.apply(action),
         }
         // What was told of an earlier change is of no interest any more.

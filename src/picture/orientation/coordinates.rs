@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3};
 
 use super::edges::{self, Edge};
-use super::{Area, Layout, overlap};
+use super::{Area, Arrangement, overlap};
 use crate::picture::ticks::plain_labels;
 use crate::scene::View;
 use crate::scene::camera::middle;
@@ -28,7 +28,8 @@ impl Coordinate {
     /// What the edges along each axis of the grid are labeled by: of the two horizontal ones the one that
     /// goes east more than the other by the easting.
     fn along_axes(view: &View) -> [Self; 3] {
-        let way = |axis: usize| view.box_corners[1 << axis] - view.box_corners[0];
+        let corners = &view.subject.outline;
+        let way = |axis: usize| corners[1 << axis] - corners[0];
         let [a, b] = [way(0), way(1)];
         match (a.x * b.y).abs() >= (a.y * b.x).abs() {
             true => [Self::Easting, Self::Northing, Self::Depth],
@@ -65,7 +66,7 @@ struct Scale {
 
 /// Adds ticks, labels and names along one edge in each direction: the lowest horizontal ones and the
 /// leftmost vertical one that have room.
-pub fn add(layout: &mut Layout<'_>, view: &View, length_unit: &str) {
+pub fn add(layout: &mut Arrangement<'_>, view: &View, length_unit: &str) {
     let coordinates = Coordinate::along_axes(view);
     let outline: Vec<Edge> = edges::far(view)
         .into_iter()
@@ -92,14 +93,19 @@ pub fn add(layout: &mut Layout<'_>, view: &View, length_unit: &str) {
 }
 
 impl Scale {
-    fn new(layout: &Layout<'_>, view: &View, coordinate: Coordinate, edge: &Edge) -> Option<Self> {
+    fn new(
+        layout: &Arrangement<'_>,
+        view: &View,
+        coordinate: Coordinate,
+        edge: &Edge,
+    ) -> Option<Self> {
         let aspect = view.aspect();
-        let ends = edge.corners.map(|c| view.box_corners[c]);
+        let ends = edge.corners.map(|c| view.subject.outline[c]);
         let ends = edges::visible(&view.camera, ends, aspect)?;
         let seen = |p: DVec3| Some(view.camera.project(p, aspect)? * layout.paper.size);
         let [a, b] = [seen(ends[0])?, seen(ends[1])?];
         let along = (b - a).try_normalize()?;
-        let inside = seen(middle(&view.box_corners))? - a;
+        let inside = seen(middle(&view.subject.outline))? - a;
         let outward = along.perp() * -along.perp().dot(inside).signum();
         let is_long = a.distance(b) >= SHORTEST * layout.paper.unit;
         (is_long && outward.is_finite()).then_some(Self {
@@ -112,7 +118,13 @@ impl Scale {
 
     /// As many labels as have room, and the name; false where too few have. Labels that would be cut at the
     /// picture's rim are moved into it where one `moves` them.
-    fn add(&self, layout: &mut Layout<'_>, view: &View, length_unit: &str, moves: bool) -> bool {
+    fn add(
+        &self,
+        layout: &mut Arrangement<'_>,
+        view: &View,
+        length_unit: &str,
+        moves: bool,
+    ) -> bool {
         let range = self.ends.map(|p| self.coordinate.of(view, p));
         for wanted in (LABELS[1]..2 * LABELS[0]).rev() {
             let labels = self.labels(layout, view, range, wanted);
@@ -135,7 +147,7 @@ impl Scale {
     /// Labels at round values, about `wanted` of them, wherever they may lie.
     fn labels(
         &self,
-        layout: &Layout<'_>,
+        layout: &Arrangement<'_>,
         view: &View,
         [a, b]: [f64; 2],
         wanted: usize,
@@ -159,7 +171,7 @@ impl Scale {
         values.filter_map(at).collect()
     }
 
-    fn write(&self, layout: &mut Layout<'_>, labels: &[Label], length_unit: &str) {
+    fn write(&self, layout: &mut Arrangement<'_>, labels: &[Label], length_unit: &str) {
         let unit = layout.paper.unit;
         let mut deepest: f64 = 0.0;
         for label in labels {

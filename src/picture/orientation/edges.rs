@@ -19,11 +19,12 @@ pub struct Edge {
 ///
 /// The depth of the volume is not known here, so an edge in front of it could only be drawn wrong.
 pub fn far(view: &View) -> Vec<Edge> {
-    let to_grid = |v: DVec3| view.spaces.grid_from_world.transform_vector3(v);
+    let corners = &view.subject.outline;
     let is_far = |axis: usize, corner: usize| {
-        let here = view.box_corners[corner];
-        let inward = to_grid(view.box_corners[corner ^ 1 << axis] - here)[axis];
-        to_grid(view.camera.to_viewer(here).0)[axis] * inward >= 0.0
+        let here = corners[corner];
+        let along = |axis: usize| corners[corner ^ 1 << axis] - here;
+        let side = along((axis + 1) % 3).cross(along((axis + 2) % 3));
+        view.camera.to_viewer(here).0.dot(side) * along(axis).dot(side) >= 0.0
     };
     let mut edges = Vec::new();
     for axis in 0..3usize {

@@ -70,11 +70,14 @@ const ROOM: [f64; 2] = [20.0, 30.0];
 impl Orientation {
     /// What a view needs, lengths being named by `length_unit`, which may be empty.
     pub fn of(view: &View, length_unit: &str, paper: Paper<'_>) -> Self {
-        let mut layout = Layout {
+        let mut layout = Arrangement {
             paper,
             made: Self::default(),
         };
-        layout.exaggeration(view.vertical_exaggeration);
+        // Else it stands among the facts below the picture.
+        if view.facts.is_none() {
+            layout.exaggeration(view.vertical_exaggeration);
+        }
         triad::add(&mut layout, &view.camera);
         let room = layout.paper.size.min_element() / layout.paper.unit;
         if room >= ROOM[0] {
@@ -88,7 +91,7 @@ impl Orientation {
 
     /// Edges of the far sides of the box, cut at the rim of a picture of this size; they lie behind the volume.
     pub fn box_edges(view: &View, size: DVec2) -> Vec<[DVec2; 2]> {
-        let ends = |edge: edges::Edge| edge.corners.map(|c| view.box_corners[c]);
+        let ends = |edge: edges::Edge| edge.corners.map(|c| view.subject.outline[c]);
         let lines = edges::far(view).into_iter();
         lines
             .filter_map(|edge| on_screen(view, ends(edge), size))
@@ -97,12 +100,12 @@ impl Orientation {
 }
 
 /// What has been laid out so far.
-struct Layout<'a> {
+struct Arrangement<'a> {
     paper: Paper<'a>,
     made: Orientation,
 }
 
-impl Layout<'_> {
+impl Arrangement<'_> {
     /// Half the width and height of a text of a height.
     fn half(&self, text: &str, height: f64) -> DVec2 {
         let width = (self.paper.width)(text) * height / self.paper.unit;
@@ -153,7 +156,7 @@ impl Layout<'_> {
     /// A round length at the distance of the box's middle, bottom right.
     fn scale_bar(&mut self, view: &View, length_unit: &str) {
         let Paper { size, unit, .. } = self.paper;
-        let depth = view.camera.depth(middle(&view.box_corners));
+        let depth = view.camera.depth(middle(&view.subject.outline));
         let height = 2.0 * view.camera.half_height(depth);
         let Some(length) = round_length(0.2 * size.x * height / size.y).filter(|_| depth > 0.0)
         else {

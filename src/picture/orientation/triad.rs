@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
-use super::{Arrow, Layout, Text};
+use super::{Arrangement, Arrow, Text};
 use crate::scene::Camera;
 
 /// A direction of the world.
@@ -36,17 +36,32 @@ const DIRECTIONS: [Direction; 3] = [
     },
 ];
 
-/// Length of an arrow of common size, in text heights.
+/// Length of an arrow of common size in text heights, and as a part of the smaller side at most.
 const LENGTH: f64 = 3.0;
+const LONGEST: f64 = 0.09;
+/// Part of the smaller side that all of it may take.
+const WIDEST: f64 = 0.45;
 
-/// Adds arrows and names, bottom left.
-pub fn add(layout: &mut Layout<'_>, camera: &Camera) {
+/// Adds arrows and names, bottom left, where there is room.
+pub fn add(layout: &mut Arrangement<'_>, camera: &Camera) {
     let unit = layout.paper.unit;
-    let reach = 1.65 * LENGTH * unit;
-    let center = DVec2::new(unit + reach, layout.paper.size.y - 2.2 * unit - reach);
+    let side = layout.paper.size.min_element();
+    let length = (LENGTH * unit).min(LONGEST * side);
+    // The longest arrow, and names about it.
+    let reach = 1.15 * length + 1.5 * unit;
+    if 2.0 * reach > WIDEST * side {
+        return;
+    }
+    // Above the vertical exaggeration where that is written.
+    let below = if layout.made.texts.is_empty() {
+        0.8
+    } else {
+        2.2
+    } * unit;
+    let center = DVec2::new(0.8 * unit + reach, layout.paper.size.y - below - reach);
     let mut arrows = DIRECTIONS.map(|d| {
         let seen = DVec2::new(d.axis.dot(camera.right), -d.axis.dot(camera.up));
-        let tip = center + d.size * LENGTH * unit * seen;
+        let tip = center + d.size * length * seen;
         (d.axis.dot(camera.forward), tip, d)
     });
     // Far ones first.
