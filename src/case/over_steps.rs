@@ -1,7 +1,7 @@
 //! What the values of a property are like over all steps: read once, then kept by name.
 
 use std::collections::HashMap;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use rayon::prelude::*;
 
@@ -86,12 +86,13 @@ impl Categories {
     }
 }
 
-/// What was found out, by property.
+/// What was found out, by property; and of faults.
 #[derive(Default)]
 pub struct OverSteps {
     ranges: Kept<Option<ValueRange>>,
     categories: Kept<Categories>,
     boundaries: Kept<Arc<[Boundary]>>,
+    throws: OnceLock<Arc<[Option<f64>]>>,
 }
 
 struct Kept<T>(Mutex<HashMap<String, T>>);
@@ -168,6 +169,22 @@ impl Case {
             }
             Ok(Arc::default())
         })
+    }
+
+    /// The largest throw of each named fault, whichever side lies deeper, in the grid's length unit; `None` of
+    /// one without a face between two active cells. Found at the first call.
+    pub fn largest_throws(&self) -> Arc<[Option<f64>]> {
+        let find = || {
+            let mut largest = vec![None; self.about.named_faults.len()];
+            for (fault, ijk, face) in self.fault_faces.faces(self.grid.dims().nk) {
+                let throw = self.grid.throw(ijk, face).map(f64::abs);
+                if let (Some(throw), Some(largest)) = (throw, largest.get_mut(fault)) {
+                    *largest = Some(largest.map_or(throw, |known: f64| known.max(throw)));
+                }
+            }
+            largest.into()
+        };
+        self.over_steps.throws.get_or_init(find).clone()
     }
 
     fn steps_of(&self, name: &str) -> std::ops::Range<usize> {

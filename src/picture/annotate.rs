@@ -34,11 +34,11 @@ impl Annotations {
         let step = case.steps.get(view.step);
         let shown = step.filter(|_| case.is_dynamic(&view.property));
         Self {
-            title: format!("{}   {}", case.about.name, view.property),
+            title: format!("{}   {}", case.about.name, case.title_of(&view.property)),
             when: shown.map_or_else(String::new, |step| {
                 format!("   step {}   {}", view.step, step.date)
             }),
-            property: view.property.clone(),
+            property: case.heading_of(&view.property),
             unit: case.unit(&view.property).to_owned(),
             length_unit: short_unit(&case.about.length_unit),
             show_legend: view.show_legend,
@@ -154,6 +154,7 @@ pub(super) mod tests {
             surfaces: crate::scene::Surfaces::default(),
             connections: std::sync::Arc::default(),
             named_faults: std::sync::Arc::default(),
+            chosen_faults: None,
             drawn: Vec::new().into(),
             clip: Vec::new(),
             ghosts: None,

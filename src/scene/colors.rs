@@ -22,6 +22,8 @@ pub(super) struct Asked<'a> {
     pub range: Option<[f64; 2]>,
     /// Mean edge of the cells in world space.
     pub mean_edge: f64,
+    /// Extent of the thinnest part that a filter leaves, in world space; `None` where it hides nothing.
+    pub thinnest: Option<f64>,
 }
 
 /// A transfer function, and the field in its scale.
@@ -53,7 +55,7 @@ pub(super) fn resolve(asked: &Asked<'_>, field: &Arc<CellField>) -> Result<Color
     };
     let transfer = TransferFunction {
         color,
-        opacity: opacity(asked, &scale, range)?,
+        opacity: opacity(asked, &scale, range, reference_length)?,
         range,
         bands,
         reference_length,
@@ -196,13 +198,23 @@ fn default_opacity(scale: &Scale) -> Curve<f64> {
     }
 }
 
-fn opacity(asked: &Asked<'_>, scale: &Scale, range: [f64; 2]) -> Result<Curve<f64>, SceneError> {
+fn opacity(
+    asked: &Asked<'_>,
+    scale: &Scale,
+    range: [f64; 2],
+    reference_length: f64,
+) -> Result<Curve<f64>, SceneError> {
+    let found = |points| match asked.thinnest {
+        Some(thinnest) => filtered_opacity(points, reference_length, thinnest),
+        None => points,
+    };
     let points: Curve<f64> = match &asked.scene.transfer.opacity {
-        None => default_opacity(scale),
+        None => found(default_opacity(scale)),
         Some(OpacitySpec::Points(points)) => points.iter().map(|p| (p[0], p[1])).collect(),
         Some(OpacitySpec::Found(_)) => {
-            let found = asked.case.boundaries(asked.property, scale)?;
-            boundaries::curve(&found, range).unwrap_or_else(|| default_opacity(scale))
+            let boundaries = asked.case.boundaries(asked.property, scale)?;
+            let curve = boundaries::curve(&boundaries, range);
+            found(curve.unwrap_or_else(|| default_opacity(scale)))
         }
     };
     match rises(&points) && points.iter().all(|p| (0.0..=1.0).contains(&p.1)) {
@@ -211,5 +223,42 @@ fn opacity(asked: &Asked<'_>, scale: &Scale, range: [f64; 2]) -> Result<Curve<f6
             "transfer.opacity",
             "needs rising positions and opacities, both from 0 to 1",
         )),
+    }
+}
+
+/// What a filter leaves of a model is at least this opaque, seen through its thinnest part.
+const FILTERED: f64 = 0.5;
+
+/// An opacity that was not chosen by hand, where a filter hides cells: at least 0.5 for every value over the
+/// thinnest part that is left, which is one cell of a filter by value and the kept rows, columns or layers of
+/// one by I, J or K. What passes a filter is what one wants to see.
+///
+/// **Units**: both lengths in world space; opacities refer to `reference_length`.
+fn filtered_opacity(curve: Curve<f64>, reference_length: f64, thinnest: f64) -> Curve<f64> {
+    let least = 1.0 - (1.0 - FILTERED).powf(reference_length / thinnest);
+    let raised = |(at, opacity): (f64, f64)| (at, opacity.max(least));
+    curve.into_iter().map(raised).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_passes_a_filter_is_solid() {
+        let faint = vec![(0.0, 0.0), (0.4, 0.9), (1.0, 0.01)];
+        let through = |curve: &Curve<f64>, n: usize, length: f64| {
+            1.0 - (1.0 - curve[n].1).powf(length / 40.0)
+        };
+        for thinnest in [2.0, 40.0, 900.0] {
+            let solid = filtered_opacity(faint.clone(), 40.0, thinnest);
+            for n in 0..3 {
+                assert!(through(&solid, n, thinnest) >= FILTERED - 1e-12);
+                assert!(solid[n].1 >= faint[n].1 && solid[n].0 == faint[n].0);
+            }
+        }
+        // A crop that leaves much changes next to nothing.
+        let crop = filtered_opacity(faint.clone(), 40.0, 1e5);
+        assert!((crop[2].1 - faint[2].1).abs() < 1e-12 && crop[0].1 < 1e-3);
     }
 }

@@ -9,8 +9,8 @@ use super::colors::{self, Asked, Colors, interpolation};
 use super::ghosts::{Ghosts, shown_grid};
 use super::lighting::{self, Lighting};
 use super::{
-    Camera, CameraSpec, ClipSpec, CutFace, Filter, Inactive, Interpolation, LibcSettings, Scene,
-    SrgSettings, StepSpec, Surfaces,
+    Camera, CameraSpec, ClipSpec, CutFace, Inactive, Interpolation, LibcSettings, Scene,
+    SrgSettings, StepSpec, Surfaces, filter, surfaces,
 };
 use crate::case::{Case, CaseError};
 use crate::gpu::volume::Shape;
@@ -102,6 +102,9 @@ pub struct View {
     pub connections: Arc<Vec<[DVec3; 2]>>,
     /// Which faces lie on faults that have a name.
     pub named_faults: Arc<FaultFaces>,
+    /// By number of the named faults: true where the fault is drawn, of which those without a name are none;
+    /// all faults where absent.
+    pub chosen_faults: Option<Arc<[bool]>>,
     /// Occlusion and lights.
     pub lighting: Lighting,
     /// Settings of the cell-to-cell strategy.
@@ -193,7 +196,7 @@ pub(super) fn resolve_over(
         Some(name) => name.clone(),
         None => default_property(case),
     };
-    let step = step(case, &scene.step, case.is_dynamic(&property))?;
+    let step = step_of(case, &scene.step, case.is_dynamic(&property))?;
     let field = case.field(&property, step)?;
     let asked = Asked {
         scene,
@@ -201,9 +204,10 @@ pub(super) fn resolve_over(
         property: &property,
         range,
         mean_edge: edges.element_sum() / 3.0,
+        thinnest: scene.filter.thinnest(case.grid.dims(), edges)?,
     };
     let Colors { field, transfer } = colors::resolve(&asked, &field)?;
-    let (field, drawn) = filtered(case, field, &scene.filter, step)?;
+    let (field, drawn) = filtered(case, field, scene)?;
     let connections = match scene.show.nnc {
         true => connections(case, &spaces, &drawn),
         false => Vec::new(),
@@ -249,6 +253,7 @@ pub(super) fn resolve_over(
         surfaces: Surfaces::from(&scene.show),
         connections: Arc::new(connections),
         named_faults: case.fault_faces.clone(),
+        chosen_faults: surfaces::chosen(&scene.show.faults, case)?,
         lighting: lighting::resolve(
             &scene.lighting,
             box_edges(&box_corners),
@@ -420,7 +425,8 @@ pub fn default_property(case: &Case) -> String {
         .map_or_else(|| "DEPTH".to_owned(), |n| (*n).to_owned())
 }
 
-fn step(case: &Case, spec: &StepSpec, dynamic: bool) -> Result<usize, SceneError> {
+/// The step that a scene names, of what changes with time; else 0.
+pub(super) fn step_of(case: &Case, spec: &StepSpec, dynamic: bool) -> Result<usize, SceneError> {
     if !dynamic {
         return Ok(0);
     }
@@ -430,61 +436,17 @@ fn step(case: &Case, spec: &StepSpec, dynamic: bool) -> Result<usize, SceneError
     })
 }
 
-fn drawn(
-    case: &Case,
-    field: &CellField,
-    filter: &Filter,
-    step: usize,
-) -> Result<Vec<bool>, SceneError> {
-    let grid = &case.grid;
-    let dims = grid.dims();
-    for (name, range, n) in [
-        ("filter.i", filter.i, dims.ni),
-        ("filter.j", filter.j, dims.nj),
-        ("filter.k", filter.k, dims.nk),
-    ] {
-        if range.is_some_and(|[a, b]| a < 1 || a > b || b > n) {
-            return Err(wrong(
-                name,
-                format!("must be two numbers from 1 to {n}, the smaller first"),
-            ));
-        }
-    }
-    let within = |range: Option<[usize; 2]>, at: usize| {
-        range.is_none_or(|[a, b]| (a..=b).contains(&(at + 1)))
-    };
-    let passes =
-        |ijk: Ijk| within(filter.i, ijk.i) && within(filter.j, ijk.j) && within(filter.k, ijk.k);
-    let mut drawn: Vec<bool> = grid
-        .active_cells()
-        .par_iter()
-        .zip(field.values())
-        .map(|(&cell, value)| {
-            let ijk = dims.ijk(cell);
-            !value.is_nan() && passes(ijk) && grid.has_thickness(ijk)
-        })
-        .collect();
-    for property in &filter.properties {
-        let values = case.field(&property.name, step)?;
-        for (d, &v) in drawn.iter_mut().zip(values.values()) {
-            *d &= (property.min..=property.max).contains(&f64::from(v));
-        }
-    }
-    Ok(drawn)
-}
-
 /// Which cells are drawn, and their values: averages at vertices are of drawn cells, so that no color of a cell
 /// shows that is filtered away.
 fn filtered(
     case: &Case,
     field: Arc<CellField>,
-    filter: &Filter,
-    step: usize,
+    scene: &Scene,
 ) -> Result<(Arc<CellField>, Vec<bool>), SceneError> {
-    let drawn = drawn(case, &field, filter, step)?;
-    let field = match *filter == Filter::default() {
-        true => field,
-        false => Arc::new(only(&field, &drawn)),
+    let drawn = filter::drawn(case, &field, &scene.filter, &scene.step)?;
+    let field = match scene.filter.limits() {
+        true => Arc::new(only(&field, &drawn)),
+        false => field,
     };
     Ok((field, drawn))
 }

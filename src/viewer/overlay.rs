@@ -241,6 +241,24 @@ pub fn legend_of_part(painter: &Painter, rect: Rect, view: &View, annotations: &
     legend(painter, rect, view, annotations, ink(view));
 }
 
+/// Why a picture that was asked for is not there, across its middle.
+pub fn refusal(painter: &Painter, rect: Rect, why: &str) {
+    let ink = Color32::from_gray(30);
+    let width = (rect.width() - 80.0).clamp(120.0, 560.0);
+    let text = painter.layout(why.to_owned(), FontId::proportional(16.0), ink, width);
+    let place = Align2::CENTER_CENTER.anchor_size(rect.center(), text.size());
+    let stroke = Stroke::new(1.0, Color32::from_gray(120));
+    let plate = Color32::from_gray(245);
+    painter.rect(
+        place.expand(12.0),
+        4.0,
+        plate,
+        stroke,
+        egui::StrokeKind::Outside,
+    );
+    painter.galley(place.min, text, ink);
+}
+
 /// What a map of differences means.
 pub fn difference(painter: &Painter, rect: Rect, figures: &Comparison) {
     let text = format!(

@@ -11,11 +11,12 @@ use super::state::{Comparison, Layout};
 use super::viewport::{self, Touched, Viewport};
 use super::welcome::{self, Asked};
 use super::window::Window;
-use super::worker::{Picture, Wanted, Why};
+use super::worker::{Wanted, Why};
 use super::{handles, keys::Command, marks, overlay};
 use crate::case::Case;
 use crate::picking::Hit;
 use crate::picture::Annotations;
+use crate::picture::compared::differing;
 use crate::scene::{CameraSpec, Scene};
 
 /// Where the pictures are, and what the pointer is on.
@@ -58,18 +59,21 @@ impl Window {
             }
             return;
         };
-        let Some(case) = document.case.clone() else {
+        if document.case.is_none() {
             let closes = welcome::waiting(ui, document);
             if closes {
                 self.close(self.current);
             }
             return;
+        }
+        let Some((case, scene)) = self.subject() else {
+            return;
         };
         let mut actions = Vec::new();
         if !self.settings.hides_panels && ui.available_width() >= WIDTH_OF_PANELS {
-            self.panels(ui, &case, &mut actions);
+            self.panels(ui, &case, &scene, &mut actions);
         }
-        let touched = self.pictures(ui, ctx, &case);
+        let touched = self.pictures(ui, ctx, &case, &scene);
         actions.extend(touched.camera.map(Action::Camera));
         actions.extend(touched.actions);
         for action in actions {
@@ -77,23 +81,25 @@ impl Window {
         }
     }
 
-    fn panels(&mut self, ui: &mut Ui, case: &Arc<Case>, actions: &mut Vec<Action>) {
+    fn panels(&self, ui: &mut Ui, case: &Arc<Case>, scene: &Scene, actions: &mut Vec<Action>) {
         let Some(document) = self.documents.get(self.current) else {
             return;
         };
         let others = self.documents.iter().filter(|d| d.path != document.path);
         let others: Vec<_> = others.map(|d| (d.path.clone(), d.title())).collect();
-        let setup = &document.state.setup;
-        let is_difference = setup.comparison.is_some();
+        let comparison = document.state.setup.comparison.as_ref();
+        let is_compared = comparison.is_some_and(|c| c.layout == Layout::ColorDifference);
         let about = About {
             case,
             state: &document.state,
-            scene: &setup.scene,
+            scene,
             picture: self.pictures.shown(0, case).map(|s| &s.picture),
-            difference: self.pictures.difference().filter(|_| is_difference),
+            difference: self.pictures.difference().filter(|_| is_compared),
+            refusal: self.difference_of_values().and_then(Result::err),
             hit: document.hit.as_ref(),
             table: document.table.as_ref(),
             curves: document.curves.as_ref(),
+            spreads: &document.spreads,
             others: &others,
         };
         let left = egui::Panel::left("left");
@@ -102,7 +108,13 @@ impl Window {
         side(ui, right, &panels::RIGHT, &about, actions);
     }
 
-    fn pictures(&mut self, ui: &mut Ui, ctx: &Context, case: &Arc<Case>) -> Touched {
+    fn pictures(
+        &mut self,
+        ui: &mut Ui,
+        ctx: &Context,
+        case: &Arc<Case>,
+        subject: &Scene,
+    ) -> Touched {
         let Some(document) = self.documents.get(self.current) else {
             return Touched::default();
         };
@@ -114,7 +126,7 @@ impl Window {
             rects = [Some(place), None];
         }
         self.sides.rects = rects;
-        let mut touched = self.viewport(ui, case, &setup.scene, rects[0], 0);
+        let mut touched = self.viewport(ui, case, subject, rects[0], 0);
         let mut on_other = None;
         if let (Some((other, scene)), Some(rect), Some(comparison)) =
             (other, rects[1], &setup.comparison)
@@ -139,22 +151,24 @@ impl Window {
                 _ => self.difference_map(ui, rect),
             }
             self.name_both(ui, rects, [case, &other], layout);
-            if self.pictures.are_final() {
+            if layout == Some(Layout::ColorDifference) && self.pictures.are_final() {
                 self.pictures.compare();
             }
+        }
+        if let (Some(Err(why)), Some(rect)) = (self.difference_of_values(), rects[0]) {
+            overlay::refusal(&ui.painter_at(rect), rect, &why);
         }
         if let Some(shown) = self.pictures.shown(0, case)
             && let Some(rect) = rects[0]
         {
             let view = shown.picture.view.clone();
-            let scene = &setup.scene;
-            self.mark(ui, &rects, case, setup.comparison.as_ref(), scene);
-            if let Some(planes) = handles::show(ui, rect, &view, scene) {
+            self.mark(ui, &rects, case, setup.comparison.as_ref(), subject);
+            if let Some(planes) = handles::show(ui, rect, &view, subject) {
                 touched.actions.push(Action::Clip(planes));
             }
         }
-        self.pick(ctx, case, &setup.scene, touched.pick, on_other);
-        self.hover(ui, ctx, case, &setup.scene);
+        self.pick(ctx, case, subject, touched.pick, on_other);
+        self.hover(ui, ctx, case, subject);
         touched
     }
 
@@ -260,11 +274,12 @@ impl Window {
         let [Some(first), Some(second)] = shown.map(|s| s.map(|s| &s.picture)) else {
             return;
         };
-        let texts = differing([first, second]);
+        let of = [first, second].map(|p| (&*p.wanted.case, &*p.view));
+        let texts = differing(of);
         for (n, picture) in [first, second].into_iter().enumerate() {
             let Some(mut rect) = rects[n] else { continue };
             match (layout, n) {
-                (Some(Layout::Difference), _) => continue,
+                (Some(Layout::ColorDifference), _) => continue,
                 (Some(Layout::Wipe(at)), 1) => rect.min.x += at as f32 * rect.width(),
                 (Some(Layout::Wipe(at)), _) if first.view.property != second.view.property => {
                     // The second picture lies over the first one's legend.
@@ -333,7 +348,7 @@ impl Window {
 
     /// Reads the fault that the pointer rests on.
     fn hover(&mut self, ui: &Ui, ctx: &Context, case: &Arc<Case>, scene: &Scene) {
-        let Some(rect) = self.sides.rects[0].filter(|_| scene.show.faults) else {
+        let Some(rect) = self.sides.rects[0].filter(|_| scene.show.faults.are_shown()) else {
             return;
         };
         let pointer = ctx.input(|i| i.pointer.hover_pos());
@@ -364,27 +379,6 @@ impl Window {
     }
 }
 
-/// What two pictures have each of its own: case, property, step, strategy.
-fn differing(pictures: [&Picture; 2]) -> [String; 2] {
-    let facts = pictures.map(|picture| {
-        let (view, case) = (&picture.view, &picture.wanted.case);
-        let when = case.steps.get(view.step);
-        let when = when.filter(|_| case.is_dynamic(&view.property));
-        [
-            case.about.name.clone(),
-            view.property.clone(),
-            when.map_or_else(String::new, |s| format!("step {}   {}", view.step, s.date)),
-            view.strategy.name().to_uppercase(),
-        ]
-    });
-    let differ = |n: &usize| facts[0][*n] != facts[1][*n];
-    let own = |facts: &[String; 4]| {
-        let own: Vec<_> = (0..4).filter(differ).map(|n| facts[n].as_str()).collect();
-        own.join("   ")
-    };
-    [own(&facts[0]), own(&facts[1])]
-}
-
 /// Places of both pictures, and how they are shown.
 fn layout(place: Rect, comparison: Option<&Comparison>) -> ([Option<Rect>; 2], Option<Layout>) {
     let layout = comparison.map(|c| c.layout);
@@ -398,7 +392,8 @@ fn layout(place: Rect, comparison: Option<&Comparison>) -> ([Option<Rect>; 2], O
             ]
             .map(Some)
         }
-        Some(Layout::Wipe(_) | Layout::Difference) => [Some(place), Some(place)],
+        Some(Layout::Difference) => [Some(place), None],
+        Some(Layout::Wipe(_) | Layout::ColorDifference) => [Some(place), Some(place)],
     };
     (rects, layout)
 }
