@@ -1,6 +1,7 @@
 //! A case: one grid, its properties and time steps. Values come through [`Source`], on demand.
 
 mod cache;
+mod difference;
 mod over_steps;
 mod weights;
 
@@ -11,6 +12,7 @@ pub use cache::FieldCache;
 use crate::model::derived::Derived;
 use crate::model::{CellField, FaultFaces, Grid, Ijk};
 
+pub use difference::{Difference, Minus, difference_name, minus, nearest};
 pub use over_steps::{Categories, MAX_CATEGORIES, OverSteps, ValueRange};
 pub use weights::{Extent, Weighting, Weights};
 
@@ -147,8 +149,8 @@ pub trait Source: Send + Sync {
 
 /// One grid, its properties and time steps.
 pub struct Case {
-    /// The grid.
-    pub grid: Grid,
+    /// The grid; differences to other cases share it.
+    pub grid: Arc<Grid>,
     /// What else the files say.
     pub about: About,
     /// Which faces lie on the faults of [`About::named_faults`], by their number there.
@@ -165,6 +167,8 @@ pub struct Case {
     pub cache: FieldCache,
     /// What was found out of properties over all steps.
     pub over_steps: OverSteps,
+    /// The property that is a difference to another case, of a case made by [`minus`].
+    pub minus: Option<Minus>,
 }
 
 impl Case {
@@ -192,7 +196,7 @@ impl Case {
 
     /// Values of a property at a step (ignored for static ones); those used last are kept.
     ///
-    /// `name` may be a difference to a base step, such as `PRESSURE-PRESSURE@0`.
+    /// `name` may be a difference: to a step as `PRESSURE-PRESSURE@0`, of two properties as `SWAT-SOIL@same`.
     ///
     /// # Errors
     /// When the property or step does not exist or its file cannot be read.
@@ -207,12 +211,8 @@ impl Case {
     }
 
     fn computed(&self, name: &str, step: usize) -> Result<CellField, CaseError> {
-        if let Some((now, base, base_step)) = difference(name) {
-            let base_step = self.step(base_step)?;
-            let now = self.field(now, step)?;
-            let base = self.field(base, base_step)?;
-            let pairs = now.values().iter().zip(base.values());
-            return Ok(CellField::new(pairs.map(|(a, b)| a - b).collect()));
+        if let Some(difference) = self.difference(name) {
+            return self.step_difference(difference, step);
         }
         let property = self.property(name)?;
         match property.kind {
@@ -226,14 +226,17 @@ impl Case {
 
     /// The unit of a property or of a difference of one.
     pub fn unit(&self, name: &str) -> &str {
-        let name = difference(name).map_or(name, |(now, ..)| now);
+        let name = self.difference(name).map_or(name, |d| d.now);
         self.property(name).map_or("", |p| &p.unit)
     }
 
     /// True where the values of `name` change with the step.
     pub fn is_dynamic(&self, name: &str) -> bool {
-        let name = difference(name).map_or(name, |(now, ..)| now);
-        self.property(name).is_ok_and(|p| p.steps > 0)
+        let is_dynamic = |name: &str| self.property(name).is_ok_and(|p| p.steps > 0);
+        match self.difference(name) {
+            Some(d) => is_dynamic(d.now) || is_dynamic(d.base),
+            None => is_dynamic(name),
+        }
     }
 
     /// The step that `text` names: `first`, `last`, a number from 0, or a date.
@@ -336,10 +339,3 @@ pub const SOIL: &str = "SOIL";
 pub const CONNECTIONS: &str = "NNC";
 /// Porosity times net-to-gross times thickness.
 pub const POROSITY_THICKNESS: &str = "PORO_THICKNESS";
-
-/// Splits `NAME-NAME@STEP`; the base is what stands behind the last dash.
-pub fn difference(name: &str) -> Option<(&str, &str, &str)> {
-    let (names, base_step) = name.rsplit_once('@')?;
-    let (now, base) = names.rsplit_once('-')?;
-    Some((now, base, base_step))
-}

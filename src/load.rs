@@ -87,7 +87,7 @@ pub fn open_with(path: &Path, progress: &dyn Fn(&str) -> bool) -> Result<Option<
     let properties = properties::of(&source, !connections.is_empty(), &mut about);
     about.notes.extend(warnings.iter().map(ToString::to_string));
     Ok(Some(Case {
-        grid,
+        grid: Arc::new(grid),
         about,
         fault_faces: Arc::new(fault_faces),
         connections,
@@ -96,6 +96,7 @@ pub fn open_with(path: &Path, progress: &dyn Fn(&str) -> bool) -> Result<Option<
         source: Box::new(source),
         cache: FieldCache::default(),
         over_steps: OverSteps::default(),
+        minus: None,
     }))
 }
 

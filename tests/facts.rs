@@ -5,9 +5,9 @@ mod common;
 
 use common::shape::Shape;
 use strataray::case::Case;
+use strataray::case::Weighting;
 use strataray::load;
 use strataray::picture::{Annotations, Shot};
-use strataray::case::Weighting;
 use strataray::scene::{self, ClipSpec, CutFace, Facts, Filter, PropertyFilter, Scene};
 use strataray_parsers::records::RecordFile;
 
@@ -97,12 +97,12 @@ fn numbers_are_those_of_what_is_drawn() {
     let raw = Raw::new();
     let mut scene = oil();
     let filtered = Filter {
-        i: Some([5, 22]),
-        k: Some([2, 6]),
+        i: Some([5, 22].into()),
+        k: Some([2, 6].into()),
         properties: vec![PropertyFilter {
-            name: "SOIL".into(),
-            min: 0.35,
-            max: 1.0,
+            min: Some(0.35),
+            max: Some(1.0),
+            ..PropertyFilter::open("SOIL")
         }],
         ..Filter::default()
     };
@@ -113,9 +113,8 @@ fn numbers_are_those_of_what_is_drawn() {
         (3, filtered),
     ] {
         let keeps = |[i, _, k]: [usize; 3], oil: f64| {
-            filter.i.is_none_or(|[a, b]| (a..=b).contains(&i))
-                && filter.k.is_none_or(|[a, b]| (a..=b).contains(&k))
-                && (filter.properties.is_empty() || oil >= 0.35)
+            filter.properties.is_empty()
+                || (5..=22).contains(&i) && (2..=6).contains(&k) && oil >= 0.35
         };
         let (count, expected) = raw.oil(step, keeps);
         scene.step = scene::StepSpec::Index(step);
@@ -201,7 +200,7 @@ fn without_pore_volumes_porosity_times_volume_counts_and_else_the_volume() {
     assert!(line(&scene, &bulk).contains("volume-weighted mean 2.333"));
     let porous = layers("PORO\n 4*0.3 4*0.1 4*0.2 /\n");
     let (value, weights) = mean(&porous);
-    assert_eq!(weights, Weighting::PoreVolume);
+    assert_eq!(weights, Weighting::PorosityVolume);
     let expected = (3.0 + 2.0 * 2.0 + 3.0 * 6.0) / (3.0 + 2.0 + 6.0);
     assert!((value - expected).abs() < 1e-5, "{value}");
     let text = line(&scene, &porous);
@@ -218,7 +217,7 @@ fn a_constant_and_regions_are_said_to_be_so() {
         let scene = Scene {
             property: Some(property.into()),
             filter: Filter {
-                k,
+                k: k.map(Into::into),
                 ..Filter::default()
             },
             ..Scene::default()

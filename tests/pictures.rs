@@ -139,7 +139,7 @@ fn filters_and_cancel_work() {
     let case = load::open(&common::sample()).unwrap();
     let mut renderer = Renderer::new(gpu, &case.grid).unwrap();
     let mut scene = scene(205.0, 35.0, Interpolation::Cell);
-    scene.filter.k = Some([2, 3]);
+    scene.filter.k = Some([2, 3].into());
     let view = scene::resolve(&scene, &case).unwrap();
     let truth = reference::render(&case.grid, &view, &|_| true).unwrap();
     let image = on_gpu(&mut renderer, &case, &view, StrategyKind::Plts);

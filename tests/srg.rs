@@ -311,7 +311,7 @@ fn the_volume_is_filled_anew_when_it_must_and_only_then() {
         &|scene| scene.step = scene::StepSpec::Index(3),
         &|scene| scene.property = Some("PORO".into()),
         &|scene| scene.interpolation = Interpolation::Cell,
-        &|scene| scene.filter.k = Some([2, 5]),
+        &|scene| scene.filter.k = Some([2, 5].into()),
         &|scene| scene.srg.factor = Some(1.5),
         &|scene| scene.srg.thin = 0.01,
     ];
@@ -687,7 +687,7 @@ fn undefined_values_and_hidden_cells_leave_holes() {
     let view = scene::resolve(&scene, &case).unwrap();
     let truth = reference::render(&case.grid, &view, &|_| true).unwrap();
     let db = psnr(&render(&mut renderer, &case, &view).image, &truth, &view);
-    scene.filter.i = Some([1, 2]);
+    scene.filter.i = Some([1, 2].into());
     let half = scene::resolve(&scene, &case).unwrap();
     let twin = psnr(&render(&mut renderer, &case, &half).image, &truth, &view);
     println!("{db:.1} dB, {twin:.1} dB where half of the cells are hidden");

@@ -149,7 +149,7 @@ const LOOKS: [Look; 8] = [
         camera: [205.0, -35.0, 1.2],
         interpolation: Interpolation::Cell,
         cut: None,
-        change: |scene| scene.filter.k = Some([2, 5]),
+        change: |scene| scene.filter.k = Some([2, 5].into()),
     },
     Look {
         name: "faults",

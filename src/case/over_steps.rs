@@ -88,7 +88,7 @@ impl Categories {
     }
 }
 
-/// What was found out, by property.
+/// What was found out, by property; and of faults.
 #[derive(Default)]
 pub struct OverSteps {
     ranges: Kept<Option<ValueRange>>,
@@ -97,6 +97,7 @@ pub struct OverSteps {
     opacities: Kept<Option<Opacity>>,
     weights: OnceLock<Weights>,
     extents: OnceLock<Arc<Vec<Extent>>>,
+    throws: OnceLock<Arc<[Option<f64>]>>,
 }
 
 impl OverSteps {
@@ -203,6 +204,22 @@ impl Case {
             let field = scale.field(&field, f64::NAN);
             Ok(boundaries::find(&derivatives::samples(&self.grid, &field)).into())
         })
+    }
+
+    /// The largest throw of each named fault, whichever side lies deeper, in the grid's length unit; `None` of
+    /// one without a face between two active cells. Found at the first call.
+    pub fn largest_throws(&self) -> Arc<[Option<f64>]> {
+        let find = || {
+            let mut largest = vec![None; self.about.named_faults.len()];
+            for (fault, ijk, face) in self.fault_faces.faces(self.grid.dims().nk) {
+                let throw = self.grid.throw(ijk, face).map(f64::abs);
+                if let (Some(throw), Some(largest)) = (throw, largest.get_mut(fault)) {
+                    *largest = Some(largest.map_or(throw, |known: f64| known.max(throw)));
+                }
+            }
+            largest.into()
+        };
+        self.over_steps.throws.get_or_init(find).clone()
     }
 
     fn steps_of(&self, name: &str) -> std::ops::Range<usize> {

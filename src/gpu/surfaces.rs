@@ -5,6 +5,7 @@
 //! [`layout::SHEET_LAYERS`] sheets; farther ones are left out.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use super::device::{Gpu, GpuError};
 use super::faces::{self, FORMAT, FaceList, FaceTarget};
@@ -44,6 +45,8 @@ pub struct SurfacePainter {
 /// The surfaces that are shown.
 struct Shown {
     surfaces: Surfaces,
+    /// See [`View::chosen_faults`].
+    chosen: Option<Arc<[bool]>>,
     faces: FaceList,
     fault_faces: wgpu::Buffer,
     fault_colors: wgpu::Buffer,
@@ -98,7 +101,9 @@ impl SurfacePainter {
         }
         let is_known = |s: &Shown| {
             let kinds = |s: Surfaces| (s.hull, s.faults);
-            s.faces.drawn == grid.versions.drawn && kinds(s.surfaces) == kinds(view.surfaces)
+            s.faces.drawn == grid.versions.drawn
+                && kinds(s.surfaces) == kinds(view.surfaces)
+                && s.chosen == view.chosen_faults
         };
         let shown = match self.shown.take().filter(is_known) {
             Some(known) => known,
@@ -220,6 +225,7 @@ impl Shown {
         };
         Ok(Self {
             surfaces,
+            chosen: view.chosen_faults.clone(),
             faces,
             fault_faces: gpu.storage("fault faces", &numbers)?,
             fault_colors: gpu.storage("fault colors", &colors)?,

@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 use std::ops::RangeInclusive;
 
+use super::grid::Grid;
 use super::ids::Ijk;
 use super::topology::Face;
 
@@ -32,11 +33,40 @@ impl FaultFaces {
         }
     }
 
+    /// The number of the fault and the cell of lower index of each face, with the face as that cell has it;
+    /// layers beyond `layers` are left out. In no order.
+    pub fn faces(&self, layers: usize) -> impl Iterator<Item = (usize, Ijk, Face)> + '_ {
+        let columns = self.faces.iter();
+        columns.flat_map(move |((i, j, axis), all)| {
+            let face = if *axis == 0 { Face::IPlus } else { Face::JPlus };
+            let (i, j) = (*i, *j);
+            all.iter().flat_map(move |(range, fault)| {
+                let range = *range.start()..(range.end().saturating_add(1)).min(layers);
+                range.map(move |k| (*fault, Ijk { i, j, k }, face))
+            })
+        })
+    }
+
     /// Number of the fault that a face of a cell lies on.
     pub fn fault_of(&self, cell: Ijk, face: Face) -> Option<usize> {
         let layers = self.faces.get(&key(cell.i, cell.j, face)?)?;
         let found = layers.iter().find(|(k, _)| k.contains(&cell.k));
         found.map(|(_, fault)| *fault)
+    }
+}
+
+impl Grid {
+    /// How much deeper the same layer lies beyond a lateral face of a cell: the mean over the face's corners,
+    /// below 0 where it lies higher. `None` where one of the cells is not active.
+    pub fn throw(&self, ijk: Ijk, face: Face) -> Option<f64> {
+        let beyond = self.adjacent(ijk, face)?;
+        if !self.is_active(ijk) || !self.is_active(beyond) {
+            return None;
+        }
+        let [mine, theirs] = face.corners();
+        let pairs = mine.iter().zip(theirs);
+        let drops = pairs.map(|(&a, b)| self.corner_depth(beyond, b) - self.corner_depth(ijk, a));
+        Some(drops.sum::<f64>() / 4.0)
     }
 }
 

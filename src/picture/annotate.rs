@@ -6,6 +6,7 @@ use super::canvas::Canvas;
 use super::info::Info;
 use super::layout::{LINE, Layout, Parts};
 use super::legend::Key;
+use super::marks::mark_cells;
 use super::orientation::{Area, Orientation, Paper};
 use super::pen::Pen;
 use super::{Image, Rgb8, axes, srgb_8bit};
@@ -40,13 +41,13 @@ impl Annotations {
         let when = when(case, view);
         let facts = view.facts.as_ref();
         Self {
-            title: format!("{}   {}", case.about.name, view.property),
+            title: format!("{}   {}", case.about.name, case.title_of(&view.property)),
             info: facts.map(|facts| Info::of(case, view, facts, &when)),
             when: match when.is_empty() {
                 true => when,
                 false => format!("   {when}"),
             },
-            property: view.property.clone(),
+            property: case.heading_of(&view.property),
             unit: case.unit(&view.property).to_owned(),
             length_unit: short_unit(&case.about.length_unit),
             show_legend: view.show_legend,
@@ -105,6 +106,8 @@ pub struct Shot {
     pub view: View,
     /// The parts of the picture.
     pub layout: Layout,
+    /// Cells that are marked, by I, J, K from 1.
+    pub marked: Vec<[usize; 3]>,
 }
 
 impl Shot {
@@ -119,12 +122,18 @@ impl Shot {
             true => view,
             false => view.seen_from(&scene.camera, layout.volume_size())?,
         };
-        Ok(Self { view, layout })
+        Ok(Self {
+            view,
+            layout,
+            marked: Vec::new(),
+        })
     }
 
     /// The picture as users see it, from the image of its view.
     pub fn finished(&self, image: &Image, case: &Case) -> Rgb8 {
-        finished(image, case, &self.view, &self.layout)
+        let annotations = Annotations::of(case, &self.view);
+        let mark = |volume: &mut Rgb8| mark_cells(volume, &self.view, &case.grid, &self.marked);
+        composed(image, &self.view, &self.layout, &annotations, &mark)
     }
 }
 
@@ -160,11 +169,17 @@ impl Annotations {
 /// The picture as users see it: the image of a view over the background in its place, with what
 /// [`Annotations::of`] says around it and over it.
 pub fn finished(image: &Image, case: &Case, view: &View, layout: &Layout) -> Rgb8 {
-    composed(image, view, layout, &Annotations::of(case, view))
+    composed(image, view, layout, &Annotations::of(case, view), &|_| ())
 }
 
-/// [`finished`], with given annotations.
-fn composed(image: &Image, view: &View, layout: &Layout, annotations: &Annotations) -> Rgb8 {
+/// [`finished`], with given annotations, and what `mark` draws over the volume.
+fn composed(
+    image: &Image,
+    view: &View,
+    layout: &Layout,
+    annotations: &Annotations,
+    mark: &dyn Fn(&mut Rgb8),
+) -> Rgb8 {
     let mut volume = Rgb8 {
         size: image.size,
         pixels: image.over_background_8bit(view.background),
@@ -172,6 +187,7 @@ fn composed(image: &Image, view: &View, layout: &Layout, annotations: &Annotatio
     if !layout.is_plain {
         over_volume(&mut volume, image, view, layout.unit, annotations);
     }
+    mark(&mut volume);
     let size = layout.size.to_array().map(|n| n as u32);
     if size == image.size {
         return volume;
@@ -289,6 +305,7 @@ pub(super) mod tests {
             surfaces: crate::scene::Surfaces::default(),
             connections: std::sync::Arc::default(),
             named_faults: std::sync::Arc::default(),
+            chosen_faults: None,
             drawn: Vec::new().into(),
             clip: Vec::new(),
             ghosts: None,
@@ -354,7 +371,7 @@ pub(super) mod tests {
             // A color that nothing beside the volume has.
             pixels: vec![[0.0, alpha, 0.0, alpha]; count],
         };
-        let picture = composed(&image, &seen, &layout, notes);
+        let picture = composed(&image, &seen, &layout, notes, &|_| ());
         assert_eq!(picture.size, size);
         assert_eq!(picture.pixels.len(), (size[0] * size[1]) as usize);
         (layout, picture)

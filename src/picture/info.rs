@@ -2,8 +2,8 @@
 
 use super::ticks::{label, shortened};
 use crate::case::Case;
-use crate::scene::facts::Values;
 use crate::case::Weighting;
+use crate::scene::facts::Values;
 use crate::scene::{Facts, View};
 use crate::strategies::StrategyKind;
 

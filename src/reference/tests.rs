@@ -128,6 +128,7 @@ fn view(grid: &Grid, field: CellField, extinction: f64, sampling_step: f64) -> V
         surfaces: crate::scene::Surfaces::default(),
         connections: std::sync::Arc::default(),
         named_faults: std::sync::Arc::default(),
+        chosen_faults: None,
         drawn: vec![true; grid.active_cells().len()].into(),
         clip: Vec::new(),
         ghosts: None,

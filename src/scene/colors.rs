@@ -28,6 +28,8 @@ pub(super) struct Asked<'a> {
     pub mean_edge: f64,
     /// Factor on depth in world space.
     pub exaggeration: f64,
+    /// Extent of the thinnest part that a filter leaves, in world space; `None` where it hides nothing.
+    pub thinnest: Option<f64>,
 }
 
 /// A transfer function, and the field in its scale.
@@ -208,18 +210,26 @@ fn opacity(asked: &Asked<'_>, scale: &Scale, range: [f64; 2]) -> Result<Opacity,
         curve,
         reference_length: asked.mean_edge,
     };
-    let found = match &asked.scene.transfer.opacity {
-        None => per_edge(default_opacity(scale)),
+    let spec = &asked.scene.transfer;
+    let found = match &spec.opacity {
         Some(OpacitySpec::Points(points)) => {
             per_edge(points.iter().map(|p| (p[0], p[1])).collect())
         }
+        None => filtered(asked, per_edge(default_opacity(scale))),
         Some(OpacitySpec::Found(FoundOpacity::Automatic)) => {
-            automatic(asked, scale, range)?.unwrap_or_else(|| per_edge(default_opacity(scale)))
+            let found = automatic(asked, scale, range)?;
+            filtered(
+                asked,
+                found.unwrap_or_else(|| per_edge(default_opacity(scale))),
+            )
         }
         Some(OpacitySpec::Found(FoundOpacity::Boundaries)) => {
             let found = asked.case.boundaries(asked.property, scale)?;
             let curve = boundaries::curve(&found, range);
-            per_edge(curve.unwrap_or_else(|| default_opacity(scale)))
+            filtered(
+                asked,
+                per_edge(curve.unwrap_or_else(|| default_opacity(scale))),
+            )
         }
     };
     let points = &found.curve;
@@ -278,4 +288,55 @@ fn automatic(
             case.thinnest_extent(exaggeration),
         ))
     })
+}
+
+/// What a filter leaves of a model is at least this opaque, seen through its thinnest part.
+const FILTERED: f64 = 0.5;
+
+/// An opacity that was not chosen by hand, made solid where a filter hides cells.
+fn filtered(asked: &Asked<'_>, found: Opacity) -> Opacity {
+    let Some(thinnest) = asked.thinnest else {
+        return found;
+    };
+    // A length that the scene gives counts in place of the one that was found.
+    let spec = &asked.scene.transfer;
+    let length = spec.reference_length.unwrap_or(found.reference_length);
+    Opacity {
+        curve: filtered_opacity(found.curve, length, thinnest),
+        ..found
+    }
+}
+
+/// An opacity that was not chosen by hand, where a filter hides cells: at least 0.5 for every value over the
+/// thinnest part that is left, which is one cell of a filter by value and the kept rows, columns or layers of
+/// one by I, J or K. What passes a filter is what one wants to see.
+///
+/// **Units**: both lengths in world space; opacities refer to `reference_length`.
+fn filtered_opacity(curve: Curve<f64>, reference_length: f64, thinnest: f64) -> Curve<f64> {
+    let least = 1.0 - (1.0 - FILTERED).powf(reference_length / thinnest);
+    let raised = |(at, opacity): (f64, f64)| (at, opacity.max(least));
+    curve.into_iter().map(raised).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_passes_a_filter_is_solid() {
+        let faint = vec![(0.0, 0.0), (0.4, 0.9), (1.0, 0.01)];
+        let through = |curve: &Curve<f64>, n: usize, length: f64| {
+            1.0 - (1.0 - curve[n].1).powf(length / 40.0)
+        };
+        for thinnest in [2.0, 40.0, 900.0] {
+            let solid = filtered_opacity(faint.clone(), 40.0, thinnest);
+            for n in 0..3 {
+                assert!(through(&solid, n, thinnest) >= FILTERED - 1e-12);
+                assert!(solid[n].1 >= faint[n].1 && solid[n].0 == faint[n].0);
+            }
+        }
+        // A crop that leaves much changes next to nothing.
+        let crop = filtered_opacity(faint.clone(), 40.0, 1e5);
+        assert!((crop[2].1 - faint[2].1).abs() < 1e-12 && crop[0].1 < 1e-3);
+    }
 }

@@ -3,7 +3,6 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::filter_words;
 use super::{ClipPlane, Coloring, Scene};
 use crate::case::{Case, Weighting};
 use crate::model::{CellField, Grid, Spaces};
@@ -64,7 +63,7 @@ impl Facts {
             active: case.grid.active_cells().len(),
             drawn,
             values,
-            filter: filter_words::words(&scene.filter),
+            filter: scene.filter.words(),
             planes: scene.clip.len(),
         }
     }

@@ -5,7 +5,7 @@ pub mod camera;
 mod colors;
 pub mod facts;
 pub mod film;
-mod filter_words;
+mod filter;
 mod fit;
 pub mod framing;
 pub mod ghosts;
@@ -23,12 +23,13 @@ pub use blending::Blending;
 pub use camera::{Camera, Projection};
 pub use facts::Facts;
 pub use film::{Sequence, Turn};
+pub use filter::{Filter, Indices, PropertyFilter};
 pub use framing::{Direction, Extents, Subject};
 pub use half_turns::{NamedView, TurnAxis, half_turns};
 pub use lighting::{LightMode, Lighting, LightingSpec};
 pub use resolve::{ClipPlane, SceneError, View, default_property, model_corners, resolve};
 pub use settings::{ClipSpec, CutFace, Integration, LibcSettings, SrgSettings};
-pub use surfaces::{Hull, Surfaces};
+pub use surfaces::{Hull, ShownFaults, Surfaces};
 pub use transfer::{
     ColorSpec, Coloring, FoundOpacity, OpacitySpec, OwnRange, RangeSpec, ScaleSpec, TransferSpec,
 };
@@ -233,32 +234,6 @@ pub enum Interpolation {
     Vertex,
 }
 
-/// Which active cells are drawn; ranges are one-based and inclusive.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct Filter {
-    /// Columns along i.
-    pub i: Option<[usize; 2]>,
-    /// Columns along j.
-    pub j: Option<[usize; 2]>,
-    /// Layers.
-    pub k: Option<[usize; 2]>,
-    /// Property ranges, all of which must hold.
-    pub properties: Vec<PropertyFilter>,
-}
-
-/// Keeps the cells whose value lies in a range.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct PropertyFilter {
-    /// Property, of the scene's step.
-    pub name: String,
-    /// Smallest value kept.
-    pub min: f64,
-    /// Largest value kept.
-    pub max: f64,
-}
-
 /// How inactive cells look.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
@@ -278,8 +253,8 @@ pub struct Show {
     pub inactive: Inactive,
     /// The boundary of the drawn cells.
     pub hull: Hull,
-    /// Faults as half-transparent sheets.
-    pub faults: bool,
+    /// Faults as half-transparent sheets: all, none, or those of some names.
+    pub faults: ShownFaults,
     /// Lines between the cells of non-neighbor connections.
     pub nnc: bool,
     /// Wells.
@@ -299,7 +274,7 @@ impl Default for Show {
         Self {
             inactive: Inactive::Hidden,
             hull: Hull::Hidden,
-            faults: false,
+            faults: ShownFaults::All(false),
             nnc: false,
             wells: true,
             cell_edges: false,

@@ -11,8 +11,8 @@ use super::framing::{self, Direction, Subject};
 use super::ghosts::{Ghosts, shown_grid};
 use super::lighting::{self, Lighting};
 use super::{
-    Blending, Camera, CameraSpec, ClipSpec, CutFace, Filter, Inactive, Interpolation, LibcSettings,
-    Scene, SrgSettings, StepSpec, Surfaces,
+    Blending, Camera, CameraSpec, ClipSpec, CutFace, Inactive, Interpolation, LibcSettings, Scene,
+    SrgSettings, StepSpec, Surfaces, filter, surfaces,
 };
 use crate::case::{Case, CaseError, ValueRange};
 use crate::gpu::volume::Shape;
@@ -111,6 +111,9 @@ pub struct View {
     pub connections: Arc<Vec<[DVec3; 2]>>,
     /// Which faces lie on faults that have a name.
     pub named_faults: Arc<FaultFaces>,
+    /// By number of the named faults: true where the fault is drawn, of which those without a name are none;
+    /// all faults where absent.
+    pub chosen_faults: Option<Arc<[bool]>>,
     /// Occlusion and lights.
     pub lighting: Lighting,
     /// Settings of the cell-to-cell strategy.
@@ -201,17 +204,14 @@ pub(super) fn resolve_over(
 ) -> Result<View, SceneError> {
     check_version(scene)?;
     let active_bounds = case.grid.bounds().ok_or(SceneError::Empty)?;
-    let exaggeration = match scene.vertical_exaggeration {
-        Some(v) => positive("vertical_exaggeration", v)?,
-        None => automatic_exaggeration(active_bounds),
-    };
+    let exaggeration = exaggeration(scene, active_bounds)?;
     let spaces = Spaces::new(case.grid.map_axes(), exaggeration);
     let edges = mean_world_edges(case, exaggeration);
     let property = match &scene.property {
         Some(name) => name.clone(),
         None => default_property(case),
     };
-    let step = step(case, &scene.step, case.is_dynamic(&property))?;
+    let step = step_of(case, &scene.step, case.is_dynamic(&property))?;
     let field = case.field(&property, step)?;
     let asked = Asked {
         scene,
@@ -220,6 +220,7 @@ pub(super) fn resolve_over(
         range,
         mean_edge: edges.element_sum() / 3.0,
         exaggeration,
+        thinnest: scene.filter.thinnest(case.grid.dims(), edges)?,
     };
     let Colors {
         field: shown,
@@ -234,11 +235,8 @@ pub(super) fn resolve_over(
         facts,
         subject,
         box_corners,
-    } = cells(&asked, [field, shown], step, &spaces, &clip)?;
-    let start = [DVec3::INFINITY, DVec3::NEG_INFINITY];
-    let world_bounds = box_corners
-        .iter()
-        .fold(start, |[a, b], p| [a.min(*p), b.max(*p)]);
+    } = cells(&asked, [field, shown], &spaces, &clip)?;
+    let world_bounds = bounds_of(&box_corners);
     let size = checked_size(scene.size)?;
     Ok(View {
         size,
@@ -270,6 +268,7 @@ pub(super) fn resolve_over(
         surfaces: Surfaces::from(&scene.show),
         connections,
         named_faults: case.fault_faces.clone(),
+        chosen_faults: surfaces::chosen(&scene.show.faults, case)?,
         lighting: lighting::resolve(
             &scene.lighting,
             box_edges(&box_corners),
@@ -281,6 +280,20 @@ pub(super) fn resolve_over(
         show_legend: scene.show.legend,
         facts,
     })
+}
+
+fn exaggeration(scene: &Scene, bounds: [DVec3; 2]) -> Result<f64, SceneError> {
+    match scene.vertical_exaggeration {
+        Some(v) => positive("vertical_exaggeration", v),
+        None => Ok(automatic_exaggeration(bounds)),
+    }
+}
+
+fn bounds_of(points: &[DVec3]) -> [DVec3; 2] {
+    let start = [DVec3::INFINITY, DVec3::NEG_INFINITY];
+    points
+        .iter()
+        .fold(start, |[a, b], p| [a.min(*p), b.max(*p)])
 }
 
 fn check_version(scene: &Scene) -> Result<(), SceneError> {
@@ -465,7 +478,8 @@ pub fn default_property(case: &Case) -> String {
     found.map_or_else(|| "DEPTH".to_owned(), |name| (*name).to_owned())
 }
 
-fn step(case: &Case, spec: &StepSpec, dynamic: bool) -> Result<usize, SceneError> {
+/// The step that a scene names, of what changes with time; else 0.
+pub(super) fn step_of(case: &Case, spec: &StepSpec, dynamic: bool) -> Result<usize, SceneError> {
     if !dynamic {
         return Ok(0);
     }
@@ -473,49 +487,6 @@ fn step(case: &Case, spec: &StepSpec, dynamic: bool) -> Result<usize, SceneError
         StepSpec::Index(n) => case.step(&n.to_string())?,
         StepSpec::Name(name) => case.step(name)?,
     })
-}
-
-fn drawn(
-    case: &Case,
-    field: &CellField,
-    filter: &Filter,
-    step: usize,
-) -> Result<Vec<bool>, SceneError> {
-    let grid = &case.grid;
-    let dims = grid.dims();
-    for (name, range, n) in [
-        ("filter.i", filter.i, dims.ni),
-        ("filter.j", filter.j, dims.nj),
-        ("filter.k", filter.k, dims.nk),
-    ] {
-        if range.is_some_and(|[a, b]| a < 1 || a > b || b > n) {
-            return Err(wrong(
-                name,
-                format!("must be two numbers from 1 to {n}, the smaller first"),
-            ));
-        }
-    }
-    let within = |range: Option<[usize; 2]>, at: usize| {
-        range.is_none_or(|[a, b]| (a..=b).contains(&(at + 1)))
-    };
-    let passes =
-        |ijk: Ijk| within(filter.i, ijk.i) && within(filter.j, ijk.j) && within(filter.k, ijk.k);
-    let mut drawn: Vec<bool> = grid
-        .active_cells()
-        .par_iter()
-        .zip(field.values())
-        .map(|(&cell, value)| {
-            let ijk = dims.ijk(cell);
-            !value.is_nan() && passes(ijk) && grid.has_thickness(ijk)
-        })
-        .collect();
-    for property in &filter.properties {
-        let values = case.field(&property.name, step)?;
-        for (d, &v) in drawn.iter_mut().zip(values.values()) {
-            *d &= (property.min..=property.max).contains(&f64::from(v));
-        }
-    }
-    Ok(drawn)
 }
 
 /// Which cells are drawn, and what follows from that.
@@ -534,14 +505,13 @@ struct Cells {
 fn cells(
     asked: &Asked<'_>,
     [values, field]: [Arc<CellField>; 2],
-    step: usize,
     spaces: &Spaces,
     clip: &[ClipPlane],
 ) -> Result<Cells, SceneError> {
     let Asked { scene, case, .. } = *asked;
-    let (field, drawn) = filtered(case, field, &scene.filter, step)?;
+    let (field, drawn) = filtered(case, field, scene)?;
     let framed = match framing::still(&scene.filter, case) {
-        Some(still) => self::drawn(case, &values, &still, step)?,
+        Some(still) => filter::drawn(case, &values, &still, &scene.step)?,
         None => drawn.clone(),
     };
     let facts = scene.show.info.then(|| {
@@ -579,13 +549,12 @@ fn cells(
 fn filtered(
     case: &Case,
     field: Arc<CellField>,
-    filter: &Filter,
-    step: usize,
+    scene: &Scene,
 ) -> Result<(Arc<CellField>, Vec<bool>), SceneError> {
-    let drawn = drawn(case, &field, filter, step)?;
-    let field = match *filter == Filter::default() {
-        true => field,
-        false => Arc::new(only(&field, &drawn)),
+    let drawn = filter::drawn(case, &field, &scene.filter, &scene.step)?;
+    let field = match scene.filter.limits() {
+        true => Arc::new(only(&field, &drawn)),
+        false => field,
     };
     Ok((field, drawn))
 }

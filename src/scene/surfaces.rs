@@ -1,8 +1,12 @@
 //! Surfaces of cells as parts of the picture: the hull, faults, edges of cells on them.
 
+use std::sync::Arc;
+
 use serde::{Deserialize, Serialize};
 
-use super::{Show, View};
+use super::resolve::wrong;
+use super::{SceneError, Show, View};
+use crate::case::Case;
 use crate::model::topology::Face;
 use crate::model::{Grid, Ijk};
 
@@ -15,6 +19,61 @@ pub enum Hull {
     Hidden,
     /// Opaque and colored by the field.
     Opaque,
+}
+
+/// Which faults are drawn.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(
+    untagged,
+    expecting = "show.faults must be true, false or a list of names such as [\"F1\", \"F2\"]"
+)]
+pub enum ShownFaults {
+    /// All of them, with and without a name, or none.
+    All(bool),
+    /// Those of these names alone.
+    Named(Vec<String>),
+}
+
+impl ShownFaults {
+    /// True where at least one is asked for.
+    pub fn are_shown(&self) -> bool {
+        match self {
+            Self::All(all) => *all,
+            Self::Named(names) => !names.is_empty(),
+        }
+    }
+
+    /// True where the fault of a name, or those without one, are asked for.
+    pub fn shows(&self, name: Option<&str>) -> bool {
+        match self {
+            Self::All(all) => *all,
+            Self::Named(names) => name.is_some_and(|name| names.iter().any(|n| n == name)),
+        }
+    }
+}
+
+/// Which of the named faults of a case are chosen, by number; `None` where all or none are.
+///
+/// # Errors
+/// When a name is not one of the case's.
+pub(super) fn chosen(shown: &ShownFaults, case: &Case) -> Result<Option<Arc<[bool]>>, SceneError> {
+    let ShownFaults::Named(names) = shown else {
+        return Ok(None);
+    };
+    let named = &case.about.named_faults;
+    if let Some(unknown) = names.iter().find(|n| named.iter().all(|f| f.name != **n)) {
+        let known = match named.is_empty() {
+            true => "this case names no faults; use true or false".to_owned(),
+            false => {
+                let names: Vec<_> = named.iter().map(|f| f.name.as_str()).collect();
+                format!("this case has {}", names.join(", "))
+            }
+        };
+        let problem = format!("there is no fault {unknown}; {known}");
+        return Err(wrong("show.faults", problem));
+    }
+    let flags = named.iter().map(|f| shown.shows(Some(&f.name)));
+    Ok(Some(flags.collect()))
 }
 
 /// The surfaces that a view shows.
@@ -49,7 +108,7 @@ impl From<&Show> for Surfaces {
     fn from(show: &Show) -> Self {
         Self {
             hull: show.hull == Hull::Opaque,
-            faults: show.faults,
+            faults: show.faults.are_shown(),
             cell_edges: show.cell_edges,
         }
     }
@@ -114,12 +173,21 @@ impl View {
         grid.boundary_faces(&self.drawn_active(grid))
     }
 
-    /// The fault faces of the drawn cells of `grid` (the case's), with the fault's number where it has a
-    /// name.
+    /// The fault faces of the drawn cells of `grid` (the case's) that the view shows, with the fault's number
+    /// where it has a name.
     pub fn fault_faces(&self, grid: &Grid) -> Vec<(Ijk, Face, Option<usize>)> {
         let faces = grid.fault_faces_of(&self.drawn_active(grid)).into_iter();
         faces
             .map(|(cell, face)| (cell, face, self.named_faults.fault_of(cell, face)))
+            .filter(|(.., fault)| self.shows_fault(*fault))
             .collect()
+    }
+
+    /// True where a fault is among those that the view shows, by its number where it has a name.
+    fn shows_fault(&self, fault: Option<usize>) -> bool {
+        let Some(chosen) = &self.chosen_faults else {
+            return true;
+        };
+        fault.is_some_and(|n| chosen.get(n) == Some(&true))
     }
 }

@@ -112,10 +112,7 @@ fn ends(cells: &[Cell]) -> Option<(f64, f64)> {
 }
 
 /// The values below which the given shares, rising, of the weight lie; `None` without weight.
-fn shares_below<const N: usize>(
-    mut values: Vec<(f64, f64)>,
-    shares: [f64; N],
-) -> Option<[f64; N]> {
+fn shares_below<const N: usize>(mut values: Vec<(f64, f64)>, shares: [f64; N]) -> Option<[f64; N]> {
     values.par_sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
     let total: f64 = values.iter().map(|v| v.1).sum();
     let mut rising = values.iter();
@@ -123,7 +120,9 @@ fn shares_below<const N: usize>(
     let mut last = values.first()?.0;
     let below = shares.map(|share| {
         while sum < share * total {
-            let Some((value, weight)) = rising.next() else { break };
+            let Some((value, weight)) = rising.next() else {
+                break;
+            };
             (last, sum) = (*value, sum + weight);
         }
         last

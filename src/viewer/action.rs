@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::slices::Slicing;
 use super::state::{Comparison, Pace, State};
 use crate::scene::{
     CameraSpec, ClipSpec, Filter, Interpolation, LibcSettings, LightingSpec, RangeSpec, Scene,
@@ -53,6 +54,8 @@ pub enum Action {
     Deselect,
     /// How time plays.
     Pace(Pace),
+    /// How slices are stepped through.
+    Slicing(Slicing),
 }
 
 /// Whether a cell joins those that are selected.
@@ -87,6 +90,7 @@ impl Action {
             Self::Compare(_) => "comparison",
             Self::Select(..) | Self::Deselect => "selection",
             Self::Pace(_) => "pace",
+            Self::Slicing(_) => "slices",
         }
     }
 
@@ -96,9 +100,9 @@ impl Action {
         match self {
             Self::Property(name) => state.setup.show(name),
             Self::Step(step) => scene.step = StepSpec::Index(step),
-            Self::Interpolation(v) => scene.interpolation = v,
-            Self::Range(v) => scene.range = v,
-            Self::Transfer(v) => scene.transfer = v,
+            Self::Interpolation(v) => state.setup.change_look(|look| look.interpolation = v),
+            Self::Range(v) => state.setup.change_look(|look| look.range = v),
+            Self::Transfer(v) => state.setup.change_look(|look| look.transfer = v),
             Self::Strategy(v) => scene.strategy = v,
             Self::Srg(v) => scene.srg = v,
             Self::Libc(v) => scene.libc = v,
@@ -115,6 +119,7 @@ impl Action {
             Self::Select(cell, beside) => select(&mut state.selected, cell, beside),
             Self::Deselect => state.selected.clear(),
             Self::Pace(v) => state.pace = v,
+            Self::Slicing(v) => state.slicing = v,
         }
     }
 }

@@ -6,10 +6,12 @@ use eframe::egui::Context;
 
 use super::link::Link;
 use super::reader::Cells;
+use super::spread::Spread;
+use super::subject::same_date;
 use super::window::Window;
 use super::worker::Wanted;
 use crate::case::Case;
-use crate::scene::{Scene, StepSpec, model_corners};
+use crate::scene::{Scene, model_corners};
 
 /// What the reader was asked for last.
 #[derive(Default, PartialEq)]
@@ -17,7 +19,8 @@ pub struct Asked {
     table: Option<(Cells, usize)>,
     curves: Option<(Cells, String)>,
     ahead: Option<(usize, Vec<(String, usize)>)>,
-    look: Option<String>,
+    look: Option<(usize, String)>,
+    spreads: Vec<(String, usize)>,
 }
 
 /// Steps that are read ahead.
@@ -39,20 +42,13 @@ impl Window {
 
     /// What is to be shown, a scene for each side in the size of its place.
     pub(super) fn wanted(&self, ctx: &Context) -> Vec<Wanted> {
-        let Some(document) = self.document() else {
+        let Some((case, scene)) = self.subject() else {
             return Vec::new();
         };
-        let Some(case) = document.case.clone() else {
-            return Vec::new();
-        };
-        let setup = &document.state.setup;
         let sizes = self.sides.sizes(ctx.pixels_per_point());
         let mut wanted = Vec::new();
-        if let Some(size) = sizes[0] {
-            let scene = Scene {
-                size,
-                ..setup.scene.clone()
-            };
+        if let Some(size) = sizes[0].filter(|_| !self.awaits_difference()) {
+            let scene = Scene { size, ..scene };
             wanted.push(Wanted { case, scene });
         }
         if let (Some(size), Some((case, scene))) = (sizes[1], self.other()) {
@@ -67,6 +63,9 @@ impl Window {
     /// The second picture's case and scene, if there is one.
     pub(super) fn other(&self) -> Option<(Arc<Case>, Scene)> {
         let setup = &self.document()?.state.setup;
+        if setup.difference().is_some() {
+            return None;
+        }
         let other = self.other_case()?;
         let mut scene = setup.compared(&setup.scene)?;
         let comparison = setup.comparison.as_ref()?;
@@ -107,15 +106,17 @@ impl Window {
 
     /// Asks for the values that panels show, and for those of the next steps.
     pub(super) fn read(&mut self) {
-        let Some(document) = self.documents.get_mut(self.current) else {
+        let Some((case, scene)) = self.subject() else {
             return;
         };
-        let Some(case) = document.case.clone() else {
+        let awaits_difference = self.awaits_difference();
+        let Some(document) = self.documents.get_mut(self.current) else {
             return;
         };
         let step = document.step().map_or(0, |(step, _)| step);
         let shown = self.pictures.shown(0, &case);
-        let Some(property) = shown.map(|s| s.picture.view.property.clone()) else {
+        let shown = shown.map(|s| s.picture.view.property.clone());
+        let Some(property) = shown.or(scene.property.filter(|_| awaits_difference)) else {
             return;
         };
         let cells = document.state.selected.clone();
@@ -134,10 +135,20 @@ impl Window {
         let names: Vec<String> = filters.map(|f| f.name.clone()).chain([property]).collect();
         let next = (step + 1..case.steps.len()).take(AHEAD);
         let next = next.flat_map(|s| names.iter().map(move |n| (n.clone(), s)));
-        let compared = document.state.setup.comparison.as_ref();
-        asked.look = compared
-            .and_then(|c| c.property.clone())
-            .filter(|p| document.lacks_look(p));
+        let setup = &document.state.setup;
+        let compared = setup.comparison.as_ref().and_then(|c| c.property.clone());
+        let missing = match setup.difference() {
+            Some(name) => Some(name).filter(|_| awaits_difference),
+            None => compared.filter(|p| document.lacks_look(p)),
+        };
+        asked.look = missing.map(|name| (Arc::as_ptr(&case).addr(), name));
+        let filters = setup.scene.filter.properties.iter();
+        let wanted: Vec<_> = filters.map(|f| (f.name.clone(), step)).collect();
+        let is_wanted = |s: &Arc<Spread>| wanted.iter().any(|(n, at)| s.is_of(&case, n, *at));
+        document.spreads.retain(is_wanted);
+        let known =
+            |w: &(String, usize)| document.spreads.iter().any(|s| s.is_of(&case, &w.0, w.1));
+        asked.spreads = wanted.into_iter().filter(|w| !known(w)).collect();
         asked.ahead = Some((Arc::as_ptr(&case).addr(), next.collect()));
         if asked.table != self.asked.table
             && let Some((of, step)) = &asked.table
@@ -150,9 +161,16 @@ impl Window {
             self.reader.curves(of.clone(), property.clone());
         }
         if asked.look != self.asked.look
-            && let Some(property) = &asked.look
+            && let Some((_, property)) = &asked.look
         {
             self.reader.look(case.clone(), property.clone());
+        }
+        if asked
+            .spreads
+            .iter()
+            .any(|s| !self.asked.spreads.contains(s))
+        {
+            self.reader.spreads(&case, &asked.spreads);
         }
         if asked.ahead != self.asked.ahead
             && let Some((_, fields)) = &asked.ahead
@@ -161,25 +179,4 @@ impl Window {
         }
         self.asked = asked;
     }
-}
-
-/// The step of another case with the date of this one's, or the one nearest to it.
-fn same_date(case: &Case, step: &StepSpec, other: &Case) -> StepSpec {
-    let number = match step {
-        StepSpec::Index(n) => Some(*n),
-        StepSpec::Name(name) => case.step(name).ok(),
-    };
-    let Some(date) = number.and_then(|n| case.steps.get(n)).map(|s| day(&s.date)) else {
-        return step.clone();
-    };
-    let apart = |n: &usize| (day(&other.steps[*n].date) - date).abs();
-    let nearest = (0..other.steps.len()).min_by_key(apart);
-    nearest.map_or_else(|| step.clone(), StepSpec::Index)
-}
-
-/// A date as a number that grows by about one a day.
-fn day(date: &str) -> i64 {
-    let mut parts = date.split('-').map(|p| p.parse::<i64>().unwrap_or(0));
-    let mut next = || parts.next().unwrap_or(0);
-    372 * next() + 31 * next() + next()
 }

@@ -13,7 +13,7 @@ use super::export::Export;
 use super::keys::Command;
 use super::settings::Mouse;
 use super::sheets::Sheets;
-use super::state::{Comparison, next_strategy};
+use super::state::{Comparison, State, next_strategy};
 use super::window::Window;
 use crate::scene::LightingSpec;
 
@@ -133,6 +133,24 @@ fn change(document: &mut Document, command: Command) -> Option<String> {
         Command::End(last) => {
             document.move_step(if last { isize::MAX / 2 } else { isize::MIN / 2 }, false);
         }
+        Command::Slice(by) => {
+            let dims = document.case.as_ref()?.grid.dims();
+            let State { setup, slicing, .. } = &document.state;
+            let (slicing, filter) = (*slicing, slicing.stepped(&setup.scene.filter, dims, by));
+            let told = slicing.words(&filter, dims);
+            document.apply(Action::Filter(filter));
+            return Some(told);
+        }
+        Command::SliceAxis(by) => {
+            let dims = document.case.as_ref()?.grid.dims();
+            let State { setup, slicing, .. } = &document.state;
+            let axis = (slicing.axis as isize + by).rem_euclid(3) as usize;
+            let (slicing, filter) = slicing.along(axis, &setup.scene.filter, dims);
+            let told = format!("slices along {}", slicing.words(&filter, dims));
+            document.apply(Action::Slicing(slicing));
+            document.apply(Action::Filter(filter));
+            return Some(told);
+        }
         Command::NextStrategy => {
             let next = next_strategy(&document.state.setup.scene.strategy);
             document.apply(Action::Strategy(next.name().into()));
@@ -147,12 +165,13 @@ fn change(document: &mut Document, command: Command) -> Option<String> {
             document.apply(Action::Lighting(next));
         }
         Command::Compare => {
-            let next = match document.state.setup.comparison {
-                Some(_) => None,
-                None => Some(Comparison::with_next_strategy(&document.state.setup.scene)),
+            let setup = &document.state.setup;
+            let next = match (&setup.comparison, &document.case) {
+                (None, Some(case)) => Some(Comparison::opening(case, &setup.scene)),
+                _ => None,
             };
-            let told = next.as_ref().and_then(|c| c.strategy.clone()).map(|strategy| {
-                format!("compared with {strategy}; the panel Compare has steps, properties and cases too")
+            let told = next.is_some().then(|| {
+                "the Compare panel has other steps, properties, cases and strategies".into()
             });
             document.apply(Action::Compare(next));
             return told;

@@ -8,6 +8,7 @@ use super::action::Action;
 use super::history::History;
 use super::loading::{Loading, Opened};
 use super::reader::{Curves, Table};
+use super::spread::Spread;
 use super::state::State;
 use super::watch::Watch;
 use crate::case::Case;
@@ -38,6 +39,8 @@ pub struct Document {
     pub table: Option<Table>,
     /// The property shown over time, in the selected cells.
     pub curves: Option<Curves>,
+    /// How the values are spread by which cells are filtered.
+    pub spreads: Vec<Arc<Spread>>,
 }
 
 impl Document {
@@ -55,6 +58,7 @@ impl Document {
             hit: None,
             table: None,
             curves: None,
+            spreads: Vec::new(),
         }
     }
 

@@ -6,11 +6,13 @@ use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::thread::JoinHandle;
 
+use super::state::Layout;
+use super::still::still;
+use super::window::Window;
 use crate::case::Case;
 use crate::filming::shoot;
 use crate::gpu::Gpu;
 use crate::picture::film::{Film, FilmShape};
-use crate::picture::{Format, Shot, write_exr, write_png};
 use crate::renderer::Renderer;
 use crate::scene::{Scene, Sequence, Turn, film};
 
@@ -25,6 +27,21 @@ pub struct ExportSpec {
     pub kind: Kind,
     /// Without title, legend and axes.
     pub plain: bool,
+    /// The second picture of a still, and how both are shown.
+    pub compared: Option<Compared>,
+    /// Cells that are marked in a still, by I, J, K from 1.
+    pub marked: Vec<[usize; 3]>,
+}
+
+/// A picture beside another one.
+#[derive(Clone)]
+pub struct Compared {
+    /// Of which case.
+    pub case: Arc<Case>,
+    /// How it looks.
+    pub scene: Scene,
+    /// How both are shown.
+    pub layout: Layout,
 }
 
 /// What kind of file is made.
@@ -131,7 +148,7 @@ impl Drop for Export {
     }
 }
 
-type Fallible<T> = Result<T, Box<dyn std::error::Error>>;
+pub(super) type Fallible<T> = Result<T, Box<dyn std::error::Error>>;
 
 /// Makes the file; false where it was cancelled.
 fn make(spec: &ExportSpec, path: &Path, progress: &dyn Fn(f64) -> bool) -> Fallible<bool> {
@@ -173,21 +190,18 @@ fn make(spec: &ExportSpec, path: &Path, progress: &dyn Fn(f64) -> bool) -> Falli
     )?)
 }
 
-fn still(spec: &ExportSpec, path: &Path, progress: &dyn Fn(f64) -> bool) -> Fallible<bool> {
-    let format = Format::from_path(path)?;
-    let shot = Shot::of(&spec.scene, &spec.case, spec.plain || format == Format::Exr)?;
-    let mut renderer = Renderer::new(Arc::new(Gpu::new(None)?), &spec.case.grid)?;
-    let Some(frame) = renderer.render(&spec.case.grid, &shot.view, progress)? else {
-        return Ok(false);
-    };
-    match format {
-        Format::Exr => write_exr(path, &frame.image)?,
-        Format::Png => {
-            let picture = shot.finished(&frame.image, &spec.case);
-            write_png(path, picture.size, &picture.pixels)?;
-        }
+impl Window {
+    /// The second picture as it is shown, with the selected cells, for saving what is on screen.
+    pub(super) fn compared(&self) -> Option<Compared> {
+        let setup = &self.document()?.state.setup;
+        let layout = setup.comparison.as_ref()?.layout;
+        let (case, scene) = self.other()?;
+        Some(Compared {
+            case,
+            scene,
+            layout,
+        })
     }
-    Ok(true)
 }
 
 #[cfg(test)]
@@ -205,6 +219,8 @@ mod tests {
             },
             kind,
             plain: true,
+            compared: None,
+            marked: Vec::new(),
         }
     }
 

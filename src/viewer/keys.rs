@@ -33,6 +33,10 @@ pub enum Command {
     Look(Look),
     /// The next preset of the mouse's buttons.
     Mouse,
+    /// To the next slice along the axis in use, or the one before.
+    Slice(isize),
+    /// To the next axis of slices, or the one before.
+    SliceAxis(isize),
     /// The next strategy.
     NextStrategy,
     /// Lighting off, or soft.
@@ -72,7 +76,7 @@ const fn from(view: usize) -> Command {
 }
 
 /// Every shortcut, with what it says in the sheet.
-pub const SHORTCUTS: [(Modifiers, Key, Command, &str); 48] = [
+pub const SHORTCUTS: [(Modifiers, Key, Command, &str); 52] = [
     (CTRL, Key::O, Command::Open, "Open a case"),
     (NONE, Key::F5, Command::Reload, "Read the case again"),
     (CTRL, Key::S, Command::SaveScene, "Save the scene"),
@@ -92,6 +96,20 @@ pub const SHORTCUTS: [(Modifiers, Key, Command, &str); 48] = [
     (NONE, Key::ArrowLeft, Command::Step(-1), "Step back"),
     (NONE, Key::Home, Command::End(false), "First step"),
     (NONE, Key::End, Command::End(true), "Last step"),
+    (NONE, Key::PageDown, Command::Slice(1), "Next slice"),
+    (NONE, Key::PageUp, Command::Slice(-1), "Previous slice"),
+    (
+        SHIFT,
+        Key::PageDown,
+        Command::SliceAxis(1),
+        "Slices along the next axis",
+    ),
+    (
+        SHIFT,
+        Key::PageUp,
+        Command::SliceAxis(-1),
+        "Slices along the previous axis",
+    ),
     (CTRL_ALT, Key::N, from(0), "Look north"),
     (CTRL_ALT, Key::S, from(1), "Look south"),
     (CTRL_ALT, Key::E, from(2), "Look east"),

@@ -1,12 +1,9 @@
 //! What happened since the last frame: answers of threads, files that changed, what was dropped.
 
-use std::sync::Arc;
-
 use eframe::egui::Context;
 
 use super::action::{Action, Beside};
 use super::dialogs::{Dialog, Outcome, PathSheet};
-use super::document::Document;
 use super::export::Export;
 use super::pictures::Event;
 use super::reader::Read;
@@ -57,12 +54,15 @@ impl Window {
             Read::Table(table) => &table.of.case,
             Read::Curves(curves) => &curves.of.case,
             Read::Look(case, ..) => case,
+            Read::Spread(spread) => &spread.case,
         };
-        let is_of = |d: &&mut Document| d.case.as_ref().is_some_and(|c| Arc::ptr_eq(c, case));
-        let document = self.documents.iter_mut().find(is_of);
-        match (document, read) {
+        let case = case.clone();
+        let awaited = self.awaited.clone();
+        let mut is_here = false;
+        match (self.document_of(&case), read) {
             (Some(document), Read::Table(table)) => document.table = Some(table),
             (Some(document), Read::Curves(curves)) => document.curves = Some(curves),
+            (Some(document), Read::Spread(spread)) => document.spreads.push(spread),
             (Some(document), Read::Look(_, property, look)) => {
                 document
                     .state
@@ -70,12 +70,15 @@ impl Window {
                     .looks
                     .entry(property.clone())
                     .or_insert(look);
-                if self.awaited.as_ref() == Some(&property) {
-                    self.awaited = None;
+                if awaited.as_ref() == Some(&property) {
+                    is_here = true;
                     document.apply(Action::Property(property));
                 }
             }
             (None, _) => {}
+        }
+        if is_here {
+            self.awaited = None;
         }
     }
 

@@ -4,15 +4,12 @@ use eframe::egui::{Color32, Rect, Stroke, Ui, vec2};
 use glam::DVec2;
 
 use crate::case::Case;
-use crate::picture::on_screen;
-use crate::scene::surfaces::PALETTE;
+use crate::picture::{cell_edges, mark_color};
 use crate::scene::{Scene, View};
 
 /// Color of the selected cell at a place in the list.
 pub fn color(n: usize) -> Color32 {
-    // Reddish purple and blue first, which stand out from most color maps.
-    let order = [6, 4, 5, 2, 0, 1, 3];
-    let [r, g, b] = PALETTE[order[n % order.len()]].map(|v| (255.0 * v).round() as u8);
+    let [r, g, b] = mark_color(n);
     Color32::from_rgb(r, g, b)
 }
 
@@ -36,18 +33,11 @@ pub fn show(
         let Some(cell) = case.grid.dims().one_based(*cell) else {
             continue;
         };
-        let corners = case.grid.hexahedron(cell).0;
-        let corners = corners.map(|c| view.spaces.world_from_grid.transform_point3(c));
-        for a in 0..8usize {
-            for b in [1, 2, 4].map(|bit| a | bit).into_iter().filter(|b| *b != a) {
-                let Some(line) = on_screen(&view, [corners[a], corners[b]], size) else {
-                    continue;
-                };
-                let line = line.map(|at| rect.min + vec2(at.x as f32, at.y as f32));
-                // A light seam keeps the line apart from what is behind it.
-                painter.line_segment(line, Stroke::new(3.5, Color32::from_white_alpha(160)));
-                painter.line_segment(line, Stroke::new(1.8, color(n)));
-            }
+        for line in cell_edges(&view, &case.grid, cell, size) {
+            let line = line.map(|at| rect.min + vec2(at.x as f32, at.y as f32));
+            // A light seam keeps the line apart from what is behind it.
+            painter.line_segment(line, Stroke::new(3.5, Color32::from_white_alpha(160)));
+            painter.line_segment(line, Stroke::new(1.8, color(n)));
         }
     }
 }

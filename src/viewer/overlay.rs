@@ -163,3 +163,21 @@ pub fn tip(ui: &egui::Ui, at: Pos2, text: &str) {
     painter.rect_filled(place, 3.0, visuals.window_fill());
     painter.galley(at, text, visuals.strong_text_color());
 }
+
+/// Why a picture that was asked for is not there, across its middle.
+pub fn refusal(painter: &Painter, rect: Rect, why: &str) {
+    let ink = Color32::from_gray(30);
+    let width = (rect.width() - 80.0).clamp(120.0, 560.0);
+    let text = painter.layout(why.to_owned(), FontId::proportional(16.0), ink, width);
+    let place = Align2::CENTER_CENTER.anchor_size(rect.center(), text.size());
+    let stroke = Stroke::new(1.0, Color32::from_gray(120));
+    let plate = Color32::from_gray(245);
+    painter.rect(
+        place.expand(12.0),
+        4.0,
+        plate,
+        stroke,
+        egui::StrokeKind::Outside,
+    );
+    painter.galley(place.min, text, ink);
+}

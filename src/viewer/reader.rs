@@ -4,6 +4,7 @@
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 
+use super::spread::Spread;
 use crate::case::{Case, Property};
 use crate::model::CellIndex;
 use crate::scene::look::{Look, look_of};
@@ -53,6 +54,8 @@ pub enum Read {
     Curves(Curves),
     /// How a property of a case looks at first.
     Look(Arc<Case>, String, Look),
+    /// How the values of a property are spread.
+    Spread(Arc<Spread>),
 }
 
 /// Properties at steps that are read ahead.
@@ -65,6 +68,7 @@ struct Wishes {
     table: Option<(Cells, usize)>,
     curves: Option<(Cells, String)>,
     ahead: Option<Ahead>,
+    spreads: Vec<(Arc<Case>, String, usize)>,
     ends: bool,
 }
 
@@ -108,6 +112,14 @@ impl Reader {
         self.wish(|w| w.ahead = Some((case, fields)));
     }
 
+    /// Asks how the values of some properties of a case are spread at steps.
+    pub fn spreads(&self, case: &Arc<Case>, wanted: &[(String, usize)]) {
+        let all = wanted
+            .iter()
+            .map(|(name, step)| (case.clone(), name.clone(), *step));
+        self.wish(|w| w.spreads = all.collect());
+    }
+
     fn wish(&self, change: impl FnOnce(&mut Wishes)) {
         change(&mut lock(&self.wishes.0));
         self.wishes.1.notify_one();
@@ -134,6 +146,7 @@ enum Wish {
     Table(Cells, usize),
     Curves(Cells, String),
     Ahead(Ahead),
+    Spread(Arc<Case>, String, usize),
 }
 
 struct Thread {
@@ -155,6 +168,10 @@ impl Thread {
                     self.say(Read::Table(Table { of, step, rows }));
                 }
                 Wish::Curves(of, property) => self.follow(of, property),
+                Wish::Spread(case, property, step) => {
+                    let spread = Spread::of(&case, &property, step);
+                    self.say(Read::Spread(Arc::new(spread)));
+                }
                 Wish::Ahead((case, fields)) => {
                     for (property, step) in fields {
                         // Reading ahead is a favor: where it fails, showing the step will say why.
@@ -181,6 +198,9 @@ impl Thread {
             if let Some((of, step)) = wishes.table.take() {
                 return Some(Wish::Table(of, step));
             }
+            if let Some((case, property, step)) = wishes.spreads.pop() {
+                return Some(Wish::Spread(case, property, step));
+            }
             if let Some(ahead) = wishes.ahead.take() {
                 return Some(Wish::Ahead(ahead));
             }
@@ -197,7 +217,8 @@ impl Thread {
 
     fn has_wishes(&self) -> bool {
         let w = lock(&self.wishes.0);
-        w.ends || w.look.is_some() || w.table.is_some() || w.curves.is_some() || w.ahead.is_some()
+        let is_asked = w.look.is_some() || w.table.is_some() || w.curves.is_some();
+        w.ends || is_asked || w.ahead.is_some() || !w.spreads.is_empty()
     }
 
     /// Reads a property step by step. Another wish comes first; the curves then begin anew.

@@ -64,10 +64,7 @@ impl Window {
     }
 
     fn export_sheet(&mut self, ctx: &Context, is_film: bool) {
-        let document = self.document();
-        let Some((case, scene)) =
-            document.and_then(|d| Some((d.case.clone()?, d.state.setup.scene.clone())))
-        else {
+        let Some((case, scene)) = self.subject() else {
             self.sheets.export = None;
             self.fail("open a case first");
             return;
@@ -111,6 +108,10 @@ impl Window {
                 },
                 kind,
                 plain: !export.annotated,
+                compared: self.compared(),
+                marked: self
+                    .document()
+                    .map_or_else(Vec::new, |d| d.state.selected.clone()),
             };
             self.ask_file(ctx, Purpose::Export(Box::new(spec)));
         }

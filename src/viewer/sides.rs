@@ -16,7 +16,8 @@ use super::worker::{Wanted, Why};
 use super::{handles, keys::Command, marks, overlay};
 use crate::case::Case;
 use crate::picking::Hit;
-use crate::picture::{self, Annotations};
+use crate::picture::Annotations;
+use crate::picture::compared::differing;
 use crate::scene::{CameraSpec, Scene, Show, View};
 
 /// Where the pictures are, and what the pointer is on.
@@ -57,18 +58,21 @@ impl Window {
             }
             return;
         };
-        let Some(case) = document.case.clone() else {
+        if document.case.is_none() {
             let closes = welcome::waiting(ui, document);
             if closes {
                 self.close(self.current);
             }
             return;
+        }
+        let Some((case, scene)) = self.subject() else {
+            return;
         };
         let mut actions = Vec::new();
         if !self.settings.hides_panels && ui.available_width() >= WIDTH_OF_PANELS {
-            self.panels(ui, &case, &mut actions);
+            self.panels(ui, &case, &scene, &mut actions);
         }
-        let touched = self.pictures(ui, ctx, &case);
+        let touched = self.pictures(ui, ctx, &case, &scene);
         actions.extend(touched.camera.map(Action::Camera));
         actions.extend(touched.actions);
         for action in actions {
@@ -76,23 +80,25 @@ impl Window {
         }
     }
 
-    fn panels(&mut self, ui: &mut Ui, case: &Arc<Case>, actions: &mut Vec<Action>) {
+    fn panels(&self, ui: &mut Ui, case: &Arc<Case>, scene: &Scene, actions: &mut Vec<Action>) {
         let Some(document) = self.documents.get(self.current) else {
             return;
         };
         let others = self.documents.iter().filter(|d| d.path != document.path);
         let others: Vec<_> = others.map(|d| (d.path.clone(), d.title())).collect();
-        let setup = &document.state.setup;
-        let is_difference = setup.comparison.is_some();
+        let comparison = document.state.setup.comparison.as_ref();
+        let is_compared = comparison.is_some_and(|c| c.layout == Layout::ColorDifference);
         let about = About {
             case,
             state: &document.state,
-            scene: &setup.scene,
+            scene,
             picture: self.pictures.shown(0, case).map(|s| &s.picture),
-            difference: self.pictures.difference().filter(|_| is_difference),
+            difference: self.pictures.difference().filter(|_| is_compared),
+            refusal: self.difference_of_values().and_then(Result::err),
             hit: document.hit.as_ref(),
             table: document.table.as_ref(),
             curves: document.curves.as_ref(),
+            spreads: &document.spreads,
             others: &others,
         };
         let left = egui::Panel::left("left");
@@ -101,7 +107,13 @@ impl Window {
         side(ui, right, &panels::RIGHT, &about, actions);
     }
 
-    fn pictures(&mut self, ui: &mut Ui, ctx: &Context, case: &Arc<Case>) -> Touched {
+    fn pictures(
+        &mut self,
+        ui: &mut Ui,
+        ctx: &Context,
+        case: &Arc<Case>,
+        subject: &Scene,
+    ) -> Touched {
         let Some(document) = self.documents.get(self.current) else {
             return Touched::default();
         };
@@ -117,7 +129,7 @@ impl Window {
         self.beside(ui, &pages, &cases, layout);
         let rects = pages.map(|p| p.as_ref().map(Page::volume));
         self.sides.rects = rects;
-        let mut touched = self.viewport(ui, case, &setup.scene, rects[0], 0);
+        let mut touched = self.viewport(ui, case, subject, rects[0], 0);
         let mut on_other = None;
         if let (Some((other, scene)), Some(rect), Some(comparison)) =
             (other, rects[1], &setup.comparison)
@@ -141,22 +153,24 @@ impl Window {
                 }
                 _ => self.difference_map(ui, rect),
             }
-            if self.pictures.are_final() {
+            if layout == Some(Layout::ColorDifference) && self.pictures.are_final() {
                 self.pictures.compare();
             }
+        }
+        if let (Some(Err(why)), Some(rect)) = (self.difference_of_values(), rects[0]) {
+            overlay::refusal(&ui.painter_at(rect), rect, &why);
         }
         if let Some(shown) = self.pictures.shown(0, case)
             && let Some(rect) = rects[0]
         {
             let view = shown.picture.view.clone();
-            let scene = &setup.scene;
-            self.mark(ui, &rects, case, setup.comparison.as_ref(), scene);
-            if let Some(planes) = handles::show(ui, rect, &view, scene) {
+            self.mark(ui, &rects, case, setup.comparison.as_ref(), subject);
+            if let Some(planes) = handles::show(ui, rect, &view, subject) {
                 touched.actions.push(Action::Clip(planes));
             }
         }
-        self.pick(ctx, case, &setup.scene, touched.pick, on_other);
-        self.hover(ui, ctx, case, &setup.scene);
+        self.pick(ctx, case, subject, touched.pick, on_other);
+        self.hover(ui, ctx, case, subject);
         touched
     }
 
@@ -281,11 +295,13 @@ impl Window {
     ) {
         let shown = self.shown_views(cases);
         let own = match &shown {
-            [Some(first), Some(second)] => differing([first, second]),
+            [Some(first), Some(second)] => {
+                differing([(&*first.1, &*first.0), (&*second.1, &*second.0)])
+            }
             _ => Default::default(),
         };
         let figures = match layout {
-            Some(Layout::Difference) => self.pictures.difference(),
+            Some(Layout::ColorDifference) => self.pictures.difference(),
             _ => None,
         };
         let figures = figures.map(|d| pages::figures(&d.difference.figures));
@@ -300,7 +316,7 @@ impl Window {
                 pages::draw(ui.painter(), page, shown, title, &own[n]);
             }
             // Both have the same place.
-            if layout == Some(Layout::Difference) {
+            if layout == Some(Layout::ColorDifference) {
                 break;
             }
         }
@@ -357,7 +373,7 @@ impl Window {
 
     /// Reads the fault that the pointer rests on.
     fn hover(&mut self, ui: &Ui, ctx: &Context, case: &Arc<Case>, scene: &Scene) {
-        let Some(rect) = self.sides.rects[0].filter(|_| scene.show.faults) else {
+        let Some(rect) = self.sides.rects[0].filter(|_| scene.show.faults.are_shown()) else {
             return;
         };
         let pointer = ctx.input(|i| i.pointer.hover_pos());
@@ -388,24 +404,6 @@ impl Window {
     }
 }
 
-/// What two pictures have each of its own: case, property, step, strategy.
-fn differing(shown: [&(Arc<View>, Arc<Case>); 2]) -> [String; 2] {
-    let facts = shown.map(|(view, case)| {
-        [
-            case.about.name.clone(),
-            view.property.clone(),
-            picture::when(case, view),
-            view.strategy.name().to_uppercase(),
-        ]
-    });
-    let differ = |n: &usize| facts[0][*n] != facts[1][*n];
-    let own = |facts: &[String; 4]| {
-        let own: Vec<_> = (0..4).filter(differ).map(|n| facts[n].as_str()).collect();
-        own.join("   ")
-    };
-    [own(&facts[0]), own(&facts[1])]
-}
-
 /// Places of both pictures, and how they are shown.
 fn layout(place: Rect, comparison: Option<&Comparison>) -> ([Option<Rect>; 2], Option<Layout>) {
     let layout = comparison.map(|c| c.layout);
@@ -419,7 +417,8 @@ fn layout(place: Rect, comparison: Option<&Comparison>) -> ([Option<Rect>; 2], O
             ]
             .map(Some)
         }
-        Some(Layout::Wipe(_) | Layout::Difference) => [Some(place), Some(place)],
+        Some(Layout::Difference) => [Some(place), None],
+        Some(Layout::Wipe(_) | Layout::ColorDifference) => [Some(place), Some(place)],
     };
     (rects, layout)
 }

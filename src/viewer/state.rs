@@ -5,6 +5,8 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
+use super::slices::Slicing;
+use crate::case::{Case, difference_name};
 use crate::scene::look::Look;
 use crate::scene::{Scene, StepSpec};
 use crate::strategies::StrategyKind;
@@ -19,6 +21,8 @@ pub struct State {
     pub selected: Vec<[usize; 3]>,
     /// How time plays.
     pub pace: Pace,
+    /// How slices are stepped through.
+    pub slicing: Slicing,
 }
 
 /// What makes the picture.
@@ -42,6 +46,32 @@ impl Setup {
         let look = self.looks.get(&property).cloned().unwrap_or_default();
         look.apply(&mut self.scene);
         self.scene.property = Some(property);
+    }
+
+    /// The name of the property that is the difference of values shown, where one is.
+    pub fn difference(&self) -> Option<String> {
+        let comparison = self.comparison.as_ref()?;
+        let is_shown = comparison.layout == Layout::Difference && comparison.differs_in_values();
+        let now = self.scene.property.as_ref().filter(|_| is_shown)?;
+        let base = comparison.property.as_ref().unwrap_or(now);
+        let at = match (&comparison.case, &comparison.step) {
+            (Some(path), _) => path.file_stem().map(|s| s.to_string_lossy().into_owned()),
+            (None, Some(StepSpec::Index(n))) => Some(n.to_string()),
+            (None, Some(StepSpec::Name(name))) => Some(name.clone()),
+            (None, None) => None,
+        };
+        Some(difference_name(now, base, at.as_deref()))
+    }
+
+    /// Changes range, colors or opacities of what is shown: of the difference where that is.
+    pub fn change_look(&mut self, change: impl FnOnce(&mut Look)) {
+        if let Some(name) = self.difference() {
+            change(self.looks.entry(name).or_default());
+            return;
+        }
+        let mut look = Look::of(&self.scene);
+        change(&mut look);
+        look.apply(&mut self.scene);
     }
 
     /// The scene of the second picture, if there is one.
@@ -114,16 +144,54 @@ pub enum Layout {
     Beside,
     /// The second one right of a part of the width.
     Wipe(f64),
-    /// How far they are apart, by CIEDE2000.
+    /// The values of the first minus those of the second, as a picture of its own.
     Difference,
+    /// How far the colors of two strategies are apart, by CIEDE2000.
+    ColorDifference,
 }
 
 impl Comparison {
+    /// What comparing begins with: the step shown beside the first one (the first beside the last), or the next
+    /// strategy where the property does not change with time.
+    pub fn opening(case: &Case, scene: &Scene) -> Self {
+        let is_dynamic = scene.property.as_ref().is_some_and(|p| case.is_dynamic(p));
+        let last = case.steps.len().saturating_sub(1);
+        if !is_dynamic || last == 0 {
+            return Self::of_strategies(scene);
+        }
+        let shown = match &scene.step {
+            StepSpec::Index(n) => *n,
+            StepSpec::Name(name) => case.step(name).unwrap_or(last),
+        };
+        Self {
+            step: Some(StepSpec::Index(if shown == 0 { last } else { 0 })),
+            ..Self::default()
+        }
+    }
+
     /// With the strategy that comes after the scene's.
-    pub fn with_next_strategy(scene: &Scene) -> Self {
+    pub fn of_strategies(scene: &Scene) -> Self {
         Self {
             strategy: Some(next_strategy(&scene.strategy).name().into()),
             ..Self::default()
         }
+    }
+
+    /// True where both pictures are of other values: another step, property or case.
+    pub fn differs_in_values(&self) -> bool {
+        self.step.is_some() || self.property.is_some() || self.case.is_some()
+    }
+
+    /// In another layout. Only values can be subtracted, and colors are compared of strategies alone, so what
+    /// does not fit gives way.
+    pub fn laid_out(self, layout: Layout, case: &Case, scene: &Scene) -> Self {
+        let fitting = match layout {
+            Layout::Difference if !self.differs_in_values() => Self::opening(case, scene),
+            Layout::ColorDifference if self.differs_in_values() || self.strategy.is_none() => {
+                Self::of_strategies(scene)
+            }
+            _ => self,
+        };
+        Self { layout, ..fitting }
     }
 }

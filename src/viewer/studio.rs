@@ -11,6 +11,7 @@ use super::worker::{Answer, Difference, Job, Picture, Wanted, Why};
 use crate::case::Case;
 use crate::gpu::Gpu;
 use crate::metrics::{Comparison, ciede2000_map};
+use crate::model::Grid;
 use crate::picking::{self, Hit};
 use crate::picture::{self, Rgb8};
 use crate::renderer::Renderer;
@@ -28,10 +29,11 @@ pub struct Studio {
     sides: [Side; 2],
 }
 
-/// A case on the device, and the scenes that were resolved last: of a draft and of a final picture.
+/// A grid on the device, and the scenes that were resolved last: of a draft and of a final picture.
 #[derive(Default)]
 struct Side {
-    renderer: Option<(Arc<Case>, Renderer)>,
+    /// Cases that share a grid share what is on the device.
+    renderer: Option<(Arc<Grid>, Renderer)>,
     resolved: VecDeque<(Wanted, Arc<View>)>,
 }
 
@@ -145,7 +147,7 @@ impl Studio {
         let holds_other = |s: &Side| {
             s.renderer
                 .as_ref()
-                .is_some_and(|(c, _)| !Arc::ptr_eq(c, case))
+                .is_some_and(|(grid, _)| !Arc::ptr_eq(grid, &case.grid))
         };
         if side == 0 && holds_other(&self.sides[0]) {
             self.sides[1] = Side::default();
@@ -172,12 +174,12 @@ impl Side {
     /// The renderer of a case: the one at hand, or a new one.
     fn renderer(&mut self, gpu: Arc<Gpu>, case: &Arc<Case>) -> Result<&mut Renderer, Failure> {
         let kept = self.renderer.take();
-        let kept = match kept.filter(|(kept, _)| Arc::ptr_eq(kept, case)) {
+        let kept = match kept.filter(|(kept, _)| Arc::ptr_eq(kept, &case.grid)) {
             Some(kept) => kept,
             None => {
                 let made = Renderer::new(gpu, &case.grid);
                 let made = made.map_err(|e| Failure::of_device(e.to_string()))?;
-                (case.clone(), made)
+                (case.grid.clone(), made)
             }
         };
         Ok(&mut self.renderer.insert(kept).1)

@@ -17,6 +17,7 @@ use super::settings::Settings;
 use super::sheets::Sheets;
 use super::sides::Sides;
 use super::state::State;
+use super::subject::CaseDifference;
 use super::worker::{Difference, Picture};
 use super::{bar, keys};
 use crate::picking::Hit;
@@ -40,6 +41,8 @@ pub struct Window {
     pub(super) awaited: Option<String>,
     /// What the reader was asked for last.
     pub(super) asked: Asked,
+    /// The difference of two cases that was asked for last.
+    pub(super) case_difference: Option<CaseDifference>,
     /// The size of letters that is remembered has been set.
     is_zoomed: bool,
 }
@@ -62,6 +65,7 @@ impl Window {
             watches,
             awaited: None,
             asked: Asked::default(),
+            case_difference: None,
             is_zoomed: false,
         };
         for case in cases {
@@ -132,11 +136,12 @@ impl Window {
     /// The picture of a side that is shown, and whether all that is asked for is.
     pub fn picture(&self, side: usize) -> Option<(&Picture, bool)> {
         let case = match side {
-            0 => self.document()?.case.clone()?,
+            0 => self.subject()?.0,
             _ => self.other_case()?,
         };
         let shown = self.pictures.shown(side, &case)?;
-        let is_final = self.awaited.is_none() && self.pictures.are_final();
+        let is_awaited = self.awaited.is_some() || self.awaits_difference();
+        let is_final = !is_awaited && self.pictures.are_final();
         Some((&shown.picture, is_final))
     }
 
@@ -220,6 +225,7 @@ impl Window {
         });
         self.remember(ctx);
         self.listen(ctx);
+        self.subtract_cases();
         for command in keys::pressed(ctx) {
             self.perform(ctx, command);
         }

@@ -1,6 +1,7 @@
 //! Comparing: two pictures from one camera.
 
 use eframe::egui::{Key, Modifiers, vec2};
+use strataray::scene::{RangeSpec, StepSpec, View};
 use strataray::viewer::{Action, Comparison, Layout};
 
 use super::common::{copy_of_sample, data, gpu, sample};
@@ -9,15 +10,26 @@ use super::driven::{Driven, covered};
 /// Mean CIEDE2000 of pictures of the same: rays pause by time, so single pixels may round differently.
 const SAME: f64 = 1e-3;
 
+fn compare(driven: &mut Driven, comparison: Comparison) {
+    let action = Action::Compare(Some(comparison));
+    driven.harness.state_mut().apply(action);
+}
+
+fn view(driven: &Driven, side: usize) -> View {
+    let (picture, _) = driven.harness.state().picture(side).unwrap();
+    View::clone(&picture.view)
+}
+
 #[test]
-fn two_strategies_stand_beside_each_other() {
+fn this_step_stands_beside_the_first_one() {
     let Some(_) = gpu() else { return };
     let mut driven = Driven::showing(sample());
     let alone = driven.picture(0);
     driven.press(Modifiers::NONE, Key::C);
     driven.wait_final();
-    let views = [0, 1].map(|n| driven.harness.state().picture(n).unwrap().0.view.clone());
-    assert_ne!(views[0].strategy, views[1].strategy);
+    let views = [0, 1].map(|n| view(&driven, n));
+    assert_eq!(views.each_ref().map(|v| v.step), [20, 0]);
+    assert_eq!(views[0].strategy, views[1].strategy);
     assert_eq!(views[0].camera, views[1].camera);
     assert!(2 * views[0].size[0] <= alone.size[0]);
     // A drag on the second one turns both.
@@ -26,25 +38,27 @@ fn two_strategies_stand_beside_each_other() {
     assert_eq!(both.len(), 2);
     driven.drag(both[1].center(), both[1].center() + vec2(80.0, 0.0));
     driven.wait_final();
-    let cameras = [0, 1].map(|n| driven.harness.state().picture(n).unwrap().0.view.camera);
+    let cameras = [0, 1].map(|n| view(&driven, n).camera);
     assert_eq!(cameras[0], cameras[1]);
     assert_ne!(cameras[0], before);
+    // What does not change with time has another strategy beside it.
+    driven.press(Modifiers::NONE, Key::C);
+    driven.click("PORO");
+    driven.wait_final();
+    driven.press(Modifiers::NONE, Key::C);
+    driven.wait_final();
+    assert_ne!(view(&driven, 0).strategy, view(&driven, 1).strategy);
 }
 
 #[test]
-fn a_difference_is_measured_and_a_wipe_dragged() {
+fn colors_are_compared_of_strategies_and_a_wipe_is_dragged() {
     let Some(_) = gpu() else { return };
     let mut driven = Driven::showing(sample());
     let comparison = Comparison {
-        layout: Layout::Difference,
+        layout: Layout::ColorDifference,
         strategy: Some("srg".into()),
         ..Comparison::default()
     };
-    let apply =
-        |d: &mut Driven, c: Comparison| d.harness.state_mut().apply(Action::Compare(Some(c)));
-    apply(&mut driven, comparison.clone());
-    driven.wait_final();
-    driven.wait("the difference", |w| w.difference().is_some());
     let mean = |d: &Driven| {
         d.harness
             .state()
@@ -53,10 +67,13 @@ fn a_difference_is_measured_and_a_wipe_dragged() {
             .figures
             .ciede2000_mean
     };
+    compare(&mut driven, comparison.clone());
+    driven.wait_final();
+    driven.wait("the difference", |w| w.difference().is_some());
     let strategies = mean(&driven);
     assert!(strategies > 10.0 * SAME && strategies < 3.0, "{strategies}");
-    // With itself there is none; with another step there is more.
-    apply(
+    // With itself there is none.
+    compare(
         &mut driven,
         Comparison {
             strategy: None,
@@ -68,20 +85,7 @@ fn a_difference_is_measured_and_a_wipe_dragged() {
         w.difference()
             .is_some_and(|d| d.figures.ciede2000_mean < SAME)
     });
-    apply(
-        &mut driven,
-        Comparison {
-            strategy: None,
-            step: Some(strataray::scene::StepSpec::Index(0)),
-            ..comparison.clone()
-        },
-    );
-    driven.wait_final();
-    driven.wait("a difference", |w| {
-        w.difference()
-            .is_some_and(|d| d.figures.ciede2000_mean > 10.0 * SAME)
-    });
-    apply(
+    compare(
         &mut driven,
         Comparison {
             layout: Layout::Wipe(0.5),
@@ -103,6 +107,98 @@ fn a_difference_is_measured_and_a_wipe_dragged() {
         matches!(layout, Layout::Wipe(at) if at < 0.45),
         "{layout:?}"
     );
+}
+
+#[test]
+fn a_difference_of_steps_is_one_of_values() {
+    let Some(_) = gpu() else { return };
+    let mut driven = Driven::sized(&[sample()], [1280.0, 1400.0], false);
+    driven.wait_final();
+    driven.click("Compare");
+    driven.wait_settled();
+    driven.click("Difference");
+    driven.wait_final();
+    let shown = view(&driven, 0);
+    assert!(driven.harness.state().picture(1).is_none());
+    assert_eq!((shown.property.as_str(), shown.step), ("SOIL-SOIL@0", 20));
+    let case = driven.document().case.clone().unwrap();
+    let [now, then] = [20, 0].map(|step| case.field("SOIL", step).unwrap());
+    for (n, v) in shown.field.values().iter().enumerate() {
+        assert_eq!(*v, now.values()[n] - then.values()[n]);
+    }
+    // Around 0, where neither color is.
+    let [low, high] = shown.transfer.true_range();
+    assert!(low == -high && high > 0.3, "{low} {high}");
+    let middle = shown.transfer.srgb(0.5);
+    assert!(middle.iter().all(|v| *v > 0.8), "{middle:?}");
+    // Its colors are its own, and the property keeps what it had.
+    let before = driven.scene().clone();
+    let range = RangeSpec::Fixed([-0.2, 0.2]);
+    driven.harness.state_mut().apply(Action::Range(range));
+    driven.wait_final();
+    assert_eq!(view(&driven, 0).transfer.true_range(), [-0.2, 0.2]);
+    assert_eq!(driven.scene(), &before);
+    driven.press(Modifiers::COMMAND, Key::Z);
+    driven.wait_final();
+    assert_eq!(view(&driven, 0).transfer.true_range(), [low, high]);
+    // Time goes on in the difference; a property that stays the same has none.
+    driven.press(Modifiers::NONE, Key::Home);
+    driven.wait_final();
+    assert!(
+        view(&driven, 0)
+            .field
+            .values()
+            .iter()
+            .all(|v| *v == 0.0 || v.is_nan())
+    );
+    driven.click("PORO");
+    driven.wait("the reason", |w| {
+        matches!(w.difference_of_values(), Some(Err(why)) if why.contains("does not change with time"))
+    });
+}
+
+#[test]
+fn a_difference_of_cases_is_made_cell_by_cell() {
+    let Some(_) = gpu() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let copy = copy_of_sample(folder.path());
+    let mut driven = Driven::open(&[copy.clone(), sample()]);
+    driven.wait_final();
+    let of = |case: &std::path::Path, step: Option<usize>| Comparison {
+        layout: Layout::Difference,
+        case: Some(case.to_owned()),
+        step: step.map(StepSpec::Index),
+        ..Comparison::default()
+    };
+    compare(&mut driven, of(&copy, None));
+    driven.wait_final();
+    let shown = view(&driven, 0);
+    assert_eq!(shown.property, "SOIL-SOIL@SCISSOR");
+    assert!(shown.field.values().iter().all(|v| *v == 0.0 || v.is_nan()));
+    // Against the first step of the other one.
+    compare(&mut driven, of(&copy, Some(0)));
+    driven.wait("the first step", |w| {
+        let (picture, is_final) = w.picture(0).unwrap();
+        is_final && picture.view.field.values().iter().any(|v| v.abs() > 0.3)
+    });
+    // Cells are picked in it, with the value that is seen.
+    let place = driven.place("volume");
+    driven.click_at(place.center(), Modifiers::NONE);
+    driven.wait("the cell", |w| {
+        w.document().is_some_and(|d| d.table.is_some())
+    });
+    let table = driven.document().table.clone().unwrap();
+    assert!(table.rows.iter().any(|r| r.0 == "SOIL-SOIL@SCISSOR"));
+    // Grids of other sizes have no difference, and it is said why.
+    if let Some(other) = data("spe1/SPE1CASE1.EGRID") {
+        let mut driven = Driven::open(&[other.clone(), sample()]);
+        driven.wait_final();
+        compare(&mut driven, of(&other, None));
+        driven.wait("the reason", |w| {
+            matches!(w.difference_of_values(), Some(Err(why)) if why.contains("40 x 30 x 10 cells"))
+        });
+        driven.wait_final();
+    }
 }
 
 #[test]

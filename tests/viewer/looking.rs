@@ -99,8 +99,8 @@ fn what_is_selected_or_drawn_is_framed_from_the_same_direction() {
     let mut driven = Driven::showing(sample());
     let whole = camera(&driven);
     let corner = Filter {
-        i: Some([1, 4]),
-        j: Some([1, 4]),
+        i: Some([1, 4].into()),
+        j: Some([1, 4].into()),
         ..Filter::default()
     };
     driven.harness.state_mut().apply(Action::Filter(corner));

@@ -12,6 +12,7 @@ mod coloring;
 mod common;
 mod comparing;
 mod driven;
+mod filtering;
 mod keeping;
 mod looking;
 mod opening;

@@ -1,7 +1,6 @@
 //! Selecting: filters, clip planes, cells.
 
 use eframe::egui::{Key, Modifiers, pos2, vec2};
-use egui_kittest::kittest::Queryable;
 use strataray::model::Ijk;
 use strataray::picking::Part;
 use strataray::scene::{Hull, Show};
@@ -9,32 +8,6 @@ use strataray::viewer::Action;
 
 use super::common::{gpu, sample};
 use super::driven::{Driven, covered};
-
-#[test]
-fn filters_take_cells_away() {
-    let Some(_) = gpu() else { return };
-    let mut driven = Driven::showing(sample());
-    let all = covered(&driven.picture(0), [255; 3]);
-    let count = driven.document().case.as_ref().unwrap().grid.dims().ni;
-    // The number stands right of its slider.
-    let number = driven.place(&format!("The last I drawn, 1 to {count}"));
-    driven.click_at(number.left_center() - vec2(40.0, 0.0), Modifiers::NONE);
-    let [first, last] = driven.scene().filter.i.unwrap();
-    assert!(first == 1 && last < count, "{first} {last}");
-    driven.wait_final();
-    let some = covered(&driven.picture(0), [255; 3]);
-    assert!(some < 0.9 * all, "{some} {all}");
-    driven.click("All cells");
-    driven.wait_final();
-    assert_eq!(covered(&driven.picture(0), [255; 3]), all);
-    driven.click("Property filters");
-    driven.wait_settled();
-    driven.click("Add a filter");
-    let filter = driven.scene().filter.properties[0].clone();
-    assert!(filter.min < filter.max);
-    driven.wait_final();
-    driven.harness.get_by_label("Smallest value drawn");
-}
 
 #[test]
 fn a_clip_plane_is_moved_by_its_handle() {

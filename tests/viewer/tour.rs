@@ -94,9 +94,9 @@ fn find(driven: &mut Driven) {
     // Only the oil.
     let mut filter = driven.scene().filter.clone();
     filter.properties.push(PropertyFilter {
-        name: "SOIL".into(),
-        min: 0.6,
-        max: 1.0,
+        min: Some(0.6),
+        max: Some(1.0),
+        ..PropertyFilter::open("SOIL")
     });
     apply(driven, Action::Filter(filter));
     shot(driven, "6_filter");

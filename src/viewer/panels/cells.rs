@@ -1,58 +1,164 @@
-//! Which cells are drawn, by I, J and K, and the vertical exaggeration.
+//! Which cells are drawn by I, J and K, single slices, and the vertical exaggeration.
 
-use eframe::egui::{self, Ui};
+use eframe::egui::{self, Color32, Role, Ui, WidgetInfo};
 
 use super::About;
-use crate::scene::Filter;
+use super::range_slider::RangeSlider;
+use crate::scene::{Filter, Indices};
 use crate::viewer::action::Action;
+use crate::viewer::slices::{AXES, count};
 
-/// Width of a slider, in points: two stand beside each other.
-const SLIDER: f32 = 58.0;
+/// Width of the field for a list, in points.
+const FIELD: f32 = 84.0;
+/// Lists as they may be typed.
+const FORM: &str = "2,4-6,10-30:2";
 
 pub fn show(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
     let dims = about.case.grid.dims();
     let mut filter = about.scene.filter.clone();
-    let before = filter.clone();
-    for (name, range, count) in [
-        ("I", &mut filter.i, dims.ni),
-        ("J", &mut filter.j, dims.nj),
-        ("K", &mut filter.k, dims.nk),
-    ] {
-        ui.horizontal(|ui| between(ui, name, range, count));
+    for (axis, name) in AXES.into_iter().enumerate() {
+        ui.push_id(name, |ui| {
+            let count = count(dims, axis);
+            ui.horizontal(|ui| along(ui, name, filter.along_mut(axis), count));
+            refusal(ui, filter.along(axis), count);
+        });
     }
-    let all = ui.add_enabled(filter != Filter::default(), egui::Button::new("All cells"));
-    if all
-        .on_hover_text("Takes these and the property filters away")
-        .clicked()
-    {
-        filter = Filter::default();
-    }
-    if filter != before {
+    slices(ui, about, &mut filter, actions);
+    clear(ui, &mut filter);
+    if filter != about.scene.filter {
         actions.push(Action::Filter(filter));
     }
     exaggeration(ui, about, actions);
 }
 
-/// First and last row, column or layer; a slider each, and a button for one more or less.
-fn between(ui: &mut Ui, name: &str, range: &mut Option<[usize; 2]>, count: usize) {
-    ui.spacing_mut().slider_width = SLIDER;
-    ui.spacing_mut().interact_size.x = 32.0;
-    let [mut from, mut to] = range.unwrap_or([1, count]);
-    let before = [from, to];
-    ui.label(name);
-    for (value, end) in [(&mut from, "first"), (&mut to, "last")] {
-        let slider = ui.add(egui::Slider::new(value, 1..=count));
-        slider.on_hover_text(format!("The {end} {name} drawn, 1 to {count}"));
+/// Takes all filters away.
+pub fn clear(ui: &mut Ui, filter: &mut Filter) {
+    let is_set = *filter != Filter::default();
+    let button = ui.add_enabled(is_set, egui::Button::new("Clear filters"));
+    let what = "Draws all cells: clears I, J, K and the property filters";
+    if button.on_hover_text(what).clicked() {
+        *filter = Filter::default();
     }
-    if [from, to] != before {
-        // The end that was moved pushes the other one.
-        if from > to {
-            match from == before[0] {
-                true => from = to,
-                false => to = from,
+}
+
+/// First and last of an axis, by two handles, and a field for lists.
+fn along(ui: &mut Ui, name: &str, kept: &mut Option<Indices>, count: usize) {
+    ui.label(name);
+    let [first, last] = kept.as_ref().and_then(Indices::ends).unwrap_or([1, count]);
+    let [first, last] = [first, last].map(|n| n.clamp(1, count));
+    let most = count.max(2) as f64 - 1.0;
+    let mut parts = [first, last].map(|n| (n - 1) as f64 / most);
+    let slider = RangeSlider {
+        names: [format!("First {name}"), format!("Last {name}")],
+        values: [first as f64, last as f64],
+        bars: &[],
+        inverted: false,
+        height: 16.0,
+        width: (ui.available_width() - FIELD - 14.0).max(60.0),
+        nudge: Some(1.0 / most),
+    };
+    if slider.show(ui, &mut parts) {
+        let [a, b] = parts.map(|part| ((part * most).round() as usize + 1).min(count));
+        if [a, b] != [first, last] {
+            *kept = Some(Indices::Range([a, b])).filter(|_| [a, b] != [1, count]);
+        }
+    }
+    field(ui, name, kept, count);
+}
+
+/// A field for a number, a range or a list; what cannot be understood stays, and is said below.
+fn field(ui: &mut Ui, name: &str, kept: &mut Option<Indices>, count: usize) {
+    let id = ui.scope_id().with("typed");
+    let shown = match kept {
+        Some(kept) => kept.text(),
+        None => format!("1-{count}"),
+    };
+    let typed: Option<String> = ui.data(|d| d.get_temp(id));
+    let mut text = typed.clone().unwrap_or_else(|| shown.clone());
+    let is_wrong = typed.is_some_and(|t| Indices::typed(&t, count).is_err());
+    let mut edit = egui::TextEdit::singleline(&mut text).desired_width(FIELD - 10.0);
+    if is_wrong {
+        edit = edit.text_color(wrong(ui));
+    }
+    let response = ui.add(edit);
+    let label = format!("List of {name}");
+    response.widget_info(|| WidgetInfo::labeled(Role::TextInput, true, &label));
+    let response = response.on_hover_text(format!(
+        "{name} drawn, 1 to {count}: a number, a range or a list such as {FORM}, where :2 takes every second"
+    ));
+    if response.changed() {
+        ui.data_mut(|d| d.insert_temp(id, text.clone()));
+    }
+    if response.lost_focus() {
+        match Indices::typed(&text, count) {
+            Ok(indices) => {
+                ui.data_mut(|d| d.remove_temp::<String>(id));
+                *kept = indices;
+            }
+            Err(_) => {
+                ui.data_mut(|d| d.insert_temp(id, text));
             }
         }
-        *range = ([from, to] != [1, count]).then_some([from, to]);
+    } else if !response.has_focus() && text != shown && !is_wrong {
+        ui.data_mut(|d| d.remove_temp::<String>(id));
+    }
+}
+
+/// Why what was typed is not taken.
+fn refusal(ui: &mut Ui, kept: Option<&Indices>, count: usize) {
+    let typed: Option<String> = ui.data(|d| d.get_temp(ui.scope_id().with("typed")));
+    let why = match (typed, kept) {
+        (Some(text), _) => Indices::typed(&text, count).err(),
+        (None, Some(kept)) => kept.flags(count).err(),
+        (None, None) => None,
+    };
+    if let Some(why) = why {
+        ui.colored_label(wrong(ui), why);
+    }
+}
+
+fn wrong(ui: &Ui) -> Color32 {
+    ui.visuals().error_fg_color
+}
+
+/// Steps through single slices of an axis.
+fn slices(ui: &mut Ui, about: &About<'_>, filter: &mut Filter, actions: &mut Vec<Action>) {
+    let dims = about.case.grid.dims();
+    let before = about.state.slicing;
+    let mut slicing = before;
+    ui.horizontal_wrapped(|ui| {
+        ui.label("Slices");
+        for (axis, name) in AXES.into_iter().enumerate() {
+            let is_on = slicing.axis == axis;
+            let button = ui.selectable_label(is_on, name);
+            let label = format!("Slices along {name}");
+            button.widget_info(|| WidgetInfo::selected(Role::RadioButton, true, is_on, &label));
+            let what = format!("Page Up and Page Down step through {name}; with Shift they change the axis");
+            if button.on_hover_text(what).clicked() {
+                (slicing, *filter) = slicing.along(axis, filter, dims);
+            }
+        }
+        for (text, by, what) in [
+            ("<", -1, "Previous slice (Page Up)"),
+            (">", 1, "Next slice (Page Down)"),
+        ] {
+            let button = ui.button(text);
+            button.widget_info(|| WidgetInfo::labeled(Role::Button, true, what));
+            if button.on_hover_text(what).clicked() {
+                *filter = slicing.stepped(filter, dims, by);
+            }
+        }
+        ui.label(slicing.words(filter, dims));
+        let mut alone = slicing.alone;
+        let switch = ui.checkbox(&mut alone, "Section only").on_hover_text(
+            "On: the slice alone. Off: the slice and the cells beyond it, as a cut through the model",
+        );
+        if switch.changed() {
+            (slicing, *filter) = slicing.with_alone(alone, filter, dims);
+        }
+    });
+    if slicing != before {
+        actions.push(Action::Slicing(slicing));
     }
 }
 

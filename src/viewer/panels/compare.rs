@@ -11,53 +11,39 @@ use crate::viewer::state::{Comparison, Layout};
 /// Part of the width that the first picture has when a wipe begins.
 const HALF: f64 = 0.5;
 
+/// Text of the button, layout, and what it shows.
+const LAYOUTS: [(&str, Option<Layout>, &str); 5] = [
+    ("Off", None, "One image"),
+    ("Beside", Some(Layout::Beside), "Two images from one camera"),
+    (
+        "Wipe",
+        Some(Layout::Wipe(HALF)),
+        "Both images in one place, with a line to drag between them",
+    ),
+    (
+        "Difference",
+        Some(Layout::Difference),
+        "The values of the first minus those of the second, cell by cell",
+    ),
+    (
+        "Color difference (CIEDE2000)",
+        Some(Layout::ColorDifference),
+        "How far apart two strategies draw the same values",
+    ),
+];
+
 pub fn show(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
     let before = &about.state.setup.comparison;
     let mut comparison = before.clone();
-    ui.horizontal(|ui| {
-        let layout = comparison.as_ref().map(|c| c.layout);
-        let is_wipe = matches!(layout, Some(Layout::Wipe(_)));
-        for (name, is_on, wanted, what) in [
-            ("Off", layout.is_none(), None, "One picture"),
-            (
-                "Beside",
-                layout == Some(Layout::Beside),
-                Some(Layout::Beside),
-                "Two pictures from one camera",
-            ),
-            (
-                "Wipe",
-                is_wipe,
-                Some(Layout::Wipe(HALF)),
-                "Both in one place, with a line to drag between them",
-            ),
-            (
-                "Difference",
-                layout == Some(Layout::Difference),
-                Some(Layout::Difference),
-                "How far the pictures are apart, by CIEDE2000",
-            ),
-        ] {
-            if ui
-                .selectable_label(is_on, name)
-                .on_hover_text(what)
-                .clicked()
-                && !is_on
-            {
-                comparison = wanted.map(|layout| Comparison {
-                    layout,
-                    ..comparison
-                        .clone()
-                        .unwrap_or_else(|| Comparison::with_next_strategy(about.scene))
-                });
-            }
-        }
-    });
+    layouts(ui, about, &mut comparison);
     if let Some(comparison) = &mut comparison {
         other(ui, about, comparison);
     }
     if comparison != *before {
         actions.push(Action::Compare(comparison));
+    }
+    if let Some(why) = &about.refusal {
+        ui.colored_label(ui.visuals().warn_fg_color, why);
     }
     if let Some(shown) = about.difference {
         let figures = shown.difference.figures;
@@ -72,46 +58,65 @@ pub fn show(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
     }
 }
 
-/// What the second picture has of its own.
+fn layouts(ui: &mut Ui, about: &About<'_>, comparison: &mut Option<Comparison>) {
+    let scene = &about.state.setup.scene;
+    let current = comparison.as_ref().map(|c| c.layout);
+    let kind = |layout: &Option<Layout>| layout.as_ref().map(std::mem::discriminant);
+    ui.horizontal_wrapped(|ui| {
+        for (name, layout, what) in LAYOUTS {
+            let is_on = kind(&current) == kind(&layout);
+            let button = ui.selectable_label(is_on, name).on_hover_text(what);
+            if button.clicked() && !is_on {
+                *comparison = layout.map(|layout| {
+                    let known = comparison.clone();
+                    let known = known.unwrap_or_else(|| Comparison::opening(about.case, scene));
+                    known.laid_out(layout, about.case, scene)
+                });
+            }
+        }
+    });
+}
+
+/// What the second image has of its own.
 fn other(ui: &mut Ui, about: &About<'_>, comparison: &mut Comparison) {
-    let strategies = StrategyKind::ALL.map(|k| (k.name().to_owned(), k.name().to_uppercase()));
-    choice(
-        ui,
-        "Strategy",
-        "Strategy of the second picture",
-        &mut comparison.strategy,
-        &strategies,
-    );
-    let properties = about.case.properties.iter();
-    let properties: Vec<_> = properties
-        .map(|p| (p.name.clone(), p.name.clone()))
-        .collect();
-    choice(
-        ui,
-        "Property",
-        "Property of the second picture",
-        &mut comparison.property,
-        &properties,
-    );
+    ui.weak(match comparison.layout {
+        Layout::Beside | Layout::Wipe(_) => "The second image shows",
+        Layout::Difference => "The image minus",
+        Layout::ColorDifference => "The image against",
+    });
+    if comparison.layout != Layout::ColorDifference {
+        values(ui, about, comparison);
+    }
+    if comparison.layout != Layout::Difference {
+        let strategies = StrategyKind::ALL.map(|k| (k.name().to_owned(), k.name().to_uppercase()));
+        let value = &mut comparison.strategy;
+        choice(
+            ui,
+            "Strategy",
+            "Strategy of the second image",
+            value,
+            &strategies,
+        );
+    }
+}
+
+/// What makes the values of the second image others.
+fn values(ui: &mut Ui, about: &About<'_>, comparison: &mut Comparison) {
     let steps = about.case.steps.iter().enumerate();
     let steps: Vec<_> = steps
         .map(|(n, s)| (StepSpec::Index(n), format!("{n}   {}", s.date)))
         .collect();
-    choice(
-        ui,
-        "Step",
-        "Time step of the second picture",
-        &mut comparison.step,
-        &steps,
-    );
+    let what = "Time step of the second image";
+    choice(ui, "Step", what, &mut comparison.step, &steps);
+    let properties = about.case.properties.iter();
+    let properties: Vec<_> = properties
+        .map(|p| (p.name.clone(), p.name.clone()))
+        .collect();
+    let what = "Property of the second image";
+    choice(ui, "Property", what, &mut comparison.property, &properties);
     if !about.others.is_empty() || comparison.case.is_some() {
-        choice(
-            ui,
-            "Case",
-            "Another case that is open",
-            &mut comparison.case,
-            about.others,
-        );
+        let what = "Another case that is open; its step is the one with the nearest date";
+        choice(ui, "Case", what, &mut comparison.case, about.others);
     }
 }
 

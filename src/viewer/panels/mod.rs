@@ -7,10 +7,12 @@ mod compare;
 mod controls;
 mod curve;
 mod curves;
+mod faults;
 mod filters;
 mod light;
 mod player;
 mod property;
+mod range_slider;
 mod selection;
 mod statistics;
 mod strategy;
@@ -25,6 +27,7 @@ use eframe::egui::Ui;
 use super::action::Action;
 use super::pictures::ShownDifference;
 use super::reader::{Curves, Table};
+use super::spread::Spread;
 use super::state::State;
 use super::worker::Picture;
 use crate::case::Case;
@@ -45,14 +48,18 @@ pub struct About<'a> {
     pub scene: &'a Scene,
     /// The last picture.
     pub picture: Option<&'a Picture>,
-    /// How far it is from the second one.
+    /// How far its colors are from those of the second one.
     pub difference: Option<&'a ShownDifference>,
+    /// Why the difference of values that is asked for is not shown.
+    pub refusal: Option<String>,
     /// Where the pointer met what was selected last.
     pub hit: Option<&'a Hit>,
     /// All properties of the selected cells.
     pub table: Option<&'a Table>,
     /// The property shown over time, in the selected cells.
     pub curves: Option<&'a Curves>,
+    /// How the values are spread by which cells are filtered.
+    pub spreads: &'a [Arc<Spread>],
     /// The other cases that are open, with their names.
     pub others: &'a [(PathBuf, String)],
 }
@@ -90,10 +97,14 @@ const fn panel(title: &'static str, is_open: bool, show: Show) -> Panel {
 }
 
 /// Panels at the left, from top to bottom.
-pub const LEFT: [Panel; 5] = [
+pub const LEFT: [Panel; 6] = [
     panel("Property", true, property::show),
     panel("Cells", true, cells::show),
     panel("Shown", true, surfaces::show),
+    Panel {
+        count: |about| about.case.about.named_faults.len(),
+        ..panel("Faults", false, faults::show)
+    },
     Panel {
         count: |about| about.scene.filter.properties.len(),
         ..panel("Property filters", false, filters::show)

@@ -4,7 +4,7 @@ use eframe::egui::{self, Ui};
 
 use super::About;
 use super::controls::{list, number, one_of, show_chosen};
-use crate::case::{Kind, Property, difference};
+use crate::case::{Kind, Property};
 use crate::scene::{Coloring, Interpolation, OwnRange, RangeSpec, ScaleSpec};
 use crate::viewer::action::Action;
 
@@ -39,7 +39,7 @@ fn properties(ui: &mut Ui, about: &About<'_>, current: &str, actions: &mut Vec<A
     ui.add(edit.desired_width(f32::INFINITY))
         .on_hover_text(what);
     ui.data_mut(|d| d.insert_temp(id, search.clone()));
-    let now = difference(current).map_or(current, |(now, ..)| now);
+    let now = about.case.difference(current).map_or(current, |d| d.now);
     let search = search.to_lowercase();
     // As high with few names as with many, so that what is below stays in its place.
     egui::ScrollArea::vertical()
@@ -81,8 +81,8 @@ fn differences(ui: &mut Ui, about: &About<'_>, current: &str, actions: &mut Vec<
     if !about.case.is_dynamic(current) {
         return;
     }
-    let (now, base) = match difference(current) {
-        Some((now, _, step)) => (now, about.case.step(step).ok()),
+    let (now, base) = match about.case.difference(current) {
+        Some(d) => (d.now, d.at.and_then(|step| about.case.step(step).ok())),
         None => (current, None),
     };
     let steps = about.case.steps.iter().enumerate();

@@ -156,21 +156,21 @@ fn buttons(ui: &mut Ui, about: &About<'_>, table: &Table, actions: &mut Vec<Acti
             (
                 "I",
                 Filter {
-                    i: Some([i, i]),
+                    i: Some([i, i].into()),
                     ..filter.clone()
                 },
             ),
             (
                 "J",
                 Filter {
-                    j: Some([j, j]),
+                    j: Some([j, j].into()),
                     ..filter.clone()
                 },
             ),
             (
                 "K",
                 Filter {
-                    k: Some([k, k]),
+                    k: Some([k, k].into()),
                     ..filter.clone()
                 },
             ),
@@ -219,9 +219,9 @@ fn like(about: &About<'_>) -> Option<Filter> {
     let mut filter = about.scene.filter.clone();
     filter.properties.retain(|p| p.name != *name);
     filter.properties.push(PropertyFilter {
-        name: name.clone(),
-        min,
-        max,
+        min: Some(min),
+        max: Some(max),
+        ..PropertyFilter::open(name)
     });
     Some(filter)
 }

@@ -1,10 +1,9 @@
 //! What is drawn beside the volume: hull, faults, inactive cells, connections, box and legend.
 
-use eframe::egui::{self, Color32, Ui, vec2};
+use eframe::egui::{self, Ui};
 
 use super::About;
-use crate::scene::surfaces::fault_color;
-use crate::scene::{CutFace, Hull, Inactive, Show};
+use crate::scene::{CutFace, Hull, Inactive, Show, ShownFaults};
 use crate::transfer::presets::parse_color;
 use crate::viewer::action::Action;
 
@@ -16,15 +15,18 @@ pub fn show(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
             .on_hover_text("The outer faces of the drawn cells, in the property's colors");
         show.hull = if hull { Hull::Opaque } else { Hull::Hidden };
         let is_cut = about.scene.clip.iter().any(|c| c.face == CutFace::Opaque);
-        let has_faces = show.hull == Hull::Opaque || show.faults || is_cut;
+        let has_faces = show.hull == Hull::Opaque || show.faults.are_shown() || is_cut;
         let edges = egui::Checkbox::new(&mut show.cell_edges, "Edges of cells");
         let what = "On hull, fault surfaces and opaque sections";
         ui.add_enabled(has_faces, edges)
             .on_hover_text(what)
             .on_disabled_hover_text("There are none: show the hull, fault surfaces or an opaque section");
         ui.end_row();
-        ui.checkbox(&mut show.faults, "Fault surfaces")
-            .on_hover_text("Half-transparent sheets, a color for each name in FAULTS; rest the pointer on one to read its throw");
+        let mut faults = show.faults.are_shown();
+        let switch = ui.checkbox(&mut faults, "Fault surfaces");
+        if switch.on_hover_text("Half-transparent sheets, a color for each name in FAULTS; rest the pointer on one to read its throw").changed() {
+            show.faults = ShownFaults::All(faults);
+        }
         let mut ghosts = show.inactive == Inactive::Ghost;
         ui.checkbox(&mut ghosts, "Inactive cells")
             .on_hover_text("Faint and gray");
@@ -41,9 +43,6 @@ pub fn show(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
     });
     if show != about.scene.show {
         actions.push(Action::Show(show));
-    }
-    if about.scene.show.faults {
-        names(ui, about);
     }
 }
 
@@ -71,19 +70,4 @@ fn connections(ui: &mut Ui, about: &About<'_>, show: &mut Show) {
     ui.add_enabled(count > 0, button).on_hover_text(format!(
         "Lines between the cells of the {count} non-neighbor connections"
     ));
-}
-
-/// Names of the faults with their colors.
-fn names(ui: &mut Ui, about: &About<'_>) {
-    let named = about.case.about.named_faults.iter().enumerate();
-    let named = named.map(|(n, f)| (Some(n), f.name.as_str()));
-    ui.horizontal_wrapped(|ui| {
-        for (number, name) in named.chain([(None, "without a name")]) {
-            let [r, g, b] = fault_color(number).map(|v| (255.0 * v).round() as u8);
-            let (rect, _) = ui.allocate_exact_size(vec2(10.0, 10.0), egui::Sense::hover());
-            ui.painter()
-                .rect_filled(rect, 2.0, Color32::from_rgb(r, g, b));
-            ui.label(name);
-        }
-    });
 }
