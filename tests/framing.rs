@@ -60,7 +60,7 @@ fn what_is_drawn_fills_its_rectangle_from_rim_to_rim() {
             [1600, 600],
             [600, 1200],
         ] {
-            let Shot { view, layout } = Shot::of(&scene(size), &case, false).unwrap();
+            let Shot { view, layout, .. } = Shot::of(&scene(size), &case, false).unwrap();
             assert_eq!(view.size, layout.volume_size());
             let [low, high] = reach(&view, &case);
             let name = model.display();
@@ -122,8 +122,8 @@ fn a_filter_is_framed_but_not_what_changes_with_time() {
     scene.property = Some("SOIL".into());
     let whole = scene::resolve(&scene, &case).unwrap();
     scene.filter = Filter {
-        i: Some([1, 5]),
-        j: Some([1, 5]),
+        i: Some([1, 5].into()),
+        j: Some([1, 5].into()),
         ..Filter::default()
     };
     let corner = scene::resolve(&scene, &case).unwrap();
@@ -133,9 +133,9 @@ fn a_filter_is_framed_but_not_what_changes_with_time() {
     // Oil goes away with time, and the camera stands still.
     scene.filter = Filter {
         properties: vec![PropertyFilter {
-            name: "SOIL".into(),
-            min: 0.5,
-            max: 1.0,
+            min: Some(0.5),
+            max: Some(1.0),
+            ..PropertyFilter::open("SOIL")
         }],
         ..Filter::default()
     };
