@@ -20,6 +20,15 @@ fn scene(size: [u32; 2]) -> Scene {
     }
 }
 
+/// Smallest and largest place in the picture of the box around what is drawn.
+fn reach_of_box(view: &View) -> [DVec2; 2] {
+    let start = [DVec2::INFINITY, DVec2::NEG_INFINITY];
+    view.subject.outline.iter().fold(start, |[a, b], corner| {
+        let at = view.camera.project(*corner, view.aspect()).unwrap();
+        [a.min(at), b.max(at)]
+    })
+}
+
 /// Smallest and largest place in the picture of the corners of the drawn cells.
 fn reach(view: &View, case: &Case) -> [DVec2; 2] {
     let drawn = view.drawn_active(&case.grid);
@@ -60,19 +69,27 @@ fn what_is_drawn_fills_its_rectangle_from_rim_to_rim() {
             [1600, 600],
             [600, 1200],
         ] {
-            let Shot { view, layout, .. } = Shot::of(&scene(size), &case, false).unwrap();
-            assert_eq!(view.size, layout.volume_size());
-            let [low, high] = reach(&view, &case);
-            let name = model.display();
-            assert!(
-                low.min_element() > 0.035 && high.max_element() < 0.965,
-                "{name} {low} {high}"
-            );
-            // Margins of 4 to 8 percent, in one direction at least.
-            assert!(
-                (high - low).max_element() > 0.87,
-                "{name} {size:?} {low} {high}"
-            );
+            let mut scene = scene(size);
+            for has_box in [false, true] {
+                scene.show.r#box = has_box;
+                let Shot { view, layout, .. } = Shot::of(&scene, &case, false).unwrap();
+                assert_eq!(view.size, layout.volume_size());
+                let name = format!("{} {size:?} {has_box}", model.display());
+                let [low, high] = reach(&view, &case);
+                let is_inside = low.min_element() > 0.039 && high.max_element() < 0.961;
+                assert!(is_inside, "{name} {low} {high}");
+                let across = (high - low).max_element();
+                // Margins of 4 percent, in one direction at least; a box and its labels take some room.
+                let [low, high] = reach_of_box(&view);
+                match has_box {
+                    false => assert!(across > 0.91, "{name} {across}"),
+                    true => {
+                        assert!(low.min_element() > 0.019 && high.max_element() < 0.981);
+                        let across = across.max((high - low).max_element());
+                        assert!(across > 0.85, "{name} {across}");
+                    }
+                }
+            }
         }
     }
 }
@@ -91,7 +108,7 @@ fn a_vertical_section_is_seen_from_the_side() {
         view.camera.forward
     );
     let [low, high] = reach(&view, &case);
-    assert!((high - low).x > 0.88);
+    assert!((high - low).x > 0.85);
 }
 
 #[test]
@@ -120,6 +137,7 @@ fn a_filter_is_framed_but_not_what_changes_with_time() {
     let case = load::open(&common::sample()).unwrap();
     let mut scene = scene([800, 600]);
     scene.property = Some("SOIL".into());
+    scene.show.r#box = false;
     let whole = scene::resolve(&scene, &case).unwrap();
     scene.filter = Filter {
         i: Some([1, 5].into()),
@@ -128,7 +146,7 @@ fn a_filter_is_framed_but_not_what_changes_with_time() {
     };
     let corner = scene::resolve(&scene, &case).unwrap();
     let [low, high] = reach(&corner, &case);
-    assert!((high - low).max_element() > 0.87, "{low} {high}");
+    assert!((high - low).max_element() > 0.91, "{low} {high}");
     assert!(corner.subject.points.len() < whole.subject.points.len() / 4);
     // Oil goes away with time, and the camera stands still.
     scene.filter = Filter {

@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use super::canvas::Canvas;
 use super::info::Info;
-use super::layout::{LINE, Layout, Parts};
+use super::layout::{LINE, Layout, Length, Parts};
 use super::legend::Key;
 use super::marks::mark_cells;
 use super::orientation::{Area, Orientation, Paper};
@@ -159,7 +159,10 @@ impl Annotations {
     pub fn parts(&self, key: &Key<'_>, height: f64) -> Parts {
         Parts {
             title: self.show_legend,
-            info: self.info.is_some(),
+            info: self.info.as_ref().map(|info| match info.is_long() {
+                true => Length::Long,
+                false => Length::Usual,
+            }),
             legend: self.show_legend.then(|| key.widths(0.85 * height)),
             left_legend: None,
         }

@@ -1,6 +1,6 @@
 //! The line below a picture: what is drawn, in numbers and words.
 
-use super::ticks::{label, shortened};
+use super::ticks::{short_label, shortened};
 use crate::case::Case;
 use crate::case::Weighting;
 use crate::scene::facts::Values;
@@ -84,6 +84,11 @@ impl Info {
         Self {
             items: texts.iter().map(item).collect(),
         }
+    }
+
+    /// True where there is more to say than of most pictures: about filters and cuts.
+    pub fn is_long(&self) -> bool {
+        self.items.iter().any(|i| i.weight == Weight::Filter)
     }
 
     /// All of it in one line.
@@ -185,11 +190,7 @@ fn readable(value: f64, largest: f64, range: f64) -> String {
     } else {
         1e-3 * largest
     };
-    let text = label(value, largest, step);
-    match text.contains('e') {
-        true => text,
-        false => shortened(&text).to_owned(),
-    }
+    short_label(value, largest, step)
 }
 
 /// A count with commas between thousands.

@@ -37,11 +37,20 @@ pub struct Parts {
     /// A title.
     pub title: bool,
     /// Facts on what is drawn.
-    pub info: bool,
+    pub info: Option<Length>,
     /// The legend.
     pub legend: Option<LegendWidths>,
     /// That of another picture in the same place.
     pub left_legend: Option<LegendWidths>,
+}
+
+/// How much there is to say of what is drawn. It does not change from one time step to the next.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Length {
+    /// As much as of most pictures.
+    Usual,
+    /// More: filters and cuts.
+    Long,
 }
 
 /// Widths that a legend needs.
@@ -65,8 +74,9 @@ const TITLE: f64 = 2.2;
 const INFO: f64 = 0.8;
 /// From one line of text to the next, in text heights.
 pub const LINE: f64 = 1.25;
-/// Text heights from where a picture is so wide that all facts stand in one line.
-const WIDE: f64 = 85.0;
+/// Text heights from where a picture is so wide that the usual facts stand in one line, and more of them.
+const WIDE: f64 = 50.0;
+const WIDER: f64 = 85.0;
 
 impl Layout {
     /// The volume alone.
@@ -102,10 +112,15 @@ impl Layout {
             layout.title = Some([DVec2::ZERO, DVec2::new(size.x, bottom)]);
             low.y = bottom;
         }
-        if parts.info {
-            layout.info_lines = match is_small || size.x > WIDE * unit {
-                true => 1,
-                false => 2,
+        if let Some(length) = parts.info {
+            let wide = match length {
+                Length::Usual => WIDE,
+                Length::Long => WIDER,
+            };
+            layout.info_lines = if is_small || size.x > wide * unit {
+                1
+            } else {
+                2
             };
             let height = (LINE * layout.info_lines as f64 + INFO) * unit;
             let top = (size.y - height).round();
@@ -188,7 +203,7 @@ mod tests {
         });
         (0..16).map(move |n| Parts {
             title: n & 1 > 0,
-            info: n & 2 > 0,
+            info: (n & 2 > 0).then_some(Length::Long),
             legend: legend.filter(|_| n & 4 > 0),
             left_legend: legend.filter(|_| n & 8 > 0),
         })

@@ -7,7 +7,7 @@ use glam::DVec2;
 use super::layout::{LINE, LegendWidths};
 use super::orientation::{Area, Text};
 use super::srgb_8bit;
-use super::ticks::{label, labels, log_labels, shortened};
+use super::ticks::{label, labels, log_labels, short_label};
 use crate::transfer::{Scale, TransferFunction};
 
 /// A legend on a ground of its own.
@@ -375,15 +375,9 @@ pub fn marks(transfer: &TransferFunction, wanted: usize, most: usize) -> Vec<(f6
 fn ends(transfer: &TransferFunction) -> [String; 2] {
     let range = transfer.true_range();
     let largest = range[0].abs().max(range[1].abs());
-    range.map(|value| {
-        let text = match transfer.scale {
-            Scale::Log => label(value, value, 5e-3 * value),
-            _ => label(value, largest, 2e-3 * (range[1] - range[0])),
-        };
-        match text.contains('e') {
-            true => text,
-            false => shortened(&text).to_owned(),
-        }
+    range.map(|value| match transfer.scale {
+        Scale::Log => short_label(value, value, 5e-3 * value),
+        _ => short_label(value, largest, 2e-3 * (range[1] - range[0])),
     })
 }
 

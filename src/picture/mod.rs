@@ -26,7 +26,7 @@ pub use axes::CONNECTION;
 pub use difference::{difference_colors, difference_picture};
 pub use files::{Format, PictureError, write_exr, write_png};
 pub use info::Info;
-pub use layout::{LINE, Layout, LegendWidths, Parts};
+pub use layout::{LINE, Layout, LegendWidths, Length, Parts};
 pub use legend::{GROUND, Key, Legend, cut};
 pub use marks::{cell_edges, mark_cells, mark_color};
 pub use orientation::{Area, Arrow, Orientation, Paper, Text, on_screen};

@@ -90,6 +90,20 @@ pub fn label(value: f64, largest: f64, step: f64) -> String {
     }
 }
 
+/// A value with the digits that a step needs and no zeros at its end, where `largest` is the largest value beside
+/// it.
+pub fn short_label(value: f64, largest: f64, step: f64) -> String {
+    let text = label(value, largest, step);
+    match text.contains('e') {
+        true => text,
+        false => match shortened(&text) {
+            // What rounds to zero has no sign.
+            "-0" => "0".to_owned(),
+            short => short.to_owned(),
+        },
+    }
+}
+
 /// A decimal number without the zeros at its end.
 pub fn shortened(number: &str) -> &str {
     if number.contains('.') {
@@ -146,6 +160,17 @@ mod tests {
             texts.dedup();
             assert!(texts.len() == all && all > 2, "{range:?} {texts:?}");
         }
+    }
+
+    #[test]
+    fn short_labels_have_no_zeros_at_the_end_and_no_negative_zero() {
+        let text = |value: f64| short_label(value, 1.0, 1e-3);
+        assert_eq!(
+            [0.85, 0.0, -1e-8, -0.25, 1.0].map(text),
+            ["0.85", "0", "0", "-0.25", "1"]
+        );
+        assert_eq!(short_label(2e8, 2e8, 1e5), "2e8");
+        assert_eq!(short_label(300.0, 400.0, 2.0), "300");
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use glam::{DQuat, DVec2, DVec3};
 use serde::{Deserialize, Serialize};
 
-use super::fit::MARGINS;
+use super::fit::{Framed, MARGINS};
 
 /// How a camera maps the world to its picture.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -104,7 +104,8 @@ impl Camera {
         projection: Projection,
     ) -> Option<Self> {
         let camera = Self::facing(azimuth_radians, elevation_radians, projection)?;
-        Some(camera.framed_within(points, aspect, MARGINS, zoom))
+        let margins = MARGINS;
+        Some(camera.framed_within(&[Framed { points, margins }], aspect, zoom))
     }
 
     /// The camera in this one's direction that looks at a point and has all others in its picture.

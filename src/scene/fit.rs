@@ -25,33 +25,51 @@ pub const MARGINS: Margins = Margins {
     bottom: 0.04,
 };
 
+/// Points, and what stays free around them.
+#[derive(Debug, Clone, Copy)]
+pub struct Framed<'a> {
+    /// In world space.
+    pub points: &'a [DVec3],
+    /// Around them.
+    pub margins: Margins,
+}
+
 impl Camera {
     /// The camera in this one's direction that has all points in its picture, as large as they can be.
     #[must_use]
     pub fn framed(self, points: &[DVec3], aspect: f64) -> Self {
-        self.framed_within(points, aspect, MARGINS, 1.0)
+        let margins = MARGINS;
+        self.framed_within(&[Framed { points, margins }], aspect, 1.0)
     }
 
-    /// The same within some margins; a `zoom` above 1 comes closer to the middle between them. The plane of a
-    /// parallel camera does not cut what is framed, however it is turned about its middle.
+    /// The same with some points within some margins and others within others; a `zoom` above 1 comes closer to the
+    /// middle of the picture. The plane of a parallel camera does not cut what is framed, however it is turned
+    /// about its middle.
     #[must_use]
-    pub fn framed_within(self, points: &[DVec3], aspect: f64, margins: Margins, zoom: f64) -> Self {
-        let Some(first) = points.first() else {
+    pub fn framed_within(self, framed: &[Framed<'_>], aspect: f64, zoom: f64) -> Self {
+        let points = || framed.iter().flat_map(|f| f.points);
+        let Some(first) = points().next() else {
             return self;
         };
         let start = [*first, *first];
-        let [low, high] = points
-            .iter()
-            .fold(start, |[a, b], p| [a.min(*p), b.max(*p)]);
+        let [low, high] = points().fold(start, |[a, b], p| [a.min(*p), b.max(*p)]);
         let center = 0.5 * (low + high);
-        let seen = points.iter().map(|p| {
-            let p = *p - center;
-            DVec3::new(p.dot(self.right), p.dot(self.up), p.dot(self.forward))
-        });
-        let opening = Opening::of(self.tan_half_fovy, aspect, margins);
+        let tan = self.tan_half_fovy;
+        let seen: Vec<Seen> = framed
+            .iter()
+            .filter(|f| !f.points.is_empty())
+            .map(|f| {
+                let points = f.points.iter().map(|p| {
+                    let p = *p - center;
+                    DVec3::new(p.dot(self.right), p.dot(self.up), p.dot(self.forward))
+                });
+                let flat = self.parallel.is_some();
+                Seen::of(points, Opening::of(tan, aspect, f.margins), flat)
+            })
+            .collect();
         let fit = match self.parallel {
-            None => opening.perspective(seen),
-            Some(_) => opening.parallel(seen, self.tan_half_fovy),
+            None => perspective(&seen),
+            Some(_) => parallel(&seen, tan),
         };
         let to_world = |v: DVec3| v.x * self.right + v.y * self.up + v.z * self.forward;
         let camera = Self {
@@ -59,21 +77,65 @@ impl Camera {
             parallel: fit.half_height,
             ..self
         };
-        let reach = camera.half_height(fit.depth) / self.tan_half_fovy;
-        let middle = camera.eye + to_world((reach * opening.middle()).with_z(fit.depth));
-        camera.closer(middle, zoom)
+        camera.closer(camera.eye + fit.depth * self.forward, zoom)
     }
 }
 
-/// How far the margins let the picture reach to each side, per unit of depth of a perspective camera.
+/// How far margins let the picture reach, per unit of depth of a perspective camera: left and right, below and
+/// above.
+#[derive(Clone, Copy)]
 struct Opening {
-    left: f64,
-    right: f64,
-    below: f64,
-    above: f64,
+    across: [f64; 2],
+    upward: [f64; 2],
 }
 
-/// A camera in its own axes: right, up and forward.
+impl Opening {
+    fn of(tan: f64, aspect: f64, margins: Margins) -> Self {
+        let part = |margin: f64| tan * (1.0 - 2.0 * margin);
+        Self {
+            across: [margins.left, margins.right].map(|m| aspect * part(m)),
+            upward: [margins.bottom, margins.top].map(part),
+        }
+    }
+}
+
+/// What a set of points asks of the eye, in the camera's axes: right, up and forward.
+///
+/// Each of the four sides of the picture is a plane through the eye that no point may be beyond: with the slope of a
+/// side, the point that asks the most of it says all.
+struct Seen {
+    opening: Opening,
+    across: Span,
+    upward: Span,
+    depths: Span,
+    radius: f64,
+}
+
+impl Seen {
+    /// Of points, seen in parallel where they are `flat`.
+    fn of(points: impl Iterator<Item = DVec3>, opening: Opening, flat: bool) -> Self {
+        let mut seen = Self {
+            opening,
+            across: Span::default(),
+            upward: Span::default(),
+            depths: Span::default(),
+            radius: 0.0,
+        };
+        for p in points {
+            let ends = |at: f64, [low, high]: [f64; 2]| match flat {
+                true => [at; 2],
+                false => [at + low * p.z, at - high * p.z],
+            };
+            seen.across.add(ends(p.x, opening.across));
+            seen.upward.add(ends(p.y, opening.upward));
+            seen.depths.add([p.z; 2]);
+            seen.radius = seen.radius.max(p.length());
+        }
+        seen
+    }
+}
+
+/// A camera in its own axes.
 struct Fit {
     eye: DVec3,
     /// Of a parallel camera half the picture's height.
@@ -82,73 +144,90 @@ struct Fit {
     depth: f64,
 }
 
-impl Opening {
-    fn of(tan: f64, aspect: f64, margins: Margins) -> Self {
-        let part = |margin: f64| 1.0 - 2.0 * margin;
-        Self {
-            left: tan * aspect * part(margins.left),
-            right: tan * aspect * part(margins.right),
-            below: tan * part(margins.bottom),
-            above: tan * part(margins.top),
+/// A direction in the picture: the ends that sets of points ask for, and the slopes of the two sides.
+type Asked = Vec<(Span, [f64; 2])>;
+
+fn asked(seen: &[Seen]) -> [Asked; 2] {
+    [
+        seen.iter().map(|s| (s.across, s.opening.across)).collect(),
+        seen.iter().map(|s| (s.upward, s.opening.upward)).collect(),
+    ]
+}
+
+/// The depth of all points.
+fn depths(seen: &[Seen]) -> Span {
+    let mut all = Span::default();
+    for s in seen {
+        all.add([s.depths.low, s.depths.high]);
+    }
+    all
+}
+
+/// The eye that is nearest: two opposite sides bound how far forward it may be, whichever set each belongs to.
+fn perspective(seen: &[Seen]) -> Fit {
+    let asked = asked(seen);
+    let depths = depths(seen);
+    // A single point could not be before the eye.
+    let mut z = depths.low - 1e-9;
+    for direction in &asked {
+        for (low, slopes) in direction {
+            for (high, others) in direction {
+                z = z.min((low.low - high.high) / (slopes[0] + others[1]));
+            }
         }
     }
-
-    /// Where the middle between the margins is, per unit of depth.
-    fn middle(&self) -> DVec3 {
-        0.5 * DVec3::new(self.right - self.left, self.above - self.below, 0.0)
-    }
-
-    /// The eye that is nearest to points: each of the four sides is a plane through it that no point may be
-    /// beyond, and two opposite planes bound how far forward it may be.
-    fn perspective(&self, points: impl Iterator<Item = DVec3>) -> Fit {
-        let mut across = Span::default();
-        let mut upward = Span::default();
-        let mut depths = Span::default();
-        for p in points {
-            across.add([p.x + self.left * p.z, p.x - self.right * p.z]);
-            upward.add([p.y + self.below * p.z, p.y - self.above * p.z]);
-            depths.add([p.z; 2]);
-        }
-        let by_width = -across.length() / (self.left + self.right);
-        let by_height = -upward.length() / (self.below + self.above);
-        // A single point could not be before the eye.
-        let z = by_width.min(by_height).min(depths.low - 1e-9);
-        let between = |span: &Span, slopes: [f64; 2]| {
-            0.5 * (span.low - slopes[0] * z + span.high + slopes[1] * z)
+    // In the middle of where it may be.
+    let [x, y] = asked.map(|direction| {
+        let mut between = Span {
+            low: f64::NEG_INFINITY,
+            high: f64::INFINITY,
         };
-        let x = between(&across, [self.left, self.right]);
-        let y = between(&upward, [self.below, self.above]);
-        Fit {
-            eye: DVec3::new(x, y, z),
-            half_height: None,
-            depth: depths.middle() - z,
+        for (span, slopes) in direction {
+            between.low = between.low.max(span.high + slopes[1] * z);
+            between.high = between.high.min(span.low - slopes[0] * z);
+        }
+        between.middle()
+    });
+    Fit {
+        eye: DVec3::new(x, y, z),
+        half_height: None,
+        depth: depths.middle() - z,
+    }
+}
+
+/// The lowest picture, by the depth at which a perspective one is as high.
+fn parallel(seen: &[Seen], tan: f64) -> Fit {
+    let asked = asked(seen);
+    let mut reach: f64 = 1e-9;
+    for direction in &asked {
+        for (low, slopes) in direction {
+            for (high, others) in direction {
+                reach = reach.max((high.high - low.low) / (slopes[0] + others[1]));
+            }
         }
     }
-
-    fn parallel(&self, points: impl Iterator<Item = DVec3>, tan: f64) -> Fit {
-        let mut across = Span::default();
-        let mut upward = Span::default();
-        let mut radius: f64 = 0.0;
-        for p in points {
-            across.add([p.x; 2]);
-            upward.add([p.y; 2]);
-            radius = radius.max(p.length());
+    let [x, y] = asked.map(|direction| {
+        let mut between = Span {
+            low: f64::NEG_INFINITY,
+            high: f64::INFINITY,
+        };
+        for (span, slopes) in direction {
+            between.low = between.low.max(span.high - slopes[1] * reach);
+            between.high = between.high.min(span.low + slopes[0] * reach);
         }
-        let by_width = across.length() / (self.left + self.right);
-        let by_height = upward.length() / (self.below + self.above);
-        // The depth at which a perspective picture is as high.
-        let reach = by_width.max(by_height).max(1e-9);
-        let depth = reach.max(1.01 * radius);
-        let eye = DVec3::new(across.middle(), upward.middle(), 0.0) - reach * self.middle();
-        Fit {
-            eye: eye.with_z(-depth),
-            half_height: Some(reach * tan),
-            depth,
-        }
+        between.middle()
+    });
+    let radius = seen.iter().fold(0.0, |r: f64, s| r.max(s.radius));
+    let depth = reach.max(1.01 * radius);
+    Fit {
+        eye: DVec3::new(x, y, -depth),
+        half_height: Some(reach * tan),
+        depth,
     }
 }
 
 /// The smallest of the first and the largest of the second of pairs of numbers.
+#[derive(Clone, Copy)]
 struct Span {
     low: f64,
     high: f64,
@@ -167,10 +246,6 @@ impl Span {
     fn add(&mut self, [low, high]: [f64; 2]) {
         self.low = self.low.min(low);
         self.high = self.high.max(high);
-    }
-
-    fn length(&self) -> f64 {
-        self.high - self.low
     }
 
     fn middle(&self) -> f64 {
@@ -228,8 +303,10 @@ mod tests {
                     (1.0, std::f64::consts::FRAC_PI_2, 1.6),
                 ] {
                     let camera = Camera::facing(azimuth, elevation, projection).unwrap();
-                    let camera = camera.framed_within(&points, aspect, margins, 1.0);
-                    let [left, right, top, bottom] = free(&camera, &points, aspect);
+                    let points = &points[..];
+                    let framed = Framed { points, margins };
+                    let camera = camera.framed_within(&[framed], aspect, 1.0);
+                    let [left, right, top, bottom] = free(&camera, points, aspect);
                     let over = [
                         [left - margins.left, right - margins.right],
                         [top - margins.top, bottom - margins.bottom],
@@ -273,17 +350,57 @@ mod tests {
     }
 
     #[test]
-    fn zooming_keeps_the_middle_between_the_margins() {
+    fn each_of_two_sets_keeps_its_own_margins() {
+        let points = diagonal();
+        let around: Vec<DVec3> = points.iter().map(|p| 1.02 * *p).collect();
+        let none = Margins {
+            left: 0.0,
+            right: 0.0,
+            top: 0.0,
+            bottom: 0.0,
+        };
+        for projection in [Projection::Perspective, Projection::Parallel] {
+            for azimuth in [0.1, 1.3, 2.7, 4.4] {
+                let camera = Camera::facing(azimuth, 0.4, projection).unwrap();
+                let both = [(&points, UNEVEN), (&around, none)];
+                let both = both.map(|(points, margins)| Framed { points, margins });
+                let camera = camera.framed_within(&both, 1.4, 1.0);
+                let over = both.map(|f| {
+                    let [left, right, top, bottom] = free(&camera, f.points, 1.4);
+                    let m = f.margins;
+                    [
+                        left - m.left,
+                        right - m.right,
+                        top - m.top,
+                        bottom - m.bottom,
+                    ]
+                });
+                let all = over.as_flattened();
+                assert!(all.iter().all(|o| *o > -1e-9), "{azimuth} {over:?}");
+                // Nothing could be larger: opposite sides are reached.
+                let reached = |a: usize, b: usize| {
+                    let touches = |n: usize| over.iter().any(|o| o[n] < 1e-9);
+                    touches(a) && touches(b)
+                };
+                assert!(reached(0, 1) || reached(2, 3), "{azimuth} {over:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn zooming_keeps_the_middle_of_the_picture() {
         let points = diagonal();
         for projection in [Projection::Perspective, Projection::Parallel] {
             let facing = Camera::facing(0.3, 0.6, projection).unwrap();
-            let [near, far] = [4.0, 1.0].map(|z| facing.framed_within(&points, 1.5, UNEVEN, z));
-            let at = glam::DVec2::new(0.5 * (0.1 + 0.98), 0.5 * (0.05 + 0.8));
-            let (origin, direction) = far.ray(at, 1.5);
-            let depth = far.depth(points.iter().sum::<DVec3>() / 8.0);
-            let point = origin + depth / direction.dot(far.forward) * direction;
-            let seen = near.project(point, 1.5).unwrap();
-            assert!(seen.distance(at) < 0.05, "{seen}");
+            let framed = Framed {
+                points: &points,
+                margins: UNEVEN,
+            };
+            let [near, far] = [4.0, 1.0].map(|z| facing.framed_within(&[framed], 1.5, z));
+            let (origin, direction) = far.ray(glam::DVec2::splat(0.5), 1.5);
+            let (other, other_direction) = near.ray(glam::DVec2::splat(0.5), 1.5);
+            assert!(direction.distance(other_direction) < 1e-9);
+            assert!((other - origin).cross(direction).length() < 1e-9);
             let [a, b] = [points[0], points[7]];
             let size = |camera: &Camera| {
                 let [a, b] = [a, b].map(|p| camera.project(p, 1.5).unwrap());

@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
 use super::camera::middle;
-use super::fit::{MARGINS, Margins};
+use super::fit::{Framed, MARGINS, Margins};
 use super::resolve::box_corners;
 use super::{Camera, CameraSpec, Filter, Projection, View};
 use crate::case::Case;
@@ -67,18 +67,20 @@ const SECTION: [f64; 2] = [0.5, 0.1];
 const FLAT: f64 = 0.04;
 /// Height over length of a body that is looked at from the side.
 const TALL: f64 = 1.5;
-/// Elevations of sections, tall bodies, long fields in narrow pictures, and single layers.
+/// Elevations of sections, tall bodies, and single layers.
 const SECTION_ELEVATION: f64 = 10.0;
 const TALL_ELEVATION: f64 = 20.0;
-const NARROW_ELEVATION: f64 = 45.0;
 const FLAT_ELEVATION: f64 = 55.0;
+/// Degrees that the camera stands higher than usual at most, where the width of the picture limits the size.
+const HIGHER: f64 = 10.0;
 
 impl Extents {
     /// The direction from which the cells show best in a picture of a width over height.
     ///
     /// Near the usual one, so that models are seen alike. A vertical section is seen from the side. A long field
     /// lies across a wide picture, of its two sides the one that is nearer to the usual direction being seen. A
-    /// single layer is seen from higher up, and a tall body from lower.
+    /// single layer is seen from higher up, and a tall body from lower; others from somewhat higher up where that
+    /// fills the height of the picture.
     pub fn direction(&self, aspect: f64) -> Direction {
         if let Some(axis) = self.section() {
             return Direction {
@@ -88,23 +90,38 @@ impl Extents {
         }
         let [i, j, height] = self.lengths.to_array();
         let (long, length) = if i >= j { (0, i) } else { (1, j) };
+        let is_long = length > LONG * i.min(j) && height < length;
+        let azimuth = match (is_long, aspect < NARROW) {
+            (false, _) => USUAL.azimuth,
+            (true, true) => near_usual(self.azimuth_along(long), LEAN),
+            (true, false) => near_usual(self.azimuth_along(long) + 90.0, LEAN),
+        };
         let elevation = match () {
             () if height > TALL * length => TALL_ELEVATION,
             () if self.cells[2] == 1 || height < FLAT * length => FLAT_ELEVATION,
-            () => USUAL.elevation,
+            () => USUAL.elevation + self.higher(azimuth, aspect),
         };
-        let is_long = length > LONG * i.min(j) && height < length;
-        match (is_long, aspect < NARROW) {
-            (false, _) => Direction { elevation, ..USUAL },
-            (true, true) => Direction {
-                azimuth: near_usual(self.azimuth_along(long), LEAN),
-                elevation: elevation.max(NARROW_ELEVATION),
-            },
-            (true, false) => Direction {
-                azimuth: near_usual(self.azimuth_along(long) + 90.0, LEAN),
-                elevation,
-            },
+        Direction { azimuth, elevation }
+    }
+
+    /// Degrees above the usual elevation at which the cells, seen from an azimuth, are as high as the picture where
+    /// they are as wide as that.
+    fn higher(&self, azimuth: f64, aspect: f64) -> f64 {
+        let away = DVec2::from_angle((90.0 - azimuth).to_radians());
+        let reach = |way: DVec2| {
+            let [i, j] = self.directions.map(|d| d.dot(way).abs());
+            i * self.lengths.x + j * self.lengths.y
+        };
+        let wanted = reach(away.perp()) / aspect;
+        let height = |degrees: f64| {
+            let (sin, cos) = (USUAL.elevation + degrees).to_radians().sin_cos();
+            reach(away) * sin + self.lengths.z * cos
+        };
+        let mut degrees = 0.0;
+        while degrees < HIGHER && height(degrees) < wanted {
+            degrees += 0.5;
         }
+        degrees
     }
 
     /// The horizontal axis across which the cells are a thin vertical section.
@@ -195,8 +212,8 @@ impl Subject {
         }
     }
 
-    /// The camera that frames the cells from a direction, or from the one that suits their shape, in a picture
-    /// with room for the labels of their box where it `has_box`.
+    /// The camera that frames the cells from a direction, or from the one that suits their shape; where it
+    /// `has_box`, also that, with room for its labels.
     pub fn camera(
         &self,
         from: Option<Direction>,
@@ -208,8 +225,19 @@ impl Subject {
         let Direction { azimuth, elevation } =
             from.unwrap_or_else(|| self.extents.direction(aspect));
         let camera = Camera::facing(azimuth.to_radians(), elevation.to_radians(), projection)?;
-        let margins = if has_box { BOXED } else { MARGINS };
-        Some(camera.framed_within(&self.points, aspect, margins, zoom))
+        let cells = Framed {
+            points: &self.points,
+            margins: MARGINS,
+        };
+        let outline = Framed {
+            points: &self.outline,
+            margins: LABELS,
+        };
+        let framed = match has_box {
+            true => &[cells, outline][..],
+            false => &[cells],
+        };
+        Some(camera.framed_within(framed, aspect, zoom))
     }
 }
 
@@ -228,11 +256,12 @@ impl View {
     }
 }
 
-/// Coordinates stand below and left of the box.
-const BOXED: Margins = Margins {
-    left: 0.06,
+/// Around the box: coordinates stand below it and at its left.
+const LABELS: Margins = Margins {
+    left: 0.07,
+    right: 0.02,
+    top: 0.02,
     bottom: 0.08,
-    ..MARGINS
 };
 
 /// The part of a filter that does not change with time; `None` where all of it does not.

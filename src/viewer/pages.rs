@@ -11,7 +11,7 @@ use super::studio::DIFFERENCE_SCALE;
 use crate::case::Case;
 use crate::metrics::Comparison;
 use crate::picture::{
-    Annotations, Area, GROUND, Info, LINE, Layout, Legend, LegendWidths, Parts, cut,
+    Annotations, Area, GROUND, Info, LINE, Layout, Legend, LegendWidths, Length, Parts, cut,
 };
 use crate::scene::{Show, View};
 
@@ -62,7 +62,7 @@ pub fn laid_out(
     });
     let usual = Parts {
         title: show.legend,
-        info: show.info,
+        info: show.info.then_some(Length::Usual),
         legend: show.legend.then_some(LEGEND),
         left_legend: None,
     };

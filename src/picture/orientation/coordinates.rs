@@ -16,6 +16,9 @@ const SHORTEST: f64 = 3.0;
 const TICK: f64 = 0.4;
 const GAP: f64 = 0.25;
 
+/// How far an edge's outward direction goes to the side where the edge is upright.
+const UPRIGHT: f64 = 0.9;
+
 /// A coordinate that is written along an edge.
 #[derive(Clone, Copy)]
 enum Coordinate {
@@ -185,15 +188,27 @@ impl Scale {
             true => self.coordinate.name().to_owned(),
             false => format!("{} ({length_unit})", self.coordinate.name()),
         };
-        let half = layout.half(&name, unit).dot(self.outward.abs());
-        let out = (TICK + 1.5 * GAP) * unit + deepest + half;
-        // In the middle of the edge, or as near to that as there is room.
+        let half = layout.half(&name, unit);
+        let out = (TICK + 1.5 * GAP) * unit + deepest + half.dot(self.outward.abs());
+        // Beyond the labels, in the middle of the edge or as near to that as there is room; of an upright edge
+        // above or below them, where it is narrower.
         let places = [0.5, 0.35, 0.65, 0.2, 0.8, 0.0, 1.0, -0.1, 1.1];
-        let place = |t: f64| {
-            let at = self.seen[0].lerp(self.seen[1], t);
-            layout.area(&name, at + out * self.outward)
+        let beyond = places.map(|t| self.seen[0].lerp(self.seen[1], t) + out * self.outward);
+        let start = [DVec2::INFINITY, DVec2::NEG_INFINITY];
+        let column = labels.iter().fold(start, |[low, high], l| {
+            [low.min(l.area[0]), high.max(l.area[1])]
+        });
+        let x = match self.outward.x < 0.0 {
+            true => column[1].x - half.x,
+            false => column[0].x + half.x,
         };
-        let free = places.map(place).into_iter().find(|a| layout.is_free(a));
+        let ends = [column[0].y - half.y, column[1].y + half.y].map(|y| DVec2::new(x, y));
+        let mut places = [&ends[..], &beyond].concat();
+        if self.outward.x.abs() < UPRIGHT {
+            places.rotate_left(ends.len());
+        }
+        let areas = places.into_iter().map(|at| layout.area(&name, at));
+        let free = areas.into_iter().find(|a| layout.is_free(a));
         if let Some(area) = free {
             layout.write(&name, area);
         }
