@@ -5,12 +5,12 @@ use std::sync::Arc;
 use super::resolve::{positive, wrong};
 use super::transfer::BANDS;
 use super::{
-    ColorSpec, Coloring, Interpolation, OpacitySpec, OwnRange, RangeSpec, ScaleSpec, Scene,
+    ColorSpec, Coloring, Interpolation, Mode, OpacitySpec, OwnRange, RangeSpec, ScaleSpec, Scene,
     SceneError,
 };
 use crate::case::{Case, Categories, MAX_CATEGORIES, ValueRange};
 use crate::model::CellField;
-use crate::transfer::function::color_at;
+use crate::transfer::function::{MAX_OPACITY, color_at};
 use crate::transfer::{Curve, Scale, TransferFunction, boundaries, coloring, presets};
 
 /// What colors are asked for, and of what.
@@ -30,10 +30,10 @@ pub(super) struct Colors {
     pub transfer: TransferFunction,
 }
 
-/// How values vary inside a cell: a category never passes into another.
+/// How values vary inside a cell: a category never passes into another, and a solid cell has one value.
 pub(super) fn interpolation(scene: &Scene) -> Interpolation {
-    match scene.transfer.coloring {
-        Coloring::Categories => Interpolation::Cell,
+    match (scene.mode, scene.transfer.coloring) {
+        (Mode::Cells, _) | (_, Coloring::Categories) => Interpolation::Cell,
         _ => scene.interpolation,
     }
 }
@@ -53,7 +53,11 @@ pub(super) fn resolve(asked: &Asked<'_>, field: &Arc<CellField>) -> Result<Color
     };
     let transfer = TransferFunction {
         color,
-        opacity: opacity(asked, &scale, range)?,
+        opacity: match asked.scene.mode {
+            // What stands before light is solid.
+            Mode::Cells => vec![(0.0, MAX_OPACITY)],
+            Mode::Volume => opacity(asked, &scale, range)?,
+        },
         range,
         bands,
         reference_length,

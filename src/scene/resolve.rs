@@ -10,7 +10,7 @@ use super::ghosts::{Ghosts, shown_grid};
 use super::lighting::{self, Lighting};
 use super::{
     Blending, Camera, CameraSpec, ClipSpec, CutFace, Filter, Inactive, Interpolation, LibcSettings,
-    Scene, SrgSettings, StepSpec, Surfaces,
+    Mode, Scene, SrgSettings, StepSpec, Surfaces,
 };
 use crate::case::{Case, CaseError};
 use crate::gpu::volume::Shape;
@@ -149,6 +149,11 @@ impl View {
         self.transfer.scale.true_value(shown)
     }
 
+    /// True where rays pass through something: between the faces of solid cells there is nothing but ghosts.
+    pub fn casts_rays(&self) -> bool {
+        !self.surfaces.solid || self.ghosts.is_some()
+    }
+
     /// Color of a position in the range of values, in the numbers that are blended.
     pub fn color_at(&self, position: f64) -> [f64; 3] {
         self.blending.of_srgb(self.transfer.srgb(position))
@@ -253,8 +258,8 @@ pub(super) fn resolve_over(
         field,
         drawn: Arc::new(drawn),
         ghosts,
-        clip: clip(&scene.clip)?,
-        surfaces: Surfaces::from(&scene.show),
+        clip: clip(&scene.clip, scene.mode)?,
+        surfaces: Surfaces::of(scene),
         connections: Arc::new(connections),
         named_faults: case.fault_faces.clone(),
         lighting: lighting::resolve(
@@ -327,7 +332,7 @@ fn srg(scene: &Scene, dims: Dims) -> Result<SrgSettings, SceneError> {
     Ok(settings)
 }
 
-fn clip(planes: &[ClipSpec]) -> Result<Vec<ClipPlane>, SceneError> {
+fn clip(planes: &[ClipSpec], mode: Mode) -> Result<Vec<ClipPlane>, SceneError> {
     if planes.len() > MAX_CLIP_PLANES {
         let problem = format!(
             "has {} planes; at most {MAX_CLIP_PLANES} are possible",
@@ -343,7 +348,7 @@ fn clip(planes: &[ClipSpec]) -> Result<Vec<ClipPlane>, SceneError> {
         let normal = DVec3::from_array(plane.normal)
             .try_normalize()
             .ok_or_else(|| wrong("clip.normal", "must have a length above 0"))?;
-        let opaque = plane.face == CutFace::Opaque;
+        let opaque = plane.face == CutFace::Opaque || mode == Mode::Cells;
         Ok(ClipPlane {
             point,
             normal,
