@@ -15,11 +15,12 @@
 @group(3) @binding(3) var<storage, read> fault_colors: array<u32>;
 
 // A point on a face: its parameters along the face's two axes, and their change from a pixel to the next to
-// the right and below.
+// the right and below. And the face's normal in grid space, of any length and sense.
 struct Spot {
     at: vec2f,
     right: vec2f,
     down: vec2f,
+    normal: vec3f,
 }
 
 @compute @workgroup_size(8, 8)
@@ -49,6 +50,9 @@ fn color_of(face: u32, distance: f32, ray: PixelRay) -> vec3f {
     if HULL {
         let own = transfer(value_on(column, layer, face % 6u, spot.at)).rgb;
         color = vec4f(mix(own, color.rgb, SHEET_OPACITY * color.a), 1.0);
+    }
+    if HULL {
+        color = vec4f(headlight(spot.normal, direction) * color.rgb, 1.0);
     }
     // A sheet carries no number, as ghosts do.
     let lit = shade(color.rgb, place, !HULL);
@@ -94,11 +98,13 @@ fn value_on(column: u32, layer: u32, side: u32, at: vec2f) -> f32 {
 fn spot_on(column: u32, layer: u32, side: u32, r: RayFrame, steps: mat2x3f) -> Spot {
     let lists = column_lists[column];
     let numbers = pillar_index(column);
+    var corners: array<vec3f, 4>;
     var q: array<vec3f, 4>;
     for (var n = 0u; n < 4u; n++) {
         let corner = face_corner(side, n);
         let depth = depths[list_entry(lists[corner & 3u], layer, corner >> 2u)];
-        q[n] = project(r, load_pillar(numbers[corner & 3u]), depth);
+        corners[n] = from_origin(r, load_pillar(numbers[corner & 3u]), depth);
+        q[n] = projected(r, corners[n]);
     }
     // The ray is in triangle 0 1 3 where it lies on the same side of the diagonal as corner 1.
     let corner_side = cross2d(q[3] - q[0], q[1] - q[0]);
@@ -115,5 +121,7 @@ fn spot_on(column: u32, layer: u32, side: u32, r: RayFrame, steps: mat2x3f) -> S
     spot.at = clamp(-vec2f(dot(to_x, q[0]), dot(to_y, q[0])), vec2f(0.0), vec2f(1.0));
     spot.right = vec2f(dot(to_x, right), dot(to_y, right));
     spot.down = vec2f(dot(to_x, down), dot(to_y, down));
+    // At right angles to both diagonals: one normal for both triangles.
+    spot.normal = cross(corners[3] - corners[0], corners[2] - corners[1]);
     return spot;
 }

@@ -139,7 +139,7 @@ fn add(a: Accumulated, voxel: vec3f, taken: f32, place: vec3f) -> Accumulated {
     if WEIGHTED {
         stored /= max(voxel.y, 1e-6);
     }
-    let entry = transfer_at(bricks.position_low + bricks.position_scale * stored);
+    let entry = inside_at(bricks.position_low + bricks.position_scale * stored);
     var color = entry.rgb;
     var opacity = voxel.y * (1.0 - exp(-entry.w * frame.step));
     if LIT && opacity > 0.0 {

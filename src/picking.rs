@@ -8,7 +8,7 @@ use crate::gpu::GpuError;
 use crate::model::topology::{Behind, Face};
 use crate::model::{Grid, Ijk};
 use crate::renderer::Renderer;
-use crate::scene::{Surfaces, View};
+use crate::scene::{Hull, Surfaces, View};
 
 /// Opacity that a ray must have gathered to have met something.
 const SEEN: f64 = 0.1;
@@ -97,7 +97,7 @@ fn hit(view: &View, world: DVec3, ijk: Ijk, part: Part) -> Hit {
 pub fn fault_under(case: &Case, view: &View, at: DVec2) -> Option<Hit> {
     let ray = Ray::through(view, at);
     let surfaces = Surfaces {
-        hull: false,
+        hull: Hull::Hidden,
         ..view.surfaces
     };
     let (distance, ijk, part) = surface(case, view, surfaces, &ray)?;
@@ -155,7 +155,7 @@ fn section(view: &View, ray: &Ray) -> Option<f64> {
 fn surface(case: &Case, view: &View, surfaces: Surfaces, ray: &Ray) -> Option<(f64, Ijk, Part)> {
     let grid = &case.grid;
     let mut faces = Vec::new();
-    if surfaces.hull {
+    if surfaces.has_hull() {
         faces.extend(view.hull_faces(grid));
     }
     if surfaces.faults {

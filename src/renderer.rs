@@ -15,6 +15,7 @@ use crate::model::{CellField, Grid, Ijk};
 use crate::picture::Image;
 use crate::scene::ghosts::{Ghosts, shown_grid};
 use crate::scene::{Interpolation, View};
+use crate::strategies::solid::Solid;
 use crate::strategies::{Preparation, RenderStrategy, StrategyKind};
 
 /// Makes pictures of one grid.
@@ -28,6 +29,8 @@ pub struct Renderer {
     /// Made when surfaces are first shown.
     surfaces: Option<SurfacePainter>,
     strategies: Vec<(StrategyKind, Box<dyn RenderStrategy>)>,
+    /// Made when cells are first shown as solid.
+    solid: Option<Solid>,
     shown: Option<Shown>,
 }
 
@@ -81,6 +84,7 @@ impl Renderer {
             gpu,
             frames: FrameRenderer::default(),
             strategies: Vec::new(),
+            solid: None,
             shown: None,
         })
     }
@@ -127,7 +131,10 @@ impl Renderer {
         if !light.update(gpu, on_device, view, tables, progress)? {
             return Ok(None);
         }
-        let strategy = strategy(gpu, &mut self.strategies, view.strategy)?;
+        let strategy = match view.casts_rays() {
+            true => strategy(gpu, &mut self.strategies, view.strategy)?,
+            false => solid(gpu, &mut self.solid)?,
+        };
         let faces = match strategy.draws_faces() || SurfacePainter::shares_faces(view) {
             true => Some(faces.update(gpu, grid, on_device, &view.drawn)?),
             false => None,
@@ -283,6 +290,18 @@ fn surfaces_of<'a>(
         None => SurfacePainter::new(gpu)?,
     };
     Ok(Some(compiled.insert(painter)))
+}
+
+/// What draws solid cells, compiled when it is first asked for.
+fn solid<'a>(
+    gpu: &Gpu,
+    compiled: &'a mut Option<Solid>,
+) -> Result<&'a mut dyn RenderStrategy, GpuError> {
+    let solid = match compiled.take() {
+        Some(known) => known,
+        None => Solid::new(gpu)?,
+    };
+    Ok(compiled.insert(solid))
 }
 
 /// The strategy of a kind, compiled when it is first asked for.

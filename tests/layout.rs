@@ -253,6 +253,7 @@ fn numbers_of_the_shading_agree() {
         ("SPECULAR", lighting::SPECULAR),
         ("SHININESS", lighting::SHININESS),
         ("SHEET_OPACITY", surfaces::SHEET_OPACITY),
+        ("HEADLIGHT_AMBIENT", surfaces::HEADLIGHT_AMBIENT),
         ("EDGE_WIDTH", surfaces::EDGE_WIDTH),
         ("EDGE_DARKNESS", surfaces::EDGE_DARKNESS),
         ("EDGE_FADE_LOW", surfaces::EDGE_FADE[0]),

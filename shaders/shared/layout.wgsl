@@ -47,6 +47,10 @@ struct Frame {
     is_parallel: f32,
     origin_up: vec3f,
     reserved: f32,
+    // The way from the viewer to the lamp beside it, at a distance of one, in grid space; and one over the length
+    // of the way from there to the lamp.
+    headlight: vec3f,
+    headlight_scale: f32,
     // Color and extinction of inactive cells.
     ghost: vec4f,
     // Kept is where dot(xyz, point) + w >= 0, grid space relative to the origin.
@@ -273,11 +277,13 @@ const SHEET_LAYERS: u32 = 4u;
 // Loop iterations that a point of a surface costs beside its light, about.
 const PAINT_WORK: u32 = 2u;
 const SHEET_OPACITY: f32 = 0.5;
+// Part of the headlight that comes from everywhere.
+const HEADLIGHT_AMBIENT: f32 = 0.35;
 // Lines along edges: width in pixels, darkness, and pixels from edge to edge between which they come to be seen.
-const EDGE_WIDTH: f32 = 1.5;
-const EDGE_DARKNESS: f32 = 0.85;
-const EDGE_FADE_LOW: f32 = 2.0;
-const EDGE_FADE_HIGH: f32 = 6.0;
+const EDGE_WIDTH: f32 = 1.0;
+const EDGE_DARKNESS: f32 = 0.4;
+const EDGE_FADE_LOW: f32 = 3.0;
+const EDGE_FADE_HIGH: f32 = 12.0;
 // Counters, each of a low and a high word.
 const COUNTERS: u32 = 12u;
 const COUNT_SAMPLES: u32 = 0u;

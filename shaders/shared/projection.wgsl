@@ -22,9 +22,17 @@ fn frame_at(origin: vec3f, direction: vec3f, t: f32) -> RayFrame {
     return r;
 }
 
+// A corner relative to the frame's origin, in grid space.
+fn from_origin(r: RayFrame, pillar: Pillar, depth: f32) -> vec3f {
+    return vec3f((pillar.at - r.origin.xy) + (pillar.low_bits + pillar.slope * depth), depth - r.origin.z);
+}
+
 // A corner: two coordinates across the ray and the distance along it.
 fn project(r: RayFrame, pillar: Pillar, depth: f32) -> vec3f {
-    let from_origin = vec3f((pillar.at - r.origin.xy) + (pillar.low_bits + pillar.slope * depth), depth - r.origin.z);
+    return projected(r, from_origin(r, pillar, depth));
+}
+
+fn projected(r: RayFrame, from_origin: vec3f) -> vec3f {
     return vec3f(dot(r.across_x, from_origin), dot(r.across_y, from_origin), r.t_origin + dot(r.along, from_origin));
 }
 

@@ -18,11 +18,12 @@ fn section_color(ray: Ray) -> vec4f {
         return vec4f(0.0);
     }
     let inside = clamp(location.solution.uvw, vec3f(0.0), vec3f(1.0));
-    let color = shade(transfer(evaluate(location.cell, inside).w).rgb, point, false);
+    let normal = frame.clip_planes[ray.cut].xyz;
+    let own = transfer(evaluate(location.cell, inside).w).rgb;
+    let color = shade(headlight(normal, ray.direction) * own, point, false);
     if !CELL_EDGES {
         return vec4f(color, 1.0);
     }
-    let normal = frame.clip_planes[ray.cut].xyz;
     let steps = pixel_steps(ray.direction, ray.enter);
     let right = parameters_along(location.cell, inside, on_plane(steps[0], normal, ray.direction));
     let down = parameters_along(location.cell, inside, on_plane(steps[1], normal, ray.direction));

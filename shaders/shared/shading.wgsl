@@ -1,5 +1,6 @@
 // What light makes of a sample's color (`Lighting` in scene/lighting.rs says how).
 #import cones
+#import frame
 #import cone_rays
 
 // Samples are shaded.
@@ -47,6 +48,19 @@ fn shade(color: vec3f, point: vec3f, is_ghost: bool) -> vec3f {
         }
     }
     return color * light + highlight;
+}
+
+// What the lamp beside the viewer leaves of the color of a surface (`Surfaces` in scene/surfaces.rs says how), by
+// its normal of any length and sense, and the ray's direction: grid space.
+fn headlight(normal: vec3f, direction: vec3f) -> f32 {
+    if EXACT_COLORS {
+        return 1.0;
+    }
+    // Products of normals and displacements are those of world space.
+    let toward_viewer = -dot(normal, direction);
+    let sense = select(-1.0, 1.0, toward_viewer >= 0.0);
+    let lit = sense * (toward_viewer + dot(normal, frame.headlight)) * frame.headlight_scale;
+    return mix(HEADLIGHT_AMBIENT, 1.0, clamp(lit / max(length(normal * to_grid()), 1e-30), 0.0, 1.0));
 }
 
 // Unit gradient of the field, and how much it counts.

@@ -2,12 +2,24 @@
 #import frame
 #import table
 
+// Cells with a value are solid: nothing of their inside is seen.
+override SOLID: bool = false;
+
 fn transfer(value: f32) -> vec4f {
-    return transfer_at((value - frame.value_low) * frame.value_scale);
+    return inside_at((value - frame.value_low) * frame.value_scale);
+}
+
+// Color and extinction of the inside of cells at a position of the transfer function.
+fn inside_at(position: f32) -> vec4f {
+    let entry = transfer_at(position);
+    return vec4f(entry.rgb, select(entry.w, 0.0, SOLID));
 }
 
 // Means over the values between two: of extinction times color, and of extinction.
 fn transfer_mean(a: f32, b: f32) -> vec4f {
+    if SOLID {
+        return vec4f(0.0);
+    }
     let pa = clamp((a - frame.value_low) * frame.value_scale, 0.0, 1.0);
     let pb = clamp((b - frame.value_low) * frame.value_scale, 0.0, 1.0);
     if abs(pb - pa) * f32(LUT_SIZE - 1u) < 4.0 {

@@ -13,6 +13,7 @@ use super::surfaces::SurfacePainter;
 use super::target;
 use super::tiles::{self, Pace, Rect};
 use crate::picture::Image;
+use crate::scene::surfaces::HEADLIGHT_ASIDE;
 use crate::scene::{View, ghosts};
 use crate::strategies::RenderStrategy;
 
@@ -380,6 +381,7 @@ fn frame_uniform(grid: &GpuGrid, view: &View) -> Frame {
     let half_height = camera.half_height(1.0);
     let [half_right, half_up] = [aspect * camera.right, camera.up].map(|v| half_height * v);
     let is_parallel = f64::from(u8::from(camera.parallel.is_some()));
+    let aside = HEADLIGHT_ASIDE[0] * camera.right + HEADLIGHT_ASIDE[1] * camera.up;
     let to_camera = view.spaces.world_from_grid.matrix3.transpose();
     Frame {
         eye: f32s(eye),
@@ -413,6 +415,8 @@ fn frame_uniform(grid: &GpuGrid, view: &View) -> Frame {
         is_parallel: is_parallel as f32,
         origin_up: f32s(linear * (is_parallel * half_up)),
         reserved: 0.0,
+        headlight: f32s(linear * aside),
+        headlight_scale: (1.0 + aside.length_squared()).sqrt().recip() as f32,
         ghost: ghost(view),
         clip_planes: clip_planes(grid, view),
     }

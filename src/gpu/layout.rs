@@ -37,6 +37,8 @@ pub struct Frame {
     pub is_parallel: f32,
     pub origin_up: [f32; 3],
     pub reserved: f32,
+    pub headlight: [f32; 3],
+    pub headlight_scale: f32,
     pub ghost: [f32; 4],
     pub clip_planes: [[f32; 4]; MAX_CLIP_PLANES],
 }

@@ -40,11 +40,12 @@ sources! {
     "probe" => "probe.wgsl",
     "pyramids" => "pyramids.wgsl",
     "resample" => "resample.wgsl",
+    "solid" => "solid.wgsl",
     "srg" => "srg.wgsl",
 }
 
 /// The stems of all shaders that are entry points of a pipeline.
-pub const ENTRIES: [&str; 11] = [
+pub const ENTRIES: [&str; 12] = [
     "extinction",
     "faces",
     "illuminate",
@@ -55,6 +56,7 @@ pub const ENTRIES: [&str; 11] = [
     "probe",
     "pyramids",
     "resample",
+    "solid",
     "srg",
 ];
 

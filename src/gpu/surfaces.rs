@@ -16,14 +16,15 @@ use super::pipeline::{Pipeline, RasterPipeline, flag};
 use super::round::{Place, Round};
 use crate::model::Grid;
 use crate::scene::surfaces::{PALETTE, UNNAMED};
-use crate::scene::{Blending, Surfaces, View};
+use crate::scene::{Blending, Hull, Surfaces, View};
 
 /// Names and values of the `override` constants of shaders that blend surfaces.
-pub fn constants(surfaces: Surfaces) -> [(&'static str, f64); 3] {
+pub fn constants(surfaces: Surfaces) -> [(&'static str, f64); 4] {
     [
         ("SURFACES", flag(surfaces.are_shown())),
-        ("HULL", flag(surfaces.hull)),
+        ("HULL", flag(surfaces.hull == Hull::Opaque)),
         ("CELL_EDGES", flag(surfaces.cell_edges)),
+        ("SOLID", flag(surfaces.solid)),
     ]
 }
 
@@ -74,7 +75,7 @@ impl SurfacePainter {
 
     /// True where the boundary faces of all drawn cells are the hull.
     pub fn shares_faces(view: &View) -> bool {
-        view.surfaces.hull && view.ghosts.is_none()
+        view.surfaces.has_hull() && view.ghosts.is_none()
     }
 
     /// Brings up to date what is shown of `model` (the case's grid). `boundary` are the boundary faces of all
@@ -119,7 +120,7 @@ impl SurfacePainter {
     /// Layers that a ray can have.
     pub fn layers(&self) -> u32 {
         match self.look.0 {
-            Surfaces { hull: true, .. } => 1,
+            surfaces if surfaces.has_hull() => 1,
             Surfaces { faults: true, .. } => layout::SHEET_LAYERS,
             _ => 0,
         }
@@ -141,7 +142,11 @@ impl SurfacePainter {
         for (n, slot) in self.targets.iter_mut().enumerate() {
             let target = FaceTarget::fitting(slot.take(), round.gpu, round.size);
             // Only of the hull both sides of a fault are there to choose from.
-            let behind = if shown.surfaces.hull { self.gap } else { 0.0 };
+            let behind = if shown.surfaces.has_hull() {
+                self.gap
+            } else {
+                0.0
+            };
             let info = [n as u32, self.gap.to_bits(), behind.to_bits(), 0];
             let info = round.gpu.uniform("peel info", &info);
             let own = [
@@ -196,7 +201,7 @@ impl SurfacePainter {
     pub fn bytes(&self, view: &View) -> u64 {
         self.shown.as_ref().map_or(0, |shown| {
             let faults = shown.fault_faces.size() + shown.fault_colors.size();
-            let own = !Self::shares_faces(view) && shown.surfaces.hull;
+            let own = !Self::shares_faces(view) && shown.surfaces.has_hull();
             faults + if own { shown.faces.bytes() } else { 0 }
         })
     }
@@ -216,7 +221,7 @@ impl Shown {
             false => Vec::new(),
         };
         let (numbers, colors): (Vec<u32>, Vec<u32>) = faults.into_iter().unzip();
-        let faces = match (surfaces.hull, boundary) {
+        let faces = match (surfaces.has_hull(), boundary) {
             (true, Some(boundary)) if SurfacePainter::shares_faces(view) => boundary.clone(),
             (true, _) => {
                 FaceList::new(gpu, grid, &faces::numbers(model, &view.hull_faces(model))?)?

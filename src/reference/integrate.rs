@@ -115,6 +115,11 @@ impl<'a> Integrator<'a> {
             color: DVec3::ZERO,
             transmittance: 1.0,
         };
+        let is_solid = self.view.surfaces.solid;
+        let leave = match self.view.casts_rays() {
+            true => leave,
+            false => enter,
+        };
         let mut number = (enter / step - 0.5).ceil().max(0.0);
         while (number + 0.5) * step <= leave && sum.transmittance >= self.view.early_termination {
             let distance = (number + 0.5) * step;
@@ -122,7 +127,9 @@ impl<'a> Integrator<'a> {
                 sum.add(layer.color, layer.alpha);
             }
             let position = ray.origin + distance * ray.direction;
-            if let Some((sample, extinction)) = self.absorbing(position) {
+            let absorbing = self.absorbing(position);
+            let seen = absorbing.filter(|(sample, _)| !is_solid || sample.value.is_none());
+            if let Some((sample, extinction)) = seen {
                 let alpha = 1.0 - (-extinction * step).exp();
                 sum.add(self.lit(position, &sample).into(), alpha);
             }
@@ -163,7 +170,9 @@ impl<'a> Integrator<'a> {
         }
         let sample = self.sample(position)?;
         sample.value?;
-        let color = self.lit(position, &sample);
+        let own = DVec3::from_array(self.unlit(&sample));
+        let lamp = self.headlight(plane.normal, ray.direction);
+        let color = self.shaded(position, (lamp * own).to_array(), Some(&sample));
         Some(self.with_section_edges(color, ray, plane, &sample))
     }
 

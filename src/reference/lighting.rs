@@ -7,6 +7,7 @@ use super::locate::Located;
 use crate::model::Hexahedron;
 use crate::scene::LightMode;
 use crate::scene::lighting::{GRADIENT_FADE, Light, SHININESS, SPECULAR, SPOT_EDGE, Source};
+use crate::scene::surfaces::{HEADLIGHT_AMBIENT, HEADLIGHT_ASIDE};
 
 /// What a light is from a point.
 struct Incident {
@@ -58,6 +59,23 @@ impl Integrator<'_> {
             specular += arriving * surface.specular(incident.direction, viewer);
         }
         (DVec3::from_array(color) * diffuse + specular).to_array()
+    }
+
+    /// What the lamp beside the viewer leaves of the color of a surface, by its unit normal of either sense.
+    pub(super) fn headlight(&self, normal: DVec3, ray: DVec3) -> f64 {
+        if self.view.lighting.exact_colors {
+            return 1.0;
+        }
+        let camera = &self.view.camera;
+        let [right, up] = HEADLIGHT_ASIDE;
+        let aside = right * camera.right + up * camera.up;
+        let outward = if normal.dot(ray) > 0.0 {
+            -normal
+        } else {
+            normal
+        };
+        let lit = outward.dot(aside - ray) / (1.0 + aside.length_squared()).sqrt();
+        HEADLIGHT_AMBIENT + (1.0 - HEADLIGHT_AMBIENT) * lit.clamp(0.0, 1.0)
     }
 
     /// Unit vector from a point to the viewer, and the distance to where rays begin.

@@ -69,7 +69,7 @@ impl SurfaceFaces {
             false => Vec::new(),
         };
         let color = |fault| DVec3::from_array(view.blending.of_srgb(fault_color(fault)));
-        let faces: Vec<SurfaceFace> = match surfaces.hull {
+        let faces: Vec<SurfaceFace> = match surfaces.has_hull() {
             false => faults
                 .into_par_iter()
                 .map(|(cell, face, fault)| {
@@ -146,6 +146,12 @@ impl SurfaceFace {
         })
     }
 
+    /// Unit vector at right angles to both diagonals, null where they are parallel.
+    fn normal(&self) -> DVec3 {
+        let [a, b, c, d] = self.corners;
+        (d - a).cross(c - b).normalize_or_zero()
+    }
+
     /// The two columns that the face lies between.
     fn columns(&self) -> (usize, usize, Face) {
         let Ijk { i, j, .. } = self.cell;
@@ -196,7 +202,7 @@ impl Integrator<'_> {
         let mut hits = self.surfaces.hits(ray);
         hits.retain(|hit| self.is_kept(ray.origin + hit.distance * ray.direction));
         let gap = self.view.fault_gap();
-        if self.view.surfaces.hull {
+        if self.view.surfaces.has_hull() {
             let counts_as = |h: &Hit<'_>| h.distance + if h.is_back { gap } else { 0.0 };
             let nearest = hits
                 .into_iter()
@@ -224,7 +230,8 @@ impl Integrator<'_> {
         });
         let own = DVec3::from_array(self.unlit(&sample));
         let color = hit.face.fault.map_or(own, |c| own.lerp(c, SHEET_OPACITY));
-        self.layer(ray, hit, color, Some(&sample), 1.0)
+        let lamp = self.headlight(hit.face.normal(), ray.direction);
+        self.layer(ray, hit, lamp * color, Some(&sample), 1.0)
     }
 
     fn sheet(&self, ray: Ray, hit: &Hit<'_>) -> Layer {

@@ -7,12 +7,12 @@ use rayon::prelude::*;
 use super::resolve::{positive, wrong};
 use super::transfer::BANDS;
 use super::{
-    ColorSpec, Coloring, FoundOpacity, Interpolation, OpacitySpec, OwnRange, RangeSpec, ScaleSpec,
-    Scene, SceneError,
+    ColorSpec, Coloring, FoundOpacity, Interpolation, Mode, OpacitySpec, OwnRange, RangeSpec,
+    ScaleSpec, Scene, SceneError,
 };
 use crate::case::{Case, Categories, Extent, MAX_CATEGORIES, ValueRange};
 use crate::model::CellField;
-use crate::transfer::function::color_at;
+use crate::transfer::function::{MAX_OPACITY, color_at};
 use crate::transfer::kinds::Quantity;
 use crate::transfer::opacity::{self, Interest, Opacity};
 use crate::transfer::{Curve, Scale, TransferFunction, boundaries, coloring, presets};
@@ -38,10 +38,10 @@ pub(super) struct Colors {
     pub transfer: TransferFunction,
 }
 
-/// How values vary inside a cell: a category never passes into another.
+/// How values vary inside a cell: a category never passes into another, and a solid cell has one value.
 pub(super) fn interpolation(scene: &Scene) -> Interpolation {
-    match scene.transfer.coloring {
-        Coloring::Categories => Interpolation::Cell,
+    match (scene.mode, scene.transfer.coloring) {
+        (Mode::Cells, _) | (_, Coloring::Categories) => Interpolation::Cell,
         _ => scene.interpolation,
     }
 }
@@ -55,7 +55,14 @@ pub(super) fn resolve(asked: &Asked<'_>, field: &Arc<CellField>) -> Result<Color
         (_, ScaleSpec::Log) => (Scale::Log, log_range(asked, field)?),
     };
     let (color, bands) = colors(asked.scene, &scale)?;
-    let opacity = opacity(asked, &scale, range)?;
+    let opacity = match asked.scene.mode {
+        // What stands before light is solid.
+        Mode::Cells => Opacity {
+            curve: vec![(0.0, MAX_OPACITY)],
+            reference_length: asked.mean_edge,
+        },
+        Mode::Volume => opacity(asked, &scale, range)?,
+    };
     let reference_length = match spec.reference_length {
         Some(v) => positive("transfer.reference_length", v)?,
         None => opacity.reference_length,

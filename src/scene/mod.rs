@@ -52,7 +52,9 @@ pub struct Scene {
     pub property: Option<String>,
     /// Time step: a number, a date, `first` or `last`.
     pub step: StepSpec,
-    /// How values vary inside a cell.
+    /// What one looks at: the faces of the cells, or into the volume.
+    pub mode: Mode,
+    /// How values vary inside a cell; in the mode `cells` each has one value.
     pub interpolation: Interpolation,
     /// Values at both ends of the color map; those of the step shown where absent.
     #[serde(deserialize_with = "transfer::null_is_default")]
@@ -91,6 +93,7 @@ impl Default for Scene {
             vertical_exaggeration: None,
             property: None,
             step: StepSpec::Name("last".into()),
+            mode: Mode::default(),
             interpolation: Interpolation::Vertex,
             range: RangeSpec::STEP,
             transfer: TransferSpec::default(),
@@ -224,6 +227,18 @@ pub enum StepSpec {
     Name(String),
 }
 
+/// What one looks at.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
+#[serde(rename_all = "lowercase")]
+pub enum Mode {
+    /// Rays through the inside of the cells.
+    #[default]
+    Volume,
+    /// The cells as solid bodies: their outer faces and the sections of clip planes, opaque, each cell in the
+    /// color of its value.
+    Cells,
+}
+
 /// How values vary inside a cell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
 #[serde(rename_all = "lowercase")]
@@ -259,8 +274,9 @@ pub struct Show {
     pub nnc: bool,
     /// Wells.
     pub wells: bool,
-    /// Edges of the cells on hull, faults and opaque sections.
-    pub cell_edges: bool,
+    /// Edges of the cells on hull, faults and opaque sections; where absent they are drawn in the mode `cells`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub cell_edges: Option<bool>,
     /// Box around the model with map coordinates, scale bar and orientation axes.
     pub r#box: bool,
     /// Legend and title.
@@ -277,7 +293,7 @@ impl Default for Show {
             faults: ShownFaults::All(false),
             nnc: false,
             wells: true,
-            cell_edges: false,
+            cell_edges: None,
             r#box: true,
             legend: true,
             info: true,

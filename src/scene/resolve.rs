@@ -11,8 +11,8 @@ use super::framing::{self, Direction, Subject};
 use super::ghosts::{Ghosts, shown_grid};
 use super::lighting::{self, Lighting};
 use super::{
-    Blending, Camera, CameraSpec, ClipSpec, CutFace, Inactive, Interpolation, LibcSettings, Scene,
-    SrgSettings, StepSpec, Surfaces, filter, surfaces,
+    Blending, Camera, CameraSpec, ClipSpec, CutFace, Inactive, Interpolation, LibcSettings, Mode,
+    Scene, SrgSettings, StepSpec, Surfaces, filter, surfaces,
 };
 use crate::case::{Case, CaseError, ValueRange};
 use crate::gpu::volume::Shape;
@@ -163,6 +163,11 @@ impl View {
         self.transfer.scale.true_value(shown)
     }
 
+    /// True where rays pass through something: between the faces of solid cells there is nothing but ghosts.
+    pub fn casts_rays(&self) -> bool {
+        !self.surfaces.solid || self.ghosts.is_some()
+    }
+
     /// Color of a position in the range of values, in the numbers that are blended.
     pub fn color_at(&self, position: f64) -> [f64; 3] {
         self.blending.of_srgb(self.transfer.srgb(position))
@@ -226,7 +231,7 @@ pub(super) fn resolve_over(
         field: shown,
         transfer,
     } = colors::resolve(&asked, &field)?;
-    let clip = clip(&scene.clip)?;
+    let clip = clip(&scene.clip, scene.mode)?;
     let Cells {
         field,
         drawn,
@@ -265,7 +270,7 @@ pub(super) fn resolve_over(
         drawn: Arc::new(drawn),
         ghosts,
         clip,
-        surfaces: Surfaces::from(&scene.show),
+        surfaces: Surfaces::of(scene),
         connections,
         named_faults: case.fault_faces.clone(),
         chosen_faults: surfaces::chosen(&scene.show.faults, case)?,
@@ -366,7 +371,7 @@ fn srg(scene: &Scene, dims: Dims) -> Result<SrgSettings, SceneError> {
     Ok(settings)
 }
 
-fn clip(planes: &[ClipSpec]) -> Result<Vec<ClipPlane>, SceneError> {
+fn clip(planes: &[ClipSpec], mode: Mode) -> Result<Vec<ClipPlane>, SceneError> {
     if planes.len() > MAX_CLIP_PLANES {
         let problem = format!(
             "has {} planes; at most {MAX_CLIP_PLANES} are possible",
@@ -382,7 +387,7 @@ fn clip(planes: &[ClipSpec]) -> Result<Vec<ClipPlane>, SceneError> {
         let normal = DVec3::from_array(plane.normal)
             .try_normalize()
             .ok_or_else(|| wrong("clip.normal", "must have a length above 0"))?;
-        let opaque = plane.face == CutFace::Opaque;
+        let opaque = plane.face == CutFace::Opaque || mode == Mode::Cells;
         Ok(ClipPlane {
             point,
             normal,

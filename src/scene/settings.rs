@@ -10,7 +10,7 @@ pub struct ClipSpec {
     pub point: [f64; 3],
     /// Points to the part that is kept; any length but zero.
     pub normal: [f64; 3],
-    /// How the section through the cells looks.
+    /// How the section through the cells looks; in the mode `cells` it is opaque.
     #[serde(default)]
     pub face: CutFace,
 }

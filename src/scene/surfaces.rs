@@ -5,7 +5,7 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use super::resolve::wrong;
-use super::{SceneError, Show, View};
+use super::{Mode, Scene, SceneError, View};
 use crate::case::Case;
 use crate::model::topology::Face;
 use crate::model::{Grid, Ijk};
@@ -86,6 +86,14 @@ pub(super) fn chosen(shown: &ShownFaults, case: &Case) -> Result<Option<Arc<[boo
 /// on faults. It is opaque, has the color of the value there, and is seen from both sides; of two faces
 /// nearer to one another than [`View::fault_gap`] the one that faces the viewer is in front.
 ///
+/// A lamp beside the viewer lights the hull and opaque sections. Let `v` be the unit vector from a point to
+/// the viewer, `b` the way from the viewer to the lamp at a distance of one ([`HEADLIGHT_ASIDE`]), and `n` the
+/// face's unit normal on the viewer's side, at right angles to both of its diagonals. Colors are multiplied by
+/// `a + (1 - a) max(0, n (v + b)) / sqrt(1 + b b)`, `a` being [`HEADLIGHT_AMBIENT`]: what is turned to the
+/// viewer has the legend's color all but exactly. Exact colors of [`super::Lighting`] turn the lamp off.
+///
+/// Solid cells have no inside: nothing but ghosts is seen between their faces.
+///
 /// Faults are sheets of [`SHEET_OPACITY`], or where the hull is shown that part of its color. Of a fault
 /// the faces of both sides are drawn, but what lies between the same two columns as the surface before it
 /// on a ray, or behind that by less than [`View::fault_gap`], is the same sheet and is left out.
@@ -96,30 +104,43 @@ pub(super) fn chosen(shown: &ShownFaults, case: &Case) -> Result<Option<Arc<[boo
 /// the pixels from edge to edge, for where lines are dense there is nothing to tell apart.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Surfaces {
-    /// The hull is opaque.
-    pub hull: bool,
+    /// The hull.
+    pub hull: Hull,
     /// Faults are shown.
     pub faults: bool,
     /// Edges of cells are drawn on surfaces and opaque sections.
     pub cell_edges: bool,
-}
-
-impl From<&Show> for Surfaces {
-    fn from(show: &Show) -> Self {
-        Self {
-            hull: show.hull == Hull::Opaque,
-            faults: show.faults.are_shown(),
-            cell_edges: show.cell_edges,
-        }
-    }
+    /// Cells with a value are solid: their faces and sections are all that is seen of them.
+    pub solid: bool,
 }
 
 impl Surfaces {
+    /// What a scene shows.
+    pub fn of(scene: &Scene) -> Self {
+        let solid = scene.mode == Mode::Cells;
+        Self {
+            hull: if solid { Hull::Opaque } else { scene.show.hull },
+            faults: scene.show.faults.are_shown(),
+            cell_edges: scene.show.cell_edges.unwrap_or(solid),
+            solid,
+        }
+    }
+
     /// True where there are any: edges alone have nothing to be on but sections.
     pub fn are_shown(self) -> bool {
-        self.hull || self.faults
+        self.has_hull() || self.faults
+    }
+
+    /// True where the hull is shown.
+    pub fn has_hull(self) -> bool {
+        self.hull != Hull::Hidden
     }
 }
+
+/// Part of the headlight that comes from everywhere.
+pub const HEADLIGHT_AMBIENT: f64 = 0.35;
+/// How far to the right of the viewer the headlight is, and how far above, as a part of the distance.
+pub const HEADLIGHT_ASIDE: [f64; 2] = [-0.2, 0.3];
 
 /// Opacity of a fault's sheet.
 pub const SHEET_OPACITY: f64 = 0.5;
@@ -137,11 +158,11 @@ pub const PALETTE: [[f64; 3]; 7] = [
 ];
 
 /// Width of the lines along edges, in pixels.
-pub const EDGE_WIDTH: f64 = 1.5;
+pub const EDGE_WIDTH: f64 = 1.0;
 /// How much darker they are than what they are on.
-pub const EDGE_DARKNESS: f64 = 0.85;
+pub const EDGE_DARKNESS: f64 = 0.4;
 /// Pixels from edge to edge between which lines come to be seen.
-pub const EDGE_FADE: [f64; 2] = [2.0, 6.0];
+pub const EDGE_FADE: [f64; 2] = [3.0, 12.0];
 
 /// Color (sRGB, 0..1) of a fault by its number.
 pub fn fault_color(fault: Option<usize>) -> [f64; 3] {

@@ -2,6 +2,7 @@
 
 pub mod libc;
 pub mod plts;
+pub mod solid;
 pub mod srg;
 
 use crate::gpu::faces::FaceList;

@@ -3,7 +3,7 @@
 use eframe::egui::{self, Ui};
 
 use super::About;
-use crate::scene::{CutFace, Hull, Inactive, Show, ShownFaults};
+use crate::scene::{CutFace, Hull, Inactive, Show, ShownFaults, Surfaces};
 use crate::transfer::presets::parse_color;
 use crate::viewer::action::Action;
 
@@ -15,12 +15,16 @@ pub fn show(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
             .on_hover_text("The outer faces of the drawn cells, in the property's colors");
         show.hull = if hull { Hull::Opaque } else { Hull::Hidden };
         let is_cut = about.scene.clip.iter().any(|c| c.face == CutFace::Opaque);
-        let has_faces = show.hull == Hull::Opaque || show.faults.are_shown() || is_cut;
-        let edges = egui::Checkbox::new(&mut show.cell_edges, "Edges of cells");
+        let has_faces = Surfaces::of(about.scene).has_hull() || show.faults.are_shown() || is_cut;
+        let mut has_edges = Surfaces::of(about.scene).cell_edges;
+        let edges = egui::Checkbox::new(&mut has_edges, "Edges of cells");
         let what = "On hull, fault surfaces and opaque sections";
         ui.add_enabled(has_faces, edges)
             .on_hover_text(what)
             .on_disabled_hover_text("There are none: show the hull, fault surfaces or an opaque section");
+        if has_edges != Surfaces::of(about.scene).cell_edges {
+            show.cell_edges = Some(has_edges);
+        }
         ui.end_row();
         let mut faults = show.faults.are_shown();
         let switch = ui.checkbox(&mut faults, "Fault surfaces");
