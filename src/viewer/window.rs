@@ -19,7 +19,7 @@ use super::sides::Sides;
 use super::state::{Setup, State};
 use super::worker::{Difference, Picture};
 use super::{bar, keys};
-use crate::picking::Hit;
+use crate::picking::Pick;
 use crate::scene::{Integration, LibcSettings, LightingSpec, Scene};
 use crate::strategies::StrategyKind;
 
@@ -149,8 +149,8 @@ impl Window {
         Some((&shown.picture, is_final))
     }
 
-    /// The fault that the pointer rests on.
-    pub fn hovered(&self) -> Option<&Hit> {
+    /// What is seen where the pointer rests.
+    pub fn hovered(&self) -> Option<&Pick> {
         self.sides.hover.as_ref()
     }
 

@@ -3,7 +3,6 @@
 use eframe::egui::{Key, Modifiers, pos2, vec2};
 use egui_kittest::kittest::Queryable;
 use strataray::model::Ijk;
-use strataray::picking::Part;
 use strataray::scene::{Hull, Show};
 use strataray::viewer::Action;
 
@@ -165,24 +164,22 @@ fn a_pointer_that_rests_on_a_fault_reads_its_throw() {
     let at = place.min + vec2(at.x as f32, at.y as f32) * place.size();
     driven.harness.hover_at(at);
     driven.wait("the fault", |w| w.hovered().is_some());
-    let hit = driven.harness.state().hovered().unwrap().clone();
-    let Part::Fault(fault) = hit.part else {
-        panic!("{hit:?}");
-    };
+    let pick = driven.harness.state().hovered().unwrap().clone();
+    let fault = pick.fault.clone().unwrap();
     assert!(fault.name.is_some_and(|n| n.starts_with('F')));
     // The throw of whatever face it is, from the depths of both cells alone.
     let [low, high] = [[0, 2], [1, 3]];
-    let sides = if hit.ijk.i < fault.beyond.i {
+    let sides = if fault.near.i < fault.far.i {
         [high, low]
     } else {
         [low, high]
     };
-    if hit.ijk.j == fault.beyond.j {
+    if fault.near.j == fault.far.j {
         let depth = |cell: Ijk, corners: [usize; 2]| {
             let all = corners.into_iter().flat_map(|c| [c, c + 4]);
             all.map(|c| grid.corner_depth(cell, c)).sum::<f64>() / 4.0
         };
-        let drop = depth(fault.beyond, sides[1]) - depth(hit.ijk, sides[0]);
+        let drop = depth(fault.far, sides[1]) - depth(fault.near, sides[0]);
         assert!((drop - fault.throw).abs() < 1e-9, "{drop} {}", fault.throw);
         assert!(fault.throw.abs() > 1.0);
     }

@@ -28,12 +28,12 @@ use super::reader::{Curves, Table};
 use super::state::State;
 use super::worker::Picture;
 use crate::case::Case;
-use crate::picking::Hit;
+use crate::picking::Pick;
 use crate::scene::Scene;
 
 pub use curves::csv;
 pub use player::{Asked, player};
-pub use selection::part as hover_text;
+pub use selection::hover_text;
 
 /// What a panel knows.
 pub struct About<'a> {
@@ -47,8 +47,8 @@ pub struct About<'a> {
     pub picture: Option<&'a Picture>,
     /// How far it is from the second one.
     pub difference: Option<&'a ShownDifference>,
-    /// Where the pointer met what was selected last.
-    pub hit: Option<&'a Hit>,
+    /// What was seen at the place clicked last.
+    pub pick: Option<&'a Pick>,
     /// All properties of the selected cells.
     pub table: Option<&'a Table>,
     /// The property shown over time, in the selected cells.
