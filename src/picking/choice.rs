@@ -10,6 +10,8 @@ use crate::model::Ijk;
 const LIKE: f64 = 8.0;
 /// The same for the color of a cell's own value, which counts less than the one that is seen of it.
 const OWN_LIKE: f64 = 20.0;
+/// How much colors count at least: where none is like the pixel's, contributions decide.
+const UNLIKE: f64 = 1e-4;
 
 /// What is seen: a cell or a sheet.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -21,11 +23,12 @@ enum Thing {
 
 /// How much a thing adds to the color that is seen.
 struct Score {
-    thing: Thing,
     sum: f64,
     /// The piece that adds most, and what it adds.
     piece: usize,
     most: f64,
+    /// How far the color of its own value is from that of the pixel.
+    own_apart: f64,
 }
 
 /// The piece that is seen: see [the rule](super). `own_color` is the color of a cell's own value (sRGB, 0..1).
@@ -35,44 +38,38 @@ pub(super) fn seen(
     own_color: impl Fn(Ijk) -> Option<[f64; 3]>,
 ) -> Option<usize> {
     let pixel = lab(gathered.color());
-    let likeness =
-        |color: [f64; 3], like: f64| (-(ciede2000(lab(color), pixel) / like).powi(2)).exp();
+    let apart = |color: [f64; 3]| ciede2000(lab(color), pixel);
     let mut scores: Vec<Score> = Vec::new();
     let mut places: HashMap<Thing, usize> = HashMap::new();
     for (n, (piece, contribution)) in gathered.pieces.iter().enumerate() {
-        let thing = match &piece.of {
-            Source::Cell { ijk, .. } => Thing::Cell(*ijk),
-            Source::Sheet(_) => Thing::Sheet(n),
+        let (thing, own) = match &piece.of {
+            Source::Cell { ijk, .. } => (Thing::Cell(*ijk), own_color(*ijk)),
+            Source::Sheet(_) => (Thing::Sheet(n), None),
             Source::Ghost => continue,
         };
         if *contribution <= 0.0 {
             continue;
         }
-        let adds = contribution * likeness(piece.color, LIKE);
-        let place = *places.entry(thing).or_insert(scores.len());
-        match scores.get_mut(place) {
-            Some(score) => score.add(n, adds),
-            None => scores.push(Score {
-                thing,
-                sum: adds,
+        let place = *places.entry(thing).or_insert_with(|| {
+            scores.push(Score {
+                sum: 0.0,
                 piece: n,
-                most: adds,
-            }),
-        }
-    }
-    for score in &mut scores {
-        if let Thing::Cell(ijk) = score.thing
-            && let Some(color) = own_color(ijk)
-        {
-            score.sum *= likeness(color, OWN_LIKE);
-        }
+                most: 0.0,
+                own_apart: apart(own.unwrap_or(piece.color)),
+            });
+            scores.len() - 1
+        });
+        scores[place].add(n, *contribution, apart(piece.color));
     }
     let best = scores.iter().max_by(|a, b| a.sum.total_cmp(&b.sum))?;
     Some(best.piece)
 }
 
 impl Score {
-    fn add(&mut self, piece: usize, adds: f64) {
+    /// Adds a piece whose color is so far from the pixel's.
+    fn add(&mut self, piece: usize, contribution: f64, apart: f64) {
+        let unlikeness = (apart / LIKE).powi(2) + (self.own_apart / OWN_LIKE).powi(2);
+        let adds = contribution * (-unlikeness).exp().max(UNLIKE);
         self.sum += adds;
         if adds > self.most {
             (self.piece, self.most) = (piece, adds);

@@ -7,11 +7,11 @@
 //! `t` times its opacity. What all of them add, without light, divided by their opacity, is the color of the
 //! pixel.
 //!
-//! What a cell adds to that color is the sum of what its samples add, each times `exp(-(d / 8)^2)`, `d` being the
-//! CIEDE2000 difference between the color of the sample and that of the pixel; and all of it times
-//! `exp(-(d / 20)^2)`, `d` being that between the color of the cell's own value and the pixel's. Taken is the cell
-//! that adds most, at the sample that adds most of it. An opaque face or section adds everything, so that it is
-//! taken wherever nothing is before it. A fault's sheet is taken where it adds more than every cell.
+//! What a cell adds to that color is the sum of what its samples add, each times
+//! `max(exp(-(d / 8)^2 - (e / 20)^2), 0.0001)`, `d` being the CIEDE2000 difference between the color of the sample
+//! and that of the pixel, and `e` the one between the color of the cell's own value and the pixel's. Taken is the
+//! cell that adds most, at the sample that adds most of it. An opaque face or section adds everything, so that it
+//! is taken wherever nothing is before it. A fault's sheet is taken where it adds more than every cell.
 //!
 //! The cell that contributes most is not always the one that is seen: a pixel of orange has faint blue before
 //! thin orange layers, of which each one adds less than the blue does. Nor is it enough that a color is near:

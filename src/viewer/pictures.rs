@@ -387,3 +387,35 @@ fn texture(ctx: &Context, rgb: &Rgb8) -> TextureHandle {
     let image = ColorImage::from_rgb(size, rgb.pixels.as_flattened());
     ctx.load_texture("picture", image, TextureOptions::LINEAR)
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "tests")]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+
+    #[test]
+    fn only_clicks_take_the_place_of_a_final_picture() {
+        let sample = Path::new(env!("CARGO_MANIFEST_DIR")).join("samples/scissor/SCISSOR.EGRID");
+        let wanted = Wanted {
+            case: Arc::new(crate::load::open(&sample).unwrap()),
+            scene: Scene {
+                size: [40, 30],
+                ..Scene::default()
+            },
+        };
+        let mut pictures = Pictures::new(&Context::default());
+        for (why, is_left) in [(Why::Hover, false), (Why::Select, true)] {
+            pictures.flight = Some(Flight {
+                side: 0,
+                wanted: wanted.clone(),
+                is_draft: false,
+                is_slow: true,
+                is_cancelled: false,
+            });
+            pictures.pick(0, wanted.clone(), DVec2::splat(0.5), why);
+            assert_eq!(pictures.flight.as_ref().unwrap().is_cancelled, is_left);
+        }
+    }
+}
