@@ -3,15 +3,15 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 
 use crate::gpu::faces::{BoundaryFaces, FaceList};
 use crate::gpu::illumination::{Illumination, LightTimes};
-use crate::gpu::probe::{self, Located};
+use crate::gpu::probe::{Located, Probe};
 use crate::gpu::surfaces::SurfacePainter;
 use crate::gpu::transfer_tables::TransferTables;
 use crate::gpu::{Drawing, FrameRenderer, FrameStats, Gpu, GpuBytes, GpuError, GpuGrid};
-use crate::model::{CellField, Grid, Ijk};
+use crate::model::{CellField, Grid};
 use crate::picture::Image;
 use crate::scene::ghosts::{Ghosts, shown_grid};
 use crate::scene::{Interpolation, View};
@@ -31,11 +31,10 @@ pub struct Renderer {
     strategies: Vec<(StrategyKind, Box<dyn RenderStrategy>)>,
     /// Made when cells are first shown as solid.
     solid: Option<Solid>,
+    /// Made when points are first located.
+    probe: Option<Probe>,
     shown: Option<Shown>,
 }
-
-/// Samples of the ray that picks a cell, at most.
-const MOST_PICK_SAMPLES: f64 = 20_000.0;
 
 /// The field and selection that are on the device.
 #[derive(Clone, PartialEq)]
@@ -85,6 +84,7 @@ impl Renderer {
             frames: FrameRenderer::default(),
             strategies: Vec::new(),
             solid: None,
+            probe: None,
             shown: None,
         })
     }
@@ -184,62 +184,26 @@ impl Renderer {
         &self.light
     }
 
-    /// Where the ray through a place in the picture (x right, y down, 0 to 1) has gathered an opacity of `seen`
-    /// or more, in world space, and the cell there.
+    /// Locates points of world space in the drawn cells of a view of `grid` (the one given to [`Self::new`]);
+    /// `None` where a point lies in none.
     ///
     /// # Errors
     /// When the device reports an error.
-    pub fn first_seen(
+    pub fn locate(
         &mut self,
         grid: &Grid,
         view: &View,
-        at: DVec2,
-        seen: f64,
-    ) -> Result<Option<(DVec3, Located)>, GpuError> {
+        points: &[DVec3],
+    ) -> Result<Vec<Option<Located>>, GpuError> {
         self.show(grid, view)?;
         let grid = shown_grid(grid, view.ghosts.as_ref());
-        let (origin, direction) = view.camera.ray(at, view.aspect());
-        let distances = view.box_corners.iter();
-        let distances = distances.map(|c| (*c - origin).dot(direction));
-        let far = distances.fold(0.0, f64::max);
-        // On the lattice of the samples; of a long ray as many as a picture has rows of pixels, at most.
-        let step = view.sampling_step.max(far / MOST_PICK_SAMPLES);
-        let place = |n: usize| origin + (n as f64 + 0.5) * step * direction;
-        let kept = |p: &DVec3| {
-            let planes = &view.clip;
-            planes.iter().all(|c| (*p - c.point).dot(c.normal) >= 0.0)
+        let probe = match self.probe.take().filter(|p| p.fits(&self.grid)) {
+            Some(known) => self.probe.insert(known),
+            None => self.probe.insert(Probe::new(&self.gpu, &self.grid)?),
         };
-        let places: Vec<DVec3> = (0..(far / step) as usize).map(place).filter(kept).collect();
         let to_grid = |p: &DVec3| view.spaces.grid_from_world.transform_point3(*p);
-        let points: Vec<DVec3> = places.iter().map(to_grid).collect();
-        let located = probe::locate(&self.gpu, &self.grid, grid, &points, view.interpolation)?;
-        let mut transmittance = 1.0;
-        for (place, located) in places.into_iter().zip(located) {
-            let Some(located) = located else { continue };
-            let position = view.transfer.position(located.value);
-            transmittance *= (-view.transfer.extinction(position) * step).exp();
-            if 1.0 - transmittance >= seen {
-                return Ok(Some((place, located)));
-            }
-        }
-        Ok(None)
-    }
-
-    /// The drawn cell of `grid` (the one given to [`Self::new`]) in which a point of world space lies.
-    ///
-    /// # Errors
-    /// When the device reports an error.
-    pub fn cell_at(
-        &mut self,
-        grid: &Grid,
-        view: &View,
-        point: DVec3,
-    ) -> Result<Option<Ijk>, GpuError> {
-        self.show(grid, view)?;
-        let grid = shown_grid(grid, view.ghosts.as_ref());
-        let point = view.spaces.grid_from_world.transform_point3(point);
-        let found = probe::locate(&self.gpu, &self.grid, grid, &[point], view.interpolation)?;
-        Ok(found.first().and_then(|f| f.map(|located| located.ijk)))
+        let points: Vec<DVec3> = points.iter().map(to_grid).collect();
+        probe.locate(&self.gpu, &self.grid, grid, &points, view.interpolation)
     }
 
     /// Brings field and selection of a view of `grid`, the one given to [`Self::new`], to the device.

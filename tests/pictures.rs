@@ -6,6 +6,7 @@ mod common;
 use glam::{DVec2, DVec3};
 use strataray::metrics::{fraction_within, psnr_8bit, ssim_8bit};
 use strataray::model::CellIndex;
+use strataray::picking::Picker;
 use strataray::picture::Image;
 use strataray::renderer::Renderer;
 use strataray::scene::{
@@ -13,7 +14,7 @@ use strataray::scene::{
     LightingSpec, Projection, Scene, View,
 };
 use strataray::strategies::StrategyKind;
-use strataray::{case::Case, load, picking, reference};
+use strataray::{case::Case, load, reference};
 
 fn scene(azimuth: f64, elevation: f64, interpolation: Interpolation) -> Scene {
     Scene {
@@ -230,8 +231,8 @@ fn what_is_picked_in_parallel_lies_under_the_pointer() {
     parallel(&mut scene);
     let view = scene::resolve(&scene, &case).unwrap();
     for at in [DVec2::new(0.6, 0.5), DVec2::new(0.42, 0.55)] {
-        let hit = picking::pick(&mut renderer, &case, &view, at);
-        let hit = hit.unwrap().unwrap();
+        let pick = Picker::default().pick(&mut renderer, &case, &view, at);
+        let hit = pick.unwrap().hit.unwrap();
         let projected = view.camera.project(hit.world, view.aspect()).unwrap();
         assert!(projected.distance(at) < 1e-9);
         let cell = view.corners_of(case.grid.hexahedron(hit.ijk).bounds());

@@ -468,7 +468,7 @@ fn cells_agree_with_the_reference() {
                 ..Scene::default()
             };
             scene.show.inactive = inactive;
-            scene.show.faults = faults;
+            scene.show.faults = faults.into();
             if is_cut {
                 scene.clip = vec![cut(&scene::resolve(&scene, &case).unwrap(), CutFace::Open)];
             }

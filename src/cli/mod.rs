@@ -5,6 +5,7 @@ mod bench;
 mod cancel;
 mod compare;
 mod info;
+mod pick;
 mod probe;
 mod process;
 mod progress;
@@ -24,6 +25,7 @@ const EXAMPLES: &str = "Examples:
   strataray compare samples/scissor/SCISSOR.EGRID --views 6 -o compared
   strataray sample faulted -o models
   strataray bench R1 samples/scissor/SCISSOR.EGRID
+  strataray pick samples/scissor/SCISSOR.EGRID --at 500,500
   strataray probe samples/scissor/SCISSOR.EGRID --property PORO --points points.csv";
 
 /// Sees oil and gas reservoirs from the inside: volume ray casting of corner-point grids.
@@ -47,6 +49,8 @@ enum Command {
     Render(render::Arguments),
     /// A film over time steps or around the model, or its numbered pictures.
     Animate(animate::Arguments),
+    /// What a click at a pixel of the picture selects.
+    Pick(pick::Arguments),
     /// Finds the cell, its parameters and the value at given points.
     Probe(probe::Arguments),
     /// Strategies side by side: pictures, difference maps, figures.
@@ -75,6 +79,7 @@ pub fn run() -> ExitCode {
         Some(Command::Info(a)) => info::run(&a),
         Some(Command::Render(a)) => render::run(&a),
         Some(Command::Animate(a)) => animate::run(&a),
+        Some(Command::Pick(a)) => pick::run(&a),
         Some(Command::Probe(a)) => probe::run(&a),
         Some(Command::Compare(a)) => compare::run(&a),
         Some(Command::Bench(a)) => bench::run(&a),

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::device::{Gpu, GpuError};
-use super::grid_upload::GpuGrid;
+use super::grid_upload::{Constants, GpuGrid};
 use super::layout::{self, Found, NOT_FOUND};
 use super::pipeline::Pipeline;
 use crate::model::{Grid, Ijk};
@@ -34,35 +34,75 @@ pub fn locate(
     points_in_grid: &[DVec3],
     interpolation: Interpolation,
 ) -> Result<Vec<Option<Located>>, GpuError> {
-    let pipeline = Pipeline::variant(gpu, "probe", "main", &gpu_grid.constants().pairs())?;
-    let grid_group = gpu_grid.bind(gpu);
-    let mut located = Vec::with_capacity(points_in_grid.len());
-    for batch in points_in_grid.chunks(BATCH) {
-        let points: Vec<[[f32; 4]; 2]> =
-            batch.iter().map(|&p| split(p - gpu_grid.origin)).collect();
-        let interpolation = layout::interpolation(interpolation);
-        let info = gpu.uniform("points", &[interpolation, batch.len() as u32, 0, 0]);
-        let points = gpu.storage("points", &points)?;
-        let bytes = (batch.len() * size_of::<Found>()) as u64;
-        let found = gpu.scratch("found", bytes);
-        let own_group = gpu.bind(
-            &pipeline.own,
-            &[
-                info.as_entire_binding(),
-                points.as_entire_binding(),
-                found.as_entire_binding(),
-            ],
-        );
-        let mut encoder = gpu
-            .device
-            .create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        let groups = [(1, &grid_group), (3, &own_group)];
-        pipeline.dispatch(&mut encoder, &groups, [batch.len() as u32, 1, 1]);
-        gpu.queue.submit([encoder.finish()]);
-        let found: Vec<Found> = bytemuck::pod_collect_to_vec(&gpu.read(&found, bytes)?);
-        located.extend(found.iter().map(|f| from_device(f, grid)));
+    Probe::new(gpu, gpu_grid)?.locate(gpu, gpu_grid, grid, points_in_grid, interpolation)
+}
+
+/// The compiled shader, for those who locate points again and again.
+pub struct Probe {
+    pipeline: Pipeline,
+    constants: Constants,
+}
+
+impl Probe {
+    /// Compiles the shader for a grid.
+    ///
+    /// # Errors
+    /// When the driver refuses it.
+    pub fn new(gpu: &Gpu, gpu_grid: &GpuGrid) -> Result<Self, GpuError> {
+        let constants = gpu_grid.constants();
+        Ok(Self {
+            pipeline: Pipeline::variant(gpu, "probe", "main", &constants.pairs())?,
+            constants,
+        })
     }
-    Ok(located)
+
+    /// True where it was compiled for a grid like this one.
+    pub fn fits(&self, gpu_grid: &GpuGrid) -> bool {
+        self.constants == gpu_grid.constants()
+    }
+
+    /// Locates points given in grid space; `None` where a point lies in no drawn cell.
+    ///
+    /// # Errors
+    /// When the device reports an error.
+    pub fn locate(
+        &self,
+        gpu: &Gpu,
+        gpu_grid: &GpuGrid,
+        grid: &Grid,
+        points_in_grid: &[DVec3],
+        interpolation: Interpolation,
+    ) -> Result<Vec<Option<Located>>, GpuError> {
+        let grid_group = gpu_grid.bind(gpu);
+        let mut located = Vec::with_capacity(points_in_grid.len());
+        for batch in points_in_grid.chunks(BATCH) {
+            let points: Vec<[[f32; 4]; 2]> =
+                batch.iter().map(|&p| split(p - gpu_grid.origin)).collect();
+            let interpolation = layout::interpolation(interpolation);
+            let info = gpu.uniform("points", &[interpolation, batch.len() as u32, 0, 0]);
+            let points = gpu.storage("points", &points)?;
+            let bytes = (batch.len() * size_of::<Found>()) as u64;
+            let found = gpu.scratch("found", bytes);
+            let own_group = gpu.bind(
+                &self.pipeline.own,
+                &[
+                    info.as_entire_binding(),
+                    points.as_entire_binding(),
+                    found.as_entire_binding(),
+                ],
+            );
+            let mut encoder = gpu
+                .device
+                .create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+            let groups = [(1, &grid_group), (3, &own_group)];
+            self.pipeline
+                .dispatch(&mut encoder, &groups, [batch.len() as u32, 1, 1]);
+            gpu.queue.submit([encoder.finish()]);
+            let found: Vec<Found> = bytemuck::pod_collect_to_vec(&gpu.read(&found, bytes)?);
+            located.extend(found.iter().map(|f| from_device(f, grid)));
+        }
+        Ok(located)
+    }
 }
 
 /// A point as f32, and what rounding cut off.

@@ -30,11 +30,7 @@ const XYZ_FROM_RGB: [[f64; 3]; 3] = [
 /// L\*a\*b\* refers to D65 and the observer of 2 degrees.
 pub fn ciede2000_map(a: &[[u8; 3]], b: &[[u8; 3]]) -> Option<Vec<f64>> {
     let linear: [f64; 256] = std::array::from_fn(|v| linear_from_srgb(v as f64 / 255.0));
-    let lab = |pixel: &[u8; 3]| {
-        let rgb = pixel.map(|v| linear[usize::from(v)]);
-        let [x, y, z] = XYZ_FROM_RGB.map(|row| row[0] * rgb[0] + row[1] * rgb[1] + row[2] * rgb[2]);
-        Lab::from_color(Xyz::<D65, f64>::new(x, y, z))
-    };
+    let lab = |pixel: &[u8; 3]| lab_of(pixel.map(|v| linear[usize::from(v)]));
     let difference = |(a, b): (&[u8; 3], &[u8; 3])| match a == b {
         // Most of two pictures, often: background.
         true => 0.0,
@@ -42,6 +38,18 @@ pub fn ciede2000_map(a: &[[u8; 3]], b: &[[u8; 3]]) -> Option<Vec<f64>> {
     };
     let pairs = a.par_iter().zip(b);
     (a.len() == b.len()).then(|| pairs.map(difference).collect())
+}
+
+/// L\*a\*b\* of a color in sRGB, 0..1; D65 and the observer of 2 degrees.
+pub fn lab(srgb: [f64; 3]) -> [f64; 3] {
+    let Lab { l, a, b, .. } = lab_of(srgb.map(linear_from_srgb));
+    [l, a, b]
+}
+
+fn lab_of(linear: [f64; 3]) -> Lab<D65, f64> {
+    let [x, y, z] =
+        XYZ_FROM_RGB.map(|row| row[0] * linear[0] + row[1] * linear[1] + row[2] * linear[2]);
+    Lab::from_color(Xyz::<D65, f64>::new(x, y, z))
 }
 
 /// Mean of values; not a number where there are none.

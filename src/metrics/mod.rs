@@ -5,7 +5,7 @@ mod comparison;
 mod psnr;
 mod ssim;
 
-pub use ciede2000::{ciede2000, ciede2000_map, mean, percentile};
+pub use ciede2000::{ciede2000, ciede2000_map, lab, mean, percentile};
 pub use comparison::{Comparison, UnlikeSizes};
 pub use psnr::psnr_8bit;
 pub use ssim::ssim_8bit;

@@ -34,6 +34,12 @@ pub enum ShownFaults {
     Named(Vec<String>),
 }
 
+impl From<bool> for ShownFaults {
+    fn from(all: bool) -> Self {
+        Self::All(all)
+    }
+}
+
 impl ShownFaults {
     /// True where at least one is asked for.
     pub fn are_shown(&self) -> bool {

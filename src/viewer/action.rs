@@ -65,6 +65,8 @@ pub enum Beside {
     Others,
     /// It replaces them.
     Nothing,
+    /// It replaces the one selected last.
+    AllButLast,
 }
 
 impl Action {
@@ -127,6 +129,11 @@ impl Action {
 fn select(selected: &mut Vec<[usize; 3]>, cell: [usize; 3], beside: Beside) {
     match (beside, selected.iter().position(|c| *c == cell)) {
         (Beside::Nothing, _) => *selected = vec![cell],
+        (Beside::AllButLast, _) => {
+            selected.pop();
+            selected.retain(|c| *c != cell);
+            selected.push(cell);
+        }
         (Beside::Others, Some(at)) => {
             selected.remove(at);
         }

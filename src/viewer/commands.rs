@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use eframe::egui::Context;
 
-use super::action::Action;
+use super::action::{Action, Beside};
 use super::command;
 use super::dialogs::{Dialog, Purpose};
 use super::document::Document;
@@ -177,7 +177,21 @@ fn change(document: &mut Document, command: Command) -> Option<String> {
             return told;
         }
         Command::Deselect => document.apply(Action::Deselect),
+        Command::AlongRay(by) => match document.along_ray(by) {
+            Some(cell) => document.apply(Action::Select(cell, Beside::AllButLast)),
+            None => return Some(no_more(document, by)),
+        },
         _ => {}
     }
     None
+}
+
+/// Why there is no cell to step to along the line of sight.
+fn no_more(document: &Document, by: isize) -> String {
+    match (document.along_ray(0), by < 0) {
+        (None, _) => "click a cell first; then , and . step along the line of sight",
+        (Some(_), true) => "no cell lies in front of this one",
+        (Some(_), false) => "no cell lies behind this one",
+    }
+    .into()
 }

@@ -12,7 +12,7 @@ use super::spread::Spread;
 use super::state::State;
 use super::watch::Watch;
 use crate::case::Case;
-use crate::picking::Hit;
+use crate::picking::Pick;
 use crate::scene::{CameraSpec, StepSpec};
 
 /// A tab.
@@ -33,8 +33,8 @@ pub struct Document {
     pub playing: Option<Instant>,
     /// Tells when the case's files change.
     pub watch: Option<Watch>,
-    /// Where the pointer met what was selected last.
-    pub hit: Option<Hit>,
+    /// What was seen at the place clicked last.
+    pub pick: Option<Pick>,
     /// All properties of the selected cells.
     pub table: Option<Table>,
     /// The property shown over time, in the selected cells.
@@ -55,7 +55,7 @@ impl Document {
             history: History::default(),
             playing: None,
             watch: None,
-            hit: None,
+            pick: None,
             table: None,
             curves: None,
             spreads: Vec::new(),
@@ -111,6 +111,15 @@ impl Document {
     pub fn lacks_look(&self, property: &str) -> bool {
         !self.state.setup.looks.contains_key(property)
             && self.state.setup.scene.property.as_deref() != Some(property)
+    }
+
+    /// The cell, by I, J, K from 1, that lies `by` cells behind the one selected last on the ray of the last
+    /// click, before it where `by` is below 0; `None` where there is none.
+    pub fn along_ray(&self, by: isize) -> Option<[usize; 3]> {
+        let case = self.case.as_ref()?;
+        let last = case.grid.dims().one_based(*self.state.selected.last()?)?;
+        let next = self.pick.as_ref()?.beside(last, by)?;
+        Some(next.one_based())
     }
 
     /// The step shown, by number, and how many there are; `None` where there are none.

@@ -53,6 +53,8 @@ pub enum Command {
     Compare,
     /// Selects no cell.
     Deselect,
+    /// From the cell selected last to the one behind it on the ray of the click, or in front of it.
+    AlongRay(isize),
     /// The picture alone, or with panels.
     Panels,
     /// What was not loaded.
@@ -76,7 +78,7 @@ const fn from(view: usize) -> Command {
 }
 
 /// Every shortcut, with what it says in the sheet.
-pub const SHORTCUTS: [(Modifiers, Key, Command, &str); 52] = [
+pub const SHORTCUTS: [(Modifiers, Key, Command, &str); 54] = [
     (CTRL, Key::O, Command::Open, "Open a case"),
     (NONE, Key::F5, Command::Reload, "Read the case again"),
     (CTRL, Key::S, Command::SaveScene, "Save the scene"),
@@ -155,6 +157,18 @@ pub const SHORTCUTS: [(Modifiers, Key, Command, &str); 52] = [
         Key::Escape,
         Command::Deselect,
         "Close what is open, or select no cell",
+    ),
+    (
+        NONE,
+        Key::Comma,
+        Command::AlongRay(-1),
+        "Select the cell in front, along the line of sight",
+    ),
+    (
+        NONE,
+        Key::Period,
+        Command::AlongRay(1),
+        "Select the cell behind, along the line of sight",
     ),
     (CTRL, Key::B, Command::Panels, "Panels or the picture alone"),
     (CTRL, Key::N, Command::Notes, "What was not loaded"),

@@ -10,7 +10,7 @@ use super::reader::Read;
 use super::watch::{Change, Watch};
 use super::window::{Window, load};
 use super::worker::Why;
-use crate::picking::Hit;
+use crate::picking::Pick;
 
 impl Window {
     /// Takes in what happened since the last frame.
@@ -23,7 +23,7 @@ impl Window {
                     }
                 }
                 Event::Failed(error) => self.fail(error),
-                Event::Picked(why, hit) => self.picked(why, hit),
+                Event::Picked(why, pick) => self.picked(why, *pick),
             }
         }
         self.listen_to_files(ctx);
@@ -117,22 +117,23 @@ impl Window {
         self.keep_settings();
     }
 
-    fn picked(&mut self, why: Why, hit: Option<Hit>) {
+    fn picked(&mut self, why: Why, pick: Pick) {
         if why == Why::Hover {
-            self.sides.hover = hit;
+            let is_seen = pick.hit.is_some() || pick.fault.is_some();
+            self.sides.hover = is_seen.then_some(pick);
             return;
         }
-        let Some(hit) = hit else {
-            self.tell("nothing is drawn there");
+        let Some(hit) = &pick.hit else {
+            self.tell("no cell is seen there");
             return;
         };
-        let cell = [hit.ijk.i, hit.ijk.j, hit.ijk.k].map(|n| n + 1);
+        let cell = hit.ijk.one_based();
         let beside = match why {
             Why::Join => Beside::Others,
             _ => Beside::Nothing,
         };
         if let Some(document) = self.document_mut() {
-            document.hit = Some(hit);
+            document.pick = Some(pick);
             document.apply(Action::Select(cell, beside));
         }
     }

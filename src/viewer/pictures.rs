@@ -8,7 +8,7 @@ use glam::DVec2;
 
 use super::worker::{Answer, Difference, Job, Picture, Wanted, Why, Worker};
 use crate::case::Case;
-use crate::picking::Hit;
+use crate::picking::Pick;
 use crate::picture::Rgb8;
 use crate::scene::Scene;
 use crate::strategies::StrategyKind;
@@ -93,8 +93,8 @@ struct Flight {
 
 /// What happened that concerns more than the pictures.
 pub enum Event {
-    /// What lies under a place that was asked for.
-    Picked(Why, Option<Hit>),
+    /// What is seen at a place that was asked for.
+    Picked(Why, Box<Pick>),
     /// A picture came.
     Came,
     /// Why one did not.
@@ -146,9 +146,11 @@ impl Pictures {
         self.flight.as_ref().map(|f| !f.is_draft)
     }
 
-    /// Asks what lies under a place; a final picture on its way is left, to be begun again after it.
+    /// Asks what is seen at a place. For a click a final picture on its way is left, to be begun again after
+    /// it; a pointer that rests waits for the picture.
     pub fn pick(&mut self, side: usize, wanted: Wanted, at: DVec2, why: Why) {
-        if let Some(flight) = self.flight.as_mut().filter(|f| f.is_slow) {
+        let is_slow = |f: &&mut Flight| f.is_slow && why != Why::Hover;
+        if let Some(flight) = self.flight.as_mut().filter(is_slow) {
             flight.is_cancelled = true;
             self.worker.cancel();
         }
@@ -195,7 +197,7 @@ impl Pictures {
             }
             // The picture on its way, if there is one, still comes.
             Answer::Refused(error) => return Some(Event::Failed(error)),
-            Answer::Picked(why, hit) => return Some(Event::Picked(why, hit)),
+            Answer::Picked(why, pick) => return Some(Event::Picked(why, pick)),
             Answer::Picture(side, picture) => {
                 if let Some(flight) = self.land() {
                     let is_software = self.adapter.as_ref().is_none_or(|a| a.1);
@@ -384,4 +386,36 @@ fn texture(ctx: &Context, rgb: &Rgb8) -> TextureHandle {
     let size = rgb.size.map(|n| n as usize);
     let image = ColorImage::from_rgb(size, rgb.pixels.as_flattened());
     ctx.load_texture("picture", image, TextureOptions::LINEAR)
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "tests")]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+
+    #[test]
+    fn only_clicks_take_the_place_of_a_final_picture() {
+        let sample = Path::new(env!("CARGO_MANIFEST_DIR")).join("samples/scissor/SCISSOR.EGRID");
+        let wanted = Wanted {
+            case: Arc::new(crate::load::open(&sample).unwrap()),
+            scene: Scene {
+                size: [40, 30],
+                ..Scene::default()
+            },
+        };
+        let mut pictures = Pictures::new(&Context::default());
+        for (why, is_left) in [(Why::Hover, false), (Why::Select, true)] {
+            pictures.flight = Some(Flight {
+                side: 0,
+                wanted: wanted.clone(),
+                is_draft: false,
+                is_slow: true,
+                is_cancelled: false,
+            });
+            pictures.pick(0, wanted.clone(), DVec2::splat(0.5), why);
+            assert_eq!(pictures.flight.as_ref().unwrap().is_cancelled, is_left);
+        }
+    }
 }

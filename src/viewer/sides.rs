@@ -15,7 +15,7 @@ use super::window::Window;
 use super::worker::{Wanted, Why};
 use super::{handles, keys::Command, marks, overlay};
 use crate::case::Case;
-use crate::picking::Hit;
+use crate::picking::Pick;
 use crate::picture::Annotations;
 use crate::picture::compared::differing;
 use crate::scene::{CameraSpec, Scene, Show, View};
@@ -26,16 +26,29 @@ pub struct Sides {
     viewports: [Viewport; 2],
     /// Where the volume of each picture is, in points.
     rects: [Option<Rect>; 2],
-    /// What the pointer rests on.
-    pub hover: Option<Hit>,
-    /// Where the pointer was when what it rests on was asked for.
-    asked: Option<egui::Pos2>,
+    /// What is seen where the pointer rests.
+    pub hover: Option<Pick>,
+    /// For where that was asked.
+    asked: Option<Pointed>,
+}
+
+/// The case and scene of a side.
+type Seen = Option<(Arc<Case>, Scene)>;
+
+/// A place that the pointer is on.
+#[derive(PartialEq)]
+struct Pointed {
+    pointer: egui::Pos2,
+    side: usize,
+    /// In the picture, 0 to 1, right and down.
+    at: DVec2,
+    wanted: Wanted,
 }
 
 /// A narrower window shows no panels.
 const WIDTH_OF_PANELS: f32 = 700.0;
-/// Seconds that the pointer rests before what is under it is looked for.
-const REST: f64 = 0.35;
+/// Seconds that the pointer rests before what is under it is read.
+const REST: f64 = 0.3;
 /// Points on both sides of a wipe's line within which it is taken.
 const GRIP: f32 = 5.0;
 
@@ -95,7 +108,7 @@ impl Window {
             picture: self.pictures.shown(0, case).map(|s| &s.picture),
             difference: self.pictures.difference().filter(|_| is_compared),
             refusal: self.difference_of_values().and_then(Result::err),
-            hit: document.hit.as_ref(),
+            pick: document.pick.as_ref(),
             table: document.table.as_ref(),
             curves: document.curves.as_ref(),
             spreads: &document.spreads,
@@ -130,7 +143,8 @@ impl Window {
         let rects = pages.map(|p| p.as_ref().map(Page::volume));
         self.sides.rects = rects;
         let mut touched = self.viewport(ui, case, subject, rects[0], 0);
-        let mut on_other = None;
+        let sides = [Some((case.clone(), subject.clone())), other.clone()];
+        let mut clicked = touched.pick.map(|at| (side_at(layout, at), at));
         if let (Some((other, scene)), Some(rect), Some(comparison)) =
             (other, rects[1], &setup.comparison)
         {
@@ -140,7 +154,7 @@ impl Window {
                     let link = self.link();
                     let back = |c| link.map_or_else(|| CameraSpec::clone(&c), |l| l.back(&c));
                     touched.camera = touched.camera.or(there.camera.map(back));
-                    on_other = there.pick.map(|at| (other.clone(), scene.clone(), at));
+                    clicked = clicked.or(there.pick.map(|at| (1, at)));
                 }
                 Some(Layout::Wipe(at)) => {
                     let moved = self.wipe(ui, &other, &scene, rect, at);
@@ -169,8 +183,8 @@ impl Window {
                 touched.actions.push(Action::Clip(planes));
             }
         }
-        self.pick(ctx, case, subject, touched.pick, on_other);
-        self.hover(ui, ctx, case, subject);
+        self.pick(ctx, &sides, clicked);
+        self.hover(ui, ctx, &sides, layout);
         touched
     }
 
@@ -332,26 +346,18 @@ impl Window {
         painter.image(shown.texture.id(), rect, uv, egui::Color32::WHITE);
     }
 
-    /// Asks for the cell that was clicked, in the first picture or the second one.
-    fn pick(
-        &mut self,
-        ctx: &Context,
-        case: &Arc<Case>,
-        scene: &Scene,
-        at: Option<DVec2>,
-        on_other: Option<(Arc<Case>, Scene, DVec2)>,
-    ) {
+    /// Asks for the cell that was clicked in the picture of a side.
+    fn pick(&mut self, ctx: &Context, sides: &[Seen; 2], clicked: Option<(usize, DVec2)>) {
         let why = match ctx.input(|i| i.modifiers.command) {
             true => Why::Join,
             false => Why::Select,
         };
-        if let (Some(at), Some(wanted)) = (at, self.sized(ctx, case, scene)) {
-            self.pictures.pick(0, wanted, at, why);
-        }
-        match on_other {
-            Some((other, scene, at)) if Arc::ptr_eq(&other, case) => {
-                if let Some(wanted) = self.sized(ctx, &other, &scene) {
-                    self.pictures.pick(1, wanted, at, why);
+        let Some((side, at)) = clicked else { return };
+        let [Some((first, _)), _] = sides else { return };
+        match &sides[side] {
+            Some((case, scene)) if Arc::ptr_eq(case, first) => {
+                if let Some(wanted) = self.sized(ctx, case, scene) {
+                    self.pictures.pick(side, wanted, at, why);
                 }
             }
             Some(_) => self.tell("cells of the other case are selected in its own tab"),
@@ -371,36 +377,69 @@ impl Window {
         })
     }
 
-    /// Reads the fault that the pointer rests on.
-    fn hover(&mut self, ui: &Ui, ctx: &Context, case: &Arc<Case>, scene: &Scene) {
-        let Some(rect) = self.sides.rects[0].filter(|_| scene.show.faults.are_shown()) else {
-            return;
-        };
-        let pointer = ctx.input(|i| i.pointer.hover_pos());
-        let pointer = pointer.filter(|p| rect.contains(*p) && !ctx.egui_is_using_pointer());
-        if self.sides.asked != pointer {
+    /// Reads the cell and the fault that the pointer rests on, once all pictures are there: none waits for it.
+    fn hover(&mut self, ui: &Ui, ctx: &Context, sides: &[Seen; 2], layout: Option<Layout>) {
+        let pointed = self.pointed(ui, ctx, sides, layout);
+        if self.sides.asked != pointed {
             self.sides.hover = None;
         }
-        let Some(pointer) = pointer else {
+        let Some(pointed) = pointed else {
             self.sides.asked = None;
             return;
         };
-        if self.sides.asked != Some(pointer) {
+        if self.sides.asked.as_ref() != Some(&pointed) {
             let still = ctx.input(|i| f64::from(i.pointer.time_since_last_movement()));
-            let is_free = self.pictures.on_its_way().is_none();
-            if still < REST || !is_free {
+            if still < REST {
                 ctx.request_repaint_after_secs((REST - still).max(0.02) as f32);
-            } else if let Some(wanted) = self.sized(ctx, case, scene) {
-                self.sides.asked = Some(pointer);
-                let at = (pointer - rect.min) / rect.size();
-                let at = DVec2::new(f64::from(at.x), f64::from(at.y));
-                self.pictures.pick(0, wanted, at, Why::Hover);
+            } else if self.pictures.are_final() {
+                let Pointed { side, at, .. } = pointed;
+                let wanted = pointed.wanted.clone();
+                self.pictures.pick(side, wanted, at, Why::Hover);
+                self.sides.asked = Some(pointed);
             }
+            return;
         }
-        let text = self.sides.hover.as_ref();
-        if let Some(text) = text.and_then(|hit| panels::hover_text(hit, case)) {
-            overlay::tip(ui, pointer + vec2(14.0, 14.0), &text);
+        let pick = self.sides.hover.as_ref();
+        let text = pick.and_then(|pick| panels::hover_text(pick, &pointed.wanted.case));
+        if let Some(text) = text {
+            overlay::tip(ui, pointed.pointer + vec2(14.0, 14.0), &text);
         }
+    }
+
+    /// What the pointer is on: a picture with nothing over it.
+    fn pointed(
+        &self,
+        ui: &Ui,
+        ctx: &Context,
+        sides: &[Seen; 2],
+        layout: Option<Layout>,
+    ) -> Option<Pointed> {
+        let pointer = ctx.input(|i| i.pointer.hover_pos())?;
+        let is_covered = ctx.layer_id_at(pointer).is_some_and(|l| l != ui.layer_id());
+        if is_covered || ctx.egui_is_using_pointer() || layout == Some(Layout::ColorDifference) {
+            return None;
+        }
+        let is_on = |rect: &Option<Rect>| rect.is_some_and(|r| r.contains(pointer));
+        let number = self.sides.rects.iter().position(is_on)?;
+        let rect = self.sides.rects[number]?;
+        let at = (pointer - rect.min) / rect.size();
+        let at = DVec2::new(f64::from(at.x), f64::from(at.y));
+        let side = number.max(side_at(layout, at));
+        let (case, scene) = sides[side].as_ref()?;
+        Some(Pointed {
+            pointer,
+            side,
+            at,
+            wanted: self.sized(ctx, case, scene)?,
+        })
+    }
+}
+
+/// The side that is seen at a place in the first picture.
+fn side_at(layout: Option<Layout>, at: DVec2) -> usize {
+    match layout {
+        Some(Layout::Wipe(line)) if at.x > line => 1,
+        _ => 0,
     }
 }
 

@@ -7,12 +7,12 @@ use std::time::{Duration, Instant};
 
 use glam::DVec2;
 
-use super::worker::{Answer, Difference, Job, Picture, Wanted, Why};
+use super::worker::{Answer, Difference, Job, Picture, Wanted};
 use crate::case::Case;
 use crate::gpu::Gpu;
 use crate::metrics::{Comparison, ciede2000_map};
 use crate::model::Grid;
-use crate::picking::{self, Hit};
+use crate::picking::{Pick, PickError, Picker};
 use crate::picture::{self, Rgb8};
 use crate::renderer::Renderer;
 use crate::scene::{self, CameraSpec, Scene, View};
@@ -35,6 +35,7 @@ struct Side {
     /// Cases that share a grid share what is on the device.
     renderer: Option<(Arc<Grid>, Renderer)>,
     resolved: VecDeque<(Wanted, Arc<View>)>,
+    picker: Picker,
 }
 
 impl Studio {
@@ -81,11 +82,8 @@ impl Studio {
                 at,
                 why,
             } => {
-                let hit = match why {
-                    Why::Hover => self.sides[side].fault(&wanted, at),
-                    Why::Select | Why::Join => self.pick(side, &wanted, at, say),
-                };
-                hit.map(|hit| Answer::Picked(why, hit))
+                let pick = self.pick(side, &wanted, at, say);
+                pick.map(|pick| Answer::Picked(why, Box::new(pick)))
             }
             Job::Difference(of) => difference(of).map(|d| Answer::Difference(Box::new(d))),
         };
@@ -160,13 +158,18 @@ impl Studio {
         wanted: &Wanted,
         at: DVec2,
         say: Say<'_>,
-    ) -> Result<Option<Hit>, Failure> {
+    ) -> Result<Pick, Failure> {
         let gpu = self.open(say).map_err(Failure::of_device)?;
         let side = &mut self.sides[side];
         let view = side.view(wanted)?;
+        let mut picker = std::mem::take(&mut side.picker);
         let renderer = side.renderer(gpu, &wanted.case)?;
-        let hit = picking::pick(renderer, &wanted.case, &view, at);
-        hit.map_err(|e| Failure::of_device(e.to_string()))
+        let pick = picker.pick(renderer, &wanted.case, &view, at);
+        side.picker = picker;
+        pick.map_err(|error| Failure {
+            is_device: matches!(error, PickError::Device(_)),
+            sentence: error.to_string(),
+        })
     }
 }
 
@@ -183,12 +186,6 @@ impl Side {
             }
         };
         Ok(&mut self.renderer.insert(kept).1)
-    }
-
-    /// The fault under a place, which needs no device.
-    fn fault(&mut self, wanted: &Wanted, at: DVec2) -> Result<Option<Hit>, Failure> {
-        let view = self.view(wanted)?;
-        Ok(picking::fault_under(&wanted.case, &view, at))
     }
 
     /// The scene resolved; where only camera and size differ from a known one, without reading values.

@@ -20,7 +20,7 @@ use super::state::State;
 use super::subject::CaseDifference;
 use super::worker::{Difference, Picture};
 use super::{bar, keys};
-use crate::picking::Hit;
+use crate::picking::Pick;
 
 /// The window's state.
 pub struct Window {
@@ -145,8 +145,8 @@ impl Window {
         Some((&shown.picture, is_final))
     }
 
-    /// The fault that the pointer rests on.
-    pub fn hovered(&self) -> Option<&Hit> {
+    /// What is seen where the pointer rests.
+    pub fn hovered(&self) -> Option<&Pick> {
         self.sides.hover.as_ref()
     }
 

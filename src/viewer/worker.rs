@@ -14,7 +14,7 @@ use crate::case::Case;
 use crate::gpu::illumination::LightTimes;
 use crate::gpu::{FrameStats, GpuBytes};
 use crate::metrics::Comparison;
-use crate::picking::Hit;
+use crate::picking::Pick;
 use crate::picture::Rgb8;
 use crate::scene::{Scene, View};
 
@@ -44,7 +44,7 @@ pub enum Job {
         /// Good enough while something moves; else final.
         is_draft: bool,
     },
-    /// What lies under a place in a side's picture (0 to 1, right and down).
+    /// What is seen at a place in a side's picture (0 to 1, right and down).
     Pick {
         /// Which one.
         side: usize,
@@ -132,8 +132,8 @@ pub enum Answer {
     Picture(usize, Box<Picture>),
     /// It was cancelled.
     Cancelled,
-    /// What lies under the place, if anything.
-    Picked(Why, Option<Hit>),
+    /// What is seen at the place, and what lies before and behind it.
+    Picked(Why, Box<Pick>),
     /// How far two pictures are apart.
     Difference(Box<Difference>),
     /// Why there is no picture, in one sentence.
@@ -196,7 +196,7 @@ impl Worker {
         self.send(job);
     }
 
-    /// Asks what lies under a place, after what is being made or has been left.
+    /// Asks what is seen at a place, after what is being made or has been left.
     pub fn pick(&self, side: usize, wanted: Wanted, at: DVec2, why: Why) {
         self.send(Job::Pick {
             side,

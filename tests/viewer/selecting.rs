@@ -4,7 +4,7 @@ use eframe::egui::{Key, Modifiers, pos2, vec2};
 use strataray::model::Ijk;
 use strataray::picking::Part;
 use strataray::scene::{Hull, Show};
-use strataray::viewer::Action;
+use strataray::viewer::{Action, Beside};
 
 use super::common::{gpu, sample};
 use super::driven::{Driven, covered};
@@ -116,6 +116,107 @@ fn a_picked_cell_tells_its_values() {
 }
 
 #[test]
+fn a_pointer_that_rests_reads_the_cell_and_disturbs_no_picture() {
+    let Some(_) = gpu() else { return };
+    let mut driven = Driven::showing(sample());
+    let place = driven.place("volume");
+    driven.harness.hover_at(place.center());
+    driven.wait("the cell", |w| w.hovered().is_some());
+    let pick = driven.harness.state().hovered().unwrap().clone();
+    let hit = pick.hit.unwrap();
+    // What a click takes, with the value of the file.
+    let case = driven.document().case.clone().unwrap();
+    let field = case.field("SOIL", pick.step).unwrap();
+    let value = field.value(&case.grid, case.grid.dims().cell(hit.ijk));
+    assert_eq!(
+        (pick.property.as_str(), value.map(f64::from)),
+        ("SOIL", Some(hit.value))
+    );
+    assert!(driven.harness.state().picture(0).unwrap().1, "still final");
+    driven.click_at(place.center(), Modifiers::NONE);
+    driven.wait("the selection", |w| {
+        w.document().is_some_and(|d| !d.state.selected.is_empty())
+    });
+    assert_eq!(driven.document().state.selected, [hit.ijk.one_based()]);
+    // Another step has other values: what was read does not stay.
+    driven.press(Modifiers::NONE, Key::Home);
+    assert!(driven.harness.state().hovered().is_none());
+    driven.wait("the value of the first step", |w| {
+        w.hovered().is_some_and(|pick| pick.step == 0)
+    });
+    // In the other mode too.
+    let show = Show {
+        hull: Hull::Opaque,
+        ..Show::default()
+    };
+    driven.harness.state_mut().apply(Action::Show(show));
+    driven.wait("the outer face", |w| {
+        let hit = w.hovered().and_then(|pick| pick.hit.as_ref());
+        hit.is_some_and(|h| matches!(h.part, Part::Face(_) | Part::Fault(_)))
+    });
+}
+
+#[test]
+fn keys_and_buttons_step_along_the_line_of_sight() {
+    let Some(_) = gpu() else { return };
+    let mut driven = Driven::showing(sample());
+    // Nothing to step along yet.
+    driven.press(Modifiers::NONE, Key::Period);
+    assert!(
+        driven
+            .harness
+            .state()
+            .message()
+            .is_some_and(|m| m.0.contains("click a cell first"))
+    );
+    let place = driven.place("volume");
+    driven.click_at(place.center(), Modifiers::NONE);
+    driven.wait("the selection", |w| {
+        w.document().is_some_and(|d| d.pick.is_some())
+    });
+    let pick = driven.document().pick.clone().unwrap();
+    let cells: Vec<[usize; 3]> = pick.cells.iter().map(|c| c.ijk.one_based()).collect();
+    let [before, behind] = pick.around(pick.hit.unwrap().ijk).unwrap();
+    driven.wait_settled();
+    driven.harness.get_by_label(&told(before, behind));
+    assert!(before + behind > 1);
+    for _ in 0..before {
+        driven.press(Modifiers::NONE, Key::Comma);
+    }
+    assert_eq!(driven.document().state.selected, [cells[0]]);
+    driven.press(Modifiers::NONE, Key::Comma);
+    assert_eq!(driven.document().state.selected, [cells[0]]);
+    for cell in &cells[1..] {
+        driven.press(Modifiers::NONE, Key::Period);
+        assert_eq!(driven.document().state.selected, [*cell]);
+    }
+    driven.wait_settled();
+    driven.harness.get_by_label(&told(cells.len() - 1, 0));
+    driven.click("Cell in front, along the line of sight (,)");
+    assert_eq!(driven.document().state.selected, [cells[cells.len() - 2]]);
+    // Of several cells the last one steps.
+    let kept = cells[0];
+    for cell in [kept, cells[1]] {
+        let beside = if cell == kept {
+            Beside::Nothing
+        } else {
+            Beside::Others
+        };
+        driven
+            .harness
+            .state_mut()
+            .apply(Action::Select(cell, beside));
+    }
+    driven.press(Modifiers::NONE, Key::Period);
+    assert_eq!(driven.document().state.selected, [kept, cells[2]]);
+}
+
+fn told(before: usize, behind: usize) -> String {
+    let cells = if before == 1 { "cell" } else { "cells" };
+    format!("{before} {cells} in front, {behind} behind")
+}
+
+#[test]
 fn a_pointer_that_rests_on_a_fault_reads_its_throw() {
     let Some(_) = gpu() else { return };
     let mut driven = Driven::showing(sample());
@@ -138,24 +239,23 @@ fn a_pointer_that_rests_on_a_fault_reads_its_throw() {
     let at = place.min + vec2(at.x as f32, at.y as f32) * place.size();
     driven.harness.hover_at(at);
     driven.wait("the fault", |w| w.hovered().is_some());
-    let hit = driven.harness.state().hovered().unwrap().clone();
-    let Part::Fault(fault) = hit.part else {
-        panic!("{hit:?}");
-    };
+    let pick = driven.harness.state().hovered().unwrap().clone();
+    let fault = pick.fault.clone().unwrap();
     assert!(fault.name.is_some_and(|n| n.starts_with('F')));
+    assert!(fault.near.i < fault.far.i || fault.near.j != fault.far.j);
     // The throw of whatever face it is, from the depths of both cells alone.
     let [low, high] = [[0, 2], [1, 3]];
-    let sides = if hit.ijk.i < fault.beyond.i {
+    let sides = if fault.near.i < fault.far.i {
         [high, low]
     } else {
         [low, high]
     };
-    if hit.ijk.j == fault.beyond.j {
+    if fault.near.j == fault.far.j {
         let depth = |cell: Ijk, corners: [usize; 2]| {
             let all = corners.into_iter().flat_map(|c| [c, c + 4]);
             all.map(|c| grid.corner_depth(cell, c)).sum::<f64>() / 4.0
         };
-        let drop = depth(fault.beyond, sides[1]) - depth(hit.ijk, sides[0]);
+        let drop = depth(fault.far, sides[1]) - depth(fault.near, sides[0]);
         assert!((drop - fault.throw).abs() < 1e-9, "{drop} {}", fault.throw);
         assert!(fault.throw.abs() > 1.0);
     }

@@ -31,12 +31,12 @@ use super::spread::Spread;
 use super::state::State;
 use super::worker::Picture;
 use crate::case::Case;
-use crate::picking::Hit;
+use crate::picking::Pick;
 use crate::scene::Scene;
 
 pub use curves::csv;
 pub use player::{Asked, player};
-pub use selection::part as hover_text;
+pub use selection::hover_text;
 
 /// What a panel knows.
 pub struct About<'a> {
@@ -52,8 +52,8 @@ pub struct About<'a> {
     pub difference: Option<&'a ShownDifference>,
     /// Why the difference of values that is asked for is not shown.
     pub refusal: Option<String>,
-    /// Where the pointer met what was selected last.
-    pub hit: Option<&'a Hit>,
+    /// What was seen at the place clicked last.
+    pub pick: Option<&'a Pick>,
     /// All properties of the selected cells.
     pub table: Option<&'a Table>,
     /// The property shown over time, in the selected cells.

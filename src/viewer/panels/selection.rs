@@ -7,10 +7,10 @@ use super::controls::significant;
 use super::{About, curves};
 use crate::case::Case;
 use crate::model::Ijk;
-use crate::picking::{Hit, Part};
+use crate::picking::{Fault, Hit, Part, Pick};
 use crate::picture::short_unit;
 use crate::scene::{Filter, PropertyFilter, ScaleSpec};
-use crate::viewer::action::Action;
+use crate::viewer::action::{Action, Beside};
 use crate::viewer::marks;
 use crate::viewer::reader::Table;
 
@@ -28,10 +28,14 @@ pub fn show(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
         go_to(ui, about, actions);
         return;
     };
-    if let Some(hit) = about.hit.filter(|h| one_based(h.ijk) == *last) {
-        ui.label(place(hit));
-        if let Some(text) = part(hit, about.case) {
-            ui.label(text);
+    if let Some(pick) = about.pick {
+        let hit = pick.hit.as_ref();
+        if let Some(hit) = hit.filter(|h| h.ijk.one_based() == *last) {
+            ui.label(place(hit));
+            ui.label(seen(pick, hit, about.case));
+        }
+        if let Some(cell) = about.case.grid.dims().one_based(*last) {
+            along_ray(ui, pick, cell, actions);
         }
     }
     let first = selected.len().saturating_sub(MOST_COLUMNS);
@@ -48,10 +52,6 @@ pub fn show(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
     }
 }
 
-fn one_based(ijk: Ijk) -> [usize; 3] {
-    [ijk.i + 1, ijk.j + 1, ijk.k + 1]
-}
-
 /// A cell by its numbers.
 pub fn named([i, j, k]: [usize; 3]) -> String {
     format!("I {i}  J {j}  K {k}")
@@ -62,22 +62,72 @@ fn place(hit: &Hit) -> String {
     format!("E {east:.1}  N {north:.1}  depth {depth:.2}")
 }
 
-/// What of the cell was met, where that is more than its inside.
-pub fn part(hit: &Hit, case: &Case) -> Option<String> {
+/// What of the cell is seen: the value at the place where it differs from the cell's own, and how much of the
+/// pixel it is.
+fn seen(pick: &Pick, hit: &Hit, case: &Case) -> String {
+    let mut lines = Vec::new();
+    match &hit.part {
+        Part::Inside => {}
+        Part::Section => lines.push("On a clip plane".into()),
+        Part::Face(_) => lines.push("Outer face".into()),
+        Part::Fault(fault) => lines.push(of_fault(fault, case)),
+    }
+    if hit.shown != hit.value {
+        let shown = value(&pick.property, hit.shown, case);
+        lines.push(format!("{shown} at this point (interpolated)"));
+    }
+    let share = 100.0 * hit.contribution;
+    lines.push(format!("{share:.0} % of the color seen here"));
+    lines.join("\n")
+}
+
+/// A value with its property's name and unit.
+fn value(property: &str, value: f64, case: &Case) -> String {
+    let text = format!("{property} {} {}", significant(value), case.unit(property));
+    text.trim_end().to_owned()
+}
+
+/// A fault with its throw, and the cell on its far side.
+fn of_fault(fault: &Fault, case: &Case) -> String {
     let unit = short_unit(&case.about.length_unit);
-    Some(match &hit.part {
-        Part::Inside => return None,
-        Part::Section => "Section of a clip plane".into(),
-        Part::Face(_) => "Outer face".into(),
-        Part::Fault(fault) => {
-            let name = fault.name.as_deref().unwrap_or("without a name");
-            let beyond = named(one_based(fault.beyond));
-            format!(
-                "Fault {name}, throw {:.1} {unit}\nthe other side is {beyond}",
-                fault.throw
-            )
+    let far = named(fault.far.one_based());
+    format!("{}\nFar side: {far}", fault.in_words(&unit))
+}
+
+/// What is seen where the pointer rests, in words; `None` where nothing is.
+pub fn hover_text(pick: &Pick, case: &Case) -> Option<String> {
+    let mut lines = Vec::new();
+    if let Some(hit) = &pick.hit {
+        let cell = named(hit.ijk.one_based());
+        let value = value(&pick.property, hit.value, case);
+        lines.push(format!("{cell}   {value}"));
+    }
+    lines.extend(pick.fault.as_ref().map(|fault| of_fault(fault, case)));
+    (!lines.is_empty()).then(|| lines.join("\n"))
+}
+
+/// How many cells lie before and behind one on the ray of the last click, and steps to them.
+fn along_ray(ui: &mut Ui, pick: &Pick, cell: Ijk, actions: &mut Vec<Action>) {
+    let Some([before, behind]) = pick.around(cell) else {
+        return;
+    };
+    ui.horizontal(|ui| {
+        for (by, name, what) in [
+            (-1, "<", "Cell in front, along the line of sight (,)"),
+            (1, ">", "Cell behind, along the line of sight (.)"),
+        ] {
+            let next = pick.beside(cell, by);
+            let button = ui.add_enabled(next.is_some(), egui::Button::new(name));
+            button.widget_info(|| {
+                egui::WidgetInfo::labeled(egui::Role::Button, next.is_some(), what)
+            });
+            if let Some(next) = next.filter(|_| button.on_hover_text(what).clicked()) {
+                actions.push(Action::Select(next.one_based(), Beside::AllButLast));
+            }
         }
-    })
+        let cells = if before == 1 { "cell" } else { "cells" };
+        ui.label(format!("{before} {cells} in front, {behind} behind"));
+    });
 }
 
 /// A cell by its numbers.
@@ -101,8 +151,7 @@ fn go_to(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
             .button("Select")
             .on_hover_text("Selects this cell beside the others");
         if select.clicked() {
-            let beside = crate::viewer::action::Beside::Others;
-            actions.push(Action::Select(cell, beside));
+            actions.push(Action::Select(cell, Beside::Others));
         }
     });
     ui.data_mut(|d| d.insert_temp(id, (start, cell)));

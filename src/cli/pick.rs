@@ -1,0 +1,224 @@
+//! `strataray pick`: what a click at a pixel of the picture selects, for people or as JSON.
+
+use std::path::PathBuf;
+
+use anyhow::Context;
+use glam::DVec2;
+use serde_json::{Value, json};
+use strataray::case::Case;
+use strataray::picking::{CellOnRay, Fault, Hit, Part, Pick, Picker};
+use strataray::picture::{Shot, short_unit};
+use strataray::renderer::Renderer;
+
+use super::Verbosity;
+use super::progress::Reporter;
+use super::scene_options::{SceneOptions, open_case};
+
+#[derive(clap::Args)]
+#[command(after_help = "Examples:
+  strataray pick REEK.EGRID --scene scene.json --at 512,300
+  strataray pick REEK.EGRID --property SWAT --step last --size 1600x900 --at 800,450 --json")]
+pub struct Arguments {
+    /// Any file of the case, or its base name.
+    case: PathBuf,
+    #[command(flatten)]
+    options: SceneOptions,
+    /// Pixel of the picture that `render` writes: X to the right and Y down, both from 0.
+    #[arg(long, value_name = "X,Y", allow_hyphen_values = true)]
+    at: String,
+    /// The picture has no legend, title or axes: that of `render --plain`.
+    #[arg(long)]
+    plain: bool,
+    /// Print JSON.
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    verbosity: Verbosity,
+}
+
+/// Cells listed before the selected one and behind it, at most.
+const LISTED: usize = 6;
+
+pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    let reporter = Reporter::new(arguments.verbosity);
+    let pixel = pixel(&arguments.at)?;
+    arguments.options.set_threads()?;
+    let case = open_case(&arguments.case, &reporter)?;
+    let scene = arguments.options.scene(&case)?;
+    let shot = Shot::of(&scene, &case, arguments.plain)?;
+    let at = place(&shot, scene.size, pixel)?;
+    let gpu = arguments.options.open_gpu(&reporter)?;
+    let mut renderer = Renderer::new(gpu, &case.grid)?;
+    let pick = Picker::default().pick(&mut renderer, &case, &shot.view, at)?;
+    match arguments.json {
+        true => println!(
+            "{}",
+            serde_json::to_string_pretty(&facts(&case, pixel, &pick))?
+        ),
+        false => print!("{}", text(&case, pixel, &pick)),
+    }
+    Ok(())
+}
+
+fn pixel(text: &str) -> anyhow::Result<[i64; 2]> {
+    let parsed = text
+        .split_once(',')
+        .and_then(|(x, y)| Some([x.trim().parse().ok()?, y.trim().parse().ok()?]));
+    parsed.with_context(|| {
+        format!("--at {text}: give the pixel as X,Y like 512,300, both whole numbers from 0")
+    })
+}
+
+/// The place in the volume (0 to 1, right and down) in the middle of a pixel of the written picture.
+fn place(shot: &Shot, size: [u32; 2], [x, y]: [i64; 2]) -> anyhow::Result<DVec2> {
+    let [width, height] = size.map(i64::from);
+    anyhow::ensure!(
+        (0..width).contains(&x) && (0..height).contains(&y),
+        "--at {x},{y}: the picture has {width} x {height} pixels, so X goes from 0 to {} and Y from 0 to {}",
+        width - 1,
+        height - 1
+    );
+    let middle = [x, y].map(|n| n as f64 + 0.5);
+    let place = shot.layout.volume_place(middle);
+    place.with_context(|| {
+        format!("--at {x},{y} lies beside the volume, on the title, the legend or the info line")
+    })
+}
+
+/// Cells before and behind the one that is taken; none where none is.
+fn around(pick: &Pick) -> [usize; 2] {
+    let hit = pick.hit.as_ref();
+    hit.and_then(|h| pick.around(h.ijk)).unwrap_or_default()
+}
+
+fn facts(case: &Case, pixel: [i64; 2], pick: &Pick) -> Value {
+    let [before, behind] = around(pick);
+    let is_dynamic = case.is_dynamic(&pick.property);
+    json!({
+        "pixel": pixel,
+        "property": pick.property,
+        "step": is_dynamic.then_some(pick.step),
+        "unit": case.unit(&pick.property),
+        "hit": pick.hit.as_ref().map(fact_of_hit),
+        "ray": pick.cells.iter().map(fact_of_cell).collect::<Vec<_>>(),
+        "before": before,
+        "behind": behind,
+    })
+}
+
+fn fact_of_hit(hit: &Hit) -> Value {
+    let [i, j, k] = hit.ijk.one_based();
+    let (part, fault) = match &hit.part {
+        Part::Inside => ("inside", None),
+        Part::Section => ("section", None),
+        Part::Face(_) => ("face", None),
+        Part::Fault(fault) => ("fault", Some(fact_of_fault(fault))),
+    };
+    json!({
+        "grid": "",
+        "i": i,
+        "j": j,
+        "k": k,
+        "value": single(hit.value),
+        "shown": single(hit.shown),
+        "contribution": hit.contribution,
+        "part": part,
+        "fault": fault,
+        "map": hit.map.to_array(),
+    })
+}
+
+fn fact_of_fault(fault: &Fault) -> Value {
+    json!({
+        "name": fault.name,
+        "throw": fault.throw,
+        "near": fault.near.one_based(),
+        "far": fault.far.one_based(),
+    })
+}
+
+fn fact_of_cell(cell: &CellOnRay) -> Value {
+    let [i, j, k] = cell.ijk.one_based();
+    json!({
+        "grid": "",
+        "i": i,
+        "j": j,
+        "k": k,
+        "value": single(cell.value),
+        "contribution": cell.contribution,
+        "from": cell.from,
+        "to": cell.to,
+    })
+}
+
+/// Values have the precision of the files: written with its digits, not with those of an f64.
+fn single(value: f64) -> f32 {
+    value as f32
+}
+
+fn text(case: &Case, [x, y]: [i64; 2], pick: &Pick) -> String {
+    let Some(hit) = &pick.hit else {
+        return match pick.cells.len() {
+            0 => format!("No cell at pixel {x},{y}.\n"),
+            n => {
+                format!("Nothing is seen at pixel {x},{y}: all {n} cells there are transparent.\n")
+            }
+        };
+    };
+    let unit = case.unit(&pick.property);
+    let value = |value: f64| format!("{} {} {unit}", pick.property, single(value));
+    let mut lines = vec![format!("{}   {}", named(hit), value(hit.value).trim_end())];
+    if hit.shown != hit.value {
+        let shown = value(hit.shown);
+        lines.push(format!("{} at this point (interpolated)", shown.trim_end()));
+    }
+    let [east, north, depth] = hit.map.to_array();
+    let length = short_unit(&case.about.length_unit);
+    lines.push(format!(
+        "E {east:.1}  N {north:.1}  depth {depth:.2} {length}"
+    ));
+    match &hit.part {
+        Part::Inside => {}
+        Part::Section => lines.push("On a clip plane".into()),
+        Part::Face(_) => lines.push("Outer face".into()),
+        Part::Fault(fault) => lines.push(fault.in_words(&length)),
+    }
+    let [before, behind] = around(pick);
+    lines.push(format!(
+        "{before} in front, {behind} behind along the line of sight:"
+    ));
+    lines.push(String::new());
+    lines.extend(table(pick, before));
+    lines.join("\n") + "\n"
+}
+
+fn named(hit: &Hit) -> String {
+    let [i, j, k] = hit.ijk.one_based();
+    format!("I {i}  J {j}  K {k}")
+}
+
+/// The cells around the one that is taken, which has a mark.
+fn table(pick: &Pick, taken: usize) -> Vec<String> {
+    let first = taken.saturating_sub(LISTED);
+    let last = (taken + LISTED + 1).min(pick.cells.len());
+    let heading = format!(
+        "  {:>5} {:>5} {:>5} {:>14} {:>10} {:>12} {:>12}",
+        "I", "J", "K", pick.property, "% of color", "from", "to"
+    );
+    let mut lines = vec![heading];
+    let more = |n: usize| (n > 0).then(|| format!("  ... {n} more"));
+    lines.extend(more(first));
+    for (n, cell) in pick.cells.iter().enumerate().take(last).skip(first) {
+        let [i, j, k] = cell.ijk.one_based();
+        let mark = if n == taken { '>' } else { ' ' };
+        lines.push(format!(
+            "{mark} {i:>5} {j:>5} {k:>5} {:>14} {:>10.1} {:>12.1} {:>12.1}",
+            single(cell.value),
+            100.0 * cell.contribution,
+            cell.from,
+            cell.to
+        ));
+    }
+    lines.extend(more(pick.cells.len() - last));
+    lines
+}

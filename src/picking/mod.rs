@@ -1,0 +1,304 @@
+//! What is seen at a place in the picture, and all that lies before and behind it.
+//!
+//! # The rule
+//! The ray through the place takes the same samples as the picture, with the same interpolation, transfer
+//! function, clip planes and early termination, and meets the same surfaces. Each sample of extinction `tau` and
+//! length `h` adds `t (1 - exp(-tau h))` to the pixel, `t` being the transmittance before it, and each surface
+//! `t` times its opacity. What all of them add, without light, divided by their opacity, is the color of the
+//! pixel.
+//!
+//! What a cell adds to that color is the sum of what its samples add, each times
+//! `max(exp(-(d / 8)^2 - (e / 20)^2), 0.0001)`, `d` being the CIEDE2000 difference between the color of the sample
+//! and that of the pixel, and `e` the one between the color of the cell's own value and the pixel's. Taken is the
+//! cell that adds most, at the sample that adds most of it. An opaque face or section adds everything, so that it
+//! is taken wherever nothing is before it. A fault's sheet is taken where it adds more than every cell.
+//!
+//! The cell that contributes most is not always the one that is seen: a pixel of orange has faint blue before
+//! thin orange layers, of which each one adds less than the blue does. Nor is it enough that a color is near:
+//! along a front every color is met somewhere, mostly where it adds nothing. Where values vary inside a cell,
+//! a front from 0.1 to 0.9 shows 0.5 though no cell has that value; hence both are told, the value at the
+//! sample and the cell's own.
+
+mod choice;
+mod gather;
+mod ray;
+mod sight;
+mod surfaces;
+
+use glam::{DVec2, DVec3};
+
+use crate::case::{Case, CaseError};
+use crate::gpu::GpuError;
+use crate::model::topology::{Behind, Face};
+use crate::model::{Grid, Ijk};
+use crate::renderer::Renderer;
+use crate::scene::View;
+
+use gather::{Gathered, Passed, Source};
+use ray::Ray;
+use sight::Sight;
+use surfaces::{Met, SurfaceFaces};
+
+/// Opacity below which a pixel shows nothing but background.
+const LEAST_OPACITY: f64 = 0.02;
+/// Part of a pixel that a fault's sheet has to contribute to be read there.
+const LEAST_SHEET: f64 = 0.02;
+
+/// What is seen at a place in the picture.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Pick {
+    /// The property whose values are told.
+    pub property: String,
+    /// The step that they are of.
+    pub step: usize,
+    /// The drawn cells that the ray through the place meets, nearest first, each once.
+    pub cells: Vec<CellOnRay>,
+    /// What is seen; `None` where the picture shows nothing but background there.
+    pub hit: Option<Hit>,
+    /// The nearest fault that is seen there, by itself or through the cells.
+    pub fault: Option<Fault>,
+}
+
+/// A drawn cell on a ray.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CellOnRay {
+    /// The cell.
+    pub ijk: Ijk,
+    /// Distances along the ray, in world space, at which it begins and ends, to half a sampling step.
+    pub from: f64,
+    /// See `from`.
+    pub to: f64,
+    /// Its value.
+    pub value: f64,
+    /// How much of the pixel it is, 0..1; 0 where it is transparent or hidden. All that a ray meets adds up to
+    /// the pixel's opacity.
+    pub contribution: f64,
+}
+
+/// The cell that is seen, and where.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Hit {
+    /// The cell.
+    pub ijk: Ijk,
+    /// Place in world space: that of the cell which contributes most to the pixel.
+    pub world: DVec3,
+    /// East, north and depth in map coordinates.
+    pub map: DVec3,
+    /// What of the cell is seen.
+    pub part: Part,
+    /// The cell's value.
+    pub value: f64,
+    /// The value at the place, which is interpolated where the view's values vary inside a cell.
+    pub shown: f64,
+    /// How much of the pixel it is, 0..1.
+    pub contribution: f64,
+}
+
+/// What of a cell a ray meets.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Part {
+    /// Its inside, which is transparent.
+    Inside,
+    /// Its section at an opaque clip plane.
+    Section,
+    /// A face of the hull.
+    Face(Face),
+    /// A face on a fault.
+    Fault(Fault),
+}
+
+/// A face on a fault, as it is seen from the eye.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Fault {
+    /// Its name, if it has one.
+    pub name: Option<String>,
+    /// How much deeper the same layer lies on the far side than on the near one: the mean over the face's
+    /// corners, in the grid's length unit; below 0 where it lies higher.
+    pub throw: f64,
+    /// The cell on the side of the viewer.
+    pub near: Ijk,
+    /// The cell of the same layer on the far side.
+    pub far: Ijk,
+}
+
+impl Fault {
+    /// Name and throw, and what its sign says; `unit` is that of lengths.
+    pub fn in_words(&self, unit: &str) -> String {
+        let name = self.name.as_deref().unwrap_or("without a name");
+        let side = match self.throw {
+            throw if throw > 0.0 => ": far side deeper",
+            throw if throw < 0.0 => ": far side shallower",
+            _ => "",
+        };
+        format!("Fault {name}, throw {:.1} {unit}{side}", self.throw.abs())
+    }
+}
+
+/// Why it cannot be said what is seen.
+#[derive(Debug, thiserror::Error)]
+pub enum PickError {
+    /// The device reports an error.
+    #[error(transparent)]
+    Device(#[from] GpuError),
+    /// The property's values cannot be read.
+    #[error(transparent)]
+    Case(#[from] CaseError),
+}
+
+impl Pick {
+    /// How many cells lie before and behind a cell on the ray; `None` where the ray does not meet it.
+    pub fn around(&self, ijk: Ijk) -> Option<[usize; 2]> {
+        let place = self.cells.iter().position(|c| c.ijk == ijk)?;
+        Some([place, self.cells.len() - 1 - place])
+    }
+
+    /// The cell that lies `by` cells behind another one on the ray, before it where `by` is below 0.
+    pub fn beside(&self, ijk: Ijk, by: isize) -> Option<Ijk> {
+        let [before, _] = self.around(ijk)?;
+        let place = before.checked_add_signed(by)?;
+        self.cells.get(place).map(|c| c.ijk)
+    }
+}
+
+/// Finds what is seen at places in pictures; keeps the faces of their surfaces from one place to the next.
+#[derive(Default)]
+pub struct Picker {
+    surfaces: SurfaceFaces,
+}
+
+impl Picker {
+    /// What is seen at a place in the picture (0 to 1, right and down) of a view of the case whose grid the
+    /// renderer has.
+    ///
+    /// # Errors
+    /// When the device reports an error, or the values cannot be read.
+    pub fn pick(
+        &mut self,
+        renderer: &mut Renderer,
+        case: &Case,
+        view: &View,
+        at: DVec2,
+    ) -> Result<Pick, PickError> {
+        let nothing = Pick {
+            property: view.property.clone(),
+            step: view.step,
+            ..Pick::default()
+        };
+        let ray = Ray::through(view, at);
+        let Some(span) = ray.span(view) else {
+            return Ok(nothing);
+        };
+        let met = self.surfaces.seen(case, view, &ray);
+        let sight = Sight::new(case, view, ray, span, met);
+        let located = renderer.locate(&case.grid, view, &sight.points())?;
+        let gathered = Gathered::of(sight.pieces(&located), view);
+        let cells = cells(case, view, &gathered)?;
+        let hit = hit(case, view, &sight, &gathered, &cells);
+        let fault = match hit.as_ref().map(|h| &h.part) {
+            Some(Part::Fault(fault)) => Some(fault.clone()),
+            _ => sheet(&gathered).and_then(|met| fault_of(case, met)),
+        };
+        Ok(Pick {
+            cells,
+            hit,
+            fault,
+            ..nothing
+        })
+    }
+}
+
+/// The cells with their values.
+fn cells(case: &Case, view: &View, gathered: &Gathered) -> Result<Vec<CellOnRay>, CaseError> {
+    // Not the view's own values, which may be rounded logarithms.
+    let field = case.field(&view.property, view.step)?;
+    let grid = &case.grid;
+    let valued = |passed: Passed| CellOnRay {
+        ijk: passed.ijk,
+        from: passed.from,
+        to: passed.to,
+        value: field
+            .value(grid, grid.dims().cell(passed.ijk))
+            .map_or(f64::NAN, f64::from),
+        contribution: passed.contribution,
+    };
+    Ok(gathered.cells().into_iter().map(valued).collect())
+}
+
+/// What is seen of all that was gathered.
+fn hit(
+    case: &Case,
+    view: &View,
+    sight: &Sight<'_>,
+    gathered: &Gathered,
+    cells: &[CellOnRay],
+) -> Option<Hit> {
+    if gathered.opacity < LEAST_OPACITY {
+        return None;
+    }
+    let seen = choice::seen(gathered, |ijk| sight.own_color(ijk))?;
+    let (piece, of_piece) = &gathered.pieces[seen];
+    let (ijk, shown, part) = match &piece.of {
+        Source::Cell { ijk, value, part } => (*ijk, Some(view.true_value(*value)), part.clone()),
+        Source::Sheet(met) => (met.cell, None, Part::Fault(fault_of(case, *met)?)),
+        Source::Ghost => return None,
+    };
+    let cell = cells.iter().find(|c| c.ijk == ijk)?;
+    let world = sight.at(piece.at);
+    Some(Hit {
+        ijk,
+        world,
+        map: DVec3::new(world.x, world.y, -world.z / view.vertical_exaggeration),
+        part,
+        value: cell.value,
+        shown: shown.unwrap_or(cell.value),
+        contribution: shown.map_or(*of_piece, |_| cell.contribution),
+    })
+}
+
+/// The nearest sheet that is seen.
+fn sheet(gathered: &Gathered) -> Option<Met> {
+    let mut sheets = gathered
+        .pieces
+        .iter()
+        .filter_map(|(piece, of_pixel)| match piece.of {
+            Source::Sheet(met) => (*of_pixel >= LEAST_SHEET).then_some(met),
+            _ => None,
+        });
+    sheets.next()
+}
+
+/// The fault that a face lies on, if it does.
+fn fault_of(case: &Case, met: Met) -> Option<Fault> {
+    let Met { cell, face, .. } = met;
+    if matches!(face, Face::KMinus | Face::KPlus) {
+        return None;
+    }
+    let number = case.fault_faces.fault_of(cell, face);
+    let name = number.and_then(|n| case.about.named_faults.get(n));
+    let beyond = match case.grid.behind(cell, face) {
+        Behind::Displaced(beyond) => beyond,
+        // Named faults need no throw.
+        Behind::Neighbor(beyond) if name.is_some() => beyond,
+        _ => return None,
+    };
+    // A ray leaves the near cell through a face that is turned away, and enters the far one otherwise.
+    let drop = drop(&case.grid, cell, face, beyond);
+    let (near, far, throw) = match met.is_back {
+        true => (cell, beyond, drop),
+        false => (beyond, cell, -drop),
+    };
+    Some(Fault {
+        name: name.map(|f| f.name.clone()),
+        throw,
+        near,
+        far,
+    })
+}
+
+/// How much deeper the corners of a face lie in the cell beyond it, in the mean.
+fn drop(grid: &Grid, ijk: Ijk, face: Face, beyond: Ijk) -> f64 {
+    let [mine, theirs] = face.corners();
+    let pairs = mine.iter().zip(theirs);
+    let drops = pairs.map(|(&a, b)| grid.corner_depth(beyond, b) - grid.corner_depth(ijk, a));
+    drops.sum::<f64>() / 4.0
+}
