@@ -11,7 +11,7 @@ use strataray::scene::{Scene, Sequence, Turn, film};
 
 use super::Verbosity;
 use super::progress::Reporter;
-use super::scene_options::{SceneOptions, open_case};
+use super::scene_options::SceneOptions;
 
 #[derive(clap::Args)]
 #[command(after_help = "\
@@ -80,7 +80,9 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
     check(arguments)?;
     arguments.options.set_threads()?;
     let scene = arguments.options.scene()?;
-    let case = open_case(&arguments.case, &reporter)?;
+    let case = arguments
+        .options
+        .open_case(&arguments.case, &scene, &reporter)?;
     let sequence = sequence(arguments, &scene, &case, &reporter)?;
     for sentence in sequence.left_out() {
         reporter.note(sentence);

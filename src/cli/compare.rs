@@ -10,7 +10,7 @@ use strataray::strategies::StrategyKind;
 
 use super::Verbosity;
 use super::progress::Reporter;
-use super::scene_options::{SceneOptions, open_case};
+use super::scene_options::SceneOptions;
 
 #[derive(clap::Args)]
 #[command(after_help = "\
@@ -72,7 +72,9 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
     arguments.options.set_threads()?;
     let scene = arguments.options.scene()?;
     let strategies = strategies(arguments)?;
-    let case = open_case(&arguments.case, &reporter)?;
+    let case = arguments
+        .options
+        .open_case(&arguments.case, &scene, &reporter)?;
     let plan = Plan {
         strategies,
         reference: match arguments.reference {

@@ -16,7 +16,7 @@ use strataray::scene::{self, View};
 use super::Verbosity;
 use super::process::cpu_time;
 use super::progress::Reporter;
-use super::scene_options::{SceneOptions, open_case};
+use super::scene_options::SceneOptions;
 
 #[derive(clap::Args)]
 #[command(after_help = "Examples:
@@ -65,7 +65,9 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let scene = arguments.options.scene()?;
     let mut stages = Stages::default();
     let start = Instant::now();
-    let case = open_case(&arguments.case, &reporter)?;
+    let case = arguments
+        .options
+        .open_case(&arguments.case, &scene, &reporter)?;
     stages.open = start.elapsed();
     let start = Instant::now();
     let view = scene::resolve(&scene, &case)?;

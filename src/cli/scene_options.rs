@@ -56,6 +56,16 @@ pub struct SceneOptions {
     /// Part of the name of the GPU adapter to use.
     #[arg(long)]
     adapter: Option<String>,
+    #[command(flatten)]
+    added: AddedFiles,
+}
+
+/// Files that are added to a case.
+#[derive(clap::Args)]
+pub struct AddedFiles {
+    /// Files to add to the case: properties or faults in text, an INIT or restart of another name.
+    #[arg(long, value_name = "FILE", num_args = 1..)]
+    with: Vec<PathBuf>,
 }
 
 impl SceneOptions {
@@ -122,6 +132,19 @@ impl SceneOptions {
         Ok(())
     }
 
+    /// Opens the case of a scene and says what of both is not shown.
+    pub fn open_case(
+        &self,
+        path: &Path,
+        scene: &Scene,
+        reporter: &Reporter,
+    ) -> anyhow::Result<Case> {
+        if let Some(sentence) = scene.not_drawn() {
+            reporter.note(sentence);
+        }
+        self.added.open_case(path, reporter)
+    }
+
     /// Opens the adapter and says where it is none.
     pub fn open_gpu(&self, reporter: &Reporter) -> anyhow::Result<Arc<Gpu>> {
         let gpu = Gpu::new(self.adapter.as_deref())?;
@@ -135,13 +158,20 @@ impl SceneOptions {
     }
 }
 
+impl AddedFiles {
+    /// Opens a case with the files added to it and says what was not loaded.
+    pub fn open_case(&self, path: &Path, reporter: &Reporter) -> anyhow::Result<Case> {
+        let case = load::open_with(path, &self.with)?;
+        for note in &case.about.notes {
+            reporter.note(note);
+        }
+        Ok(case)
+    }
+}
+
 /// Opens a case and says what was not loaded.
 pub fn open_case(path: &Path, reporter: &Reporter) -> anyhow::Result<Case> {
-    let case = load::open(path)?;
-    for note in &case.about.notes {
-        reporter.note(note);
-    }
-    Ok(case)
+    AddedFiles { with: Vec::new() }.open_case(path, reporter)
 }
 
 fn lighting_preset(name: &str) -> Result<LightingSpec, String> {

@@ -95,6 +95,15 @@ impl Default for Scene {
     }
 }
 
+impl Scene {
+    /// One sentence where the scene asks for something that is not drawn yet.
+    pub fn not_drawn(&self) -> Option<&'static str> {
+        let sentence =
+            "the scene asks for wells (\"show\": {\"wells\": true}), which are not drawn yet";
+        self.show.wells.then_some(sentence)
+    }
+}
+
 /// A camera in world coordinates, or one that frames the model.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
@@ -243,7 +252,7 @@ pub struct Show {
     pub faults: bool,
     /// Lines between the cells of non-neighbor connections.
     pub nnc: bool,
-    /// Wells.
+    /// Wells; not drawn yet, see [`Scene::not_drawn`].
     pub wells: bool,
     /// Edges of the cells on hull, faults and opaque sections.
     pub cell_edges: bool,
@@ -260,7 +269,7 @@ impl Default for Show {
             hull: Hull::Hidden,
             faults: false,
             nnc: false,
-            wells: true,
+            wells: false,
             cell_edges: false,
             r#box: true,
             legend: true,

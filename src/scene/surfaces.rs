@@ -115,10 +115,11 @@ impl View {
     }
 
     /// The fault faces of the drawn cells of `grid` (the case's), with the fault's number where it has a
-    /// name.
+    /// name; those of named faults are there whatever their throw.
     pub fn fault_faces(&self, grid: &Grid) -> Vec<(Ijk, Face, Option<usize>)> {
-        let faces = grid.fault_faces_of(&self.drawn_active(grid)).into_iter();
+        let faces = grid.fault_faces_of(&self.drawn_active(grid), &self.named_faults);
         faces
+            .into_iter()
             .map(|(cell, face)| (cell, face, self.named_faults.fault_of(cell, face)))
             .collect()
     }

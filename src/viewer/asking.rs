@@ -169,17 +169,11 @@ fn same_date(case: &Case, step: &StepSpec, other: &Case) -> StepSpec {
         StepSpec::Index(n) => Some(*n),
         StepSpec::Name(name) => case.step(name).ok(),
     };
-    let Some(date) = number.and_then(|n| case.steps.get(n)).map(|s| day(&s.date)) else {
+    let moment = |s: &crate::case::Step| s.moment().unwrap_or(s.days);
+    let Some(date) = number.and_then(|n| case.steps.get(n)).map(moment) else {
         return step.clone();
     };
-    let apart = |n: &usize| (day(&other.steps[*n].date) - date).abs();
-    let nearest = (0..other.steps.len()).min_by_key(apart);
+    let apart = |n: usize| (moment(&other.steps[n]) - date).abs();
+    let nearest = (0..other.steps.len()).min_by(|a, b| apart(*a).total_cmp(&apart(*b)));
     nearest.map_or_else(|| step.clone(), StepSpec::Index)
-}
-
-/// A date as a number that grows by about one a day.
-fn day(date: &str) -> i64 {
-    let mut parts = date.split('-').map(|p| p.parse::<i64>().unwrap_or(0));
-    let mut next = || parts.next().unwrap_or(0);
-    372 * next() + 31 * next() + next()
 }
