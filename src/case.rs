@@ -8,6 +8,7 @@ mod weights;
 use std::sync::Arc;
 
 pub use cache::FieldCache;
+use strataray_parsers::calendar;
 
 use crate::model::derived::Derived;
 use crate::model::{CellField, FaultFaces, Grid, Ijk};
@@ -39,6 +40,31 @@ pub struct Property {
     pub unit: String,
     /// Number of steps that have it; 0 for a static one.
     pub steps: usize,
+    /// Saturations that a derived one is the rest of: it is 1 minus their sum. Empty for all else.
+    pub rest_of: Vec<String>,
+    /// Why its values may not be what the deck means, as part of a sentence, such as
+    /// `MULTIREG of the deck was not applied`; `None` where nothing is known against them.
+    pub doubt: Option<String>,
+}
+
+impl Property {
+    /// A property without steps, against whose values nothing is known.
+    pub fn new(name: &str, kind: Kind, unit: &str) -> Self {
+        Self {
+            name: name.to_owned(),
+            kind,
+            unit: unit.to_owned(),
+            steps: 0,
+            rest_of: Vec::new(),
+            doubt: None,
+        }
+    }
+
+    /// How it is computed, such as `1 - SWAT - SGAS`, where that depends on what the files have.
+    pub fn formula(&self) -> Option<String> {
+        let terms = self.rest_of.iter().map(|name| format!(" - {name}"));
+        (!self.rest_of.is_empty()).then(|| format!("1{}", terms.collect::<String>()))
+    }
 }
 
 /// A report step.
@@ -46,19 +72,28 @@ pub struct Property {
 pub struct Step {
     /// The simulator's report number.
     pub report: u32,
-    /// `YYYY-MM-DD`; empty where the file has none.
+    /// `YYYY-MM-DD`, with ` hh:mm` or ` hh:mm:ss` within a day; empty where the file has none.
     pub date: String,
     /// Days since the start of the simulation.
     pub days: f64,
 }
 
+impl Step {
+    /// Date and time of day in days since 1970; `None` where the file has none.
+    pub fn moment(&self) -> Option<f64> {
+        calendar::moment(&self.date)
+    }
+}
+
 /// A named fault and the number of faces its file gives it.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct NamedFault {
     /// Name.
     pub name: String,
     /// Cell faces.
     pub faces: usize,
+    /// MULTFLT: the factor of transmissibilities across it; 0 seals it. `None` where the file has none.
+    pub multiplier: Option<f64>,
 }
 
 /// A local grid refinement, which is known of but not shown.
@@ -83,6 +118,8 @@ pub struct About {
     pub length_unit: String,
     /// The six numbers of MAPAXES as read.
     pub map_axes: Option<[f64; 6]>,
+    /// Length unit of map coordinates: METRES, FEET or CM.
+    pub map_unit: String,
     /// `single`, `dual porosity` or `dual permeability`.
     pub porosity_model: String,
     /// Non-neighbor connections of the global grid, as the file counts them.
@@ -124,6 +161,14 @@ pub enum CaseError {
         asked: String,
         /// What there is.
         known: String,
+    },
+    /// A day has several steps.
+    #[error("{asked} has the steps {steps}; name one by its number or with the time of day")]
+    SeveralSteps {
+        /// What was asked for.
+        asked: String,
+        /// Numbers and times of the steps.
+        steps: String,
     },
     /// The property has no values at this step.
     #[error("{name} has no values at step {step}")]
@@ -239,20 +284,54 @@ impl Case {
         }
     }
 
-    /// The step that `text` names: `first`, `last`, a number from 0, or a date.
+    /// The step that `text` names: `first`, `last`, a number from 0, a date, or a date with the time of day such as
+    /// `2025-01-01 06:30`.
     ///
     /// # Errors
-    /// When there is no such step.
+    /// When there is no such step, or several are of that date.
     pub fn step(&self, text: &str) -> Result<usize, CaseError> {
-        let found = match text {
+        let found = match text.trim() {
             "first" => Some(0),
             "last" => Some(self.steps.len().saturating_sub(1)),
-            _ => match text.parse::<usize>() {
+            text => match text.parse::<usize>() {
                 Ok(number) => (number < self.steps.len().max(1)).then_some(number),
-                Err(_) => self.steps.iter().position(|s| s.date == text),
+                Err(_) => self.step_of_date(text)?,
             },
         };
         found.ok_or_else(|| self.unknown_step(text))
+    }
+
+    fn step_of_date(&self, text: &str) -> Result<Option<usize>, CaseError> {
+        let those = |is: &dyn Fn(&Step) -> bool| -> Vec<usize> {
+            let steps = self.steps.iter().enumerate();
+            steps.filter(|(_, s)| is(s)).map(|(n, _)| n).collect()
+        };
+        let asked = calendar::moment(text);
+        let of_day = |s: &Step| s.date.split(' ').next() == Some(text);
+        let mut found = those(&|s| s.date == text || asked.is_some() && s.moment() == asked);
+        if found.is_empty() && asked.is_some() {
+            // A date alone is enough where the day has one step.
+            found = those(&of_day);
+        }
+        match found[..] {
+            [] => Ok(None),
+            [step] => Ok(Some(step)),
+            _ => Err(self.several_steps(text, &found)),
+        }
+    }
+
+    fn several_steps(&self, asked: &str, found: &[usize]) -> CaseError {
+        let named = found
+            .iter()
+            .map(|&n| format!("{n} ({})", self.steps[n].date));
+        let mut steps: Vec<String> = named.take(6).collect();
+        if found.len() > steps.len() {
+            steps.push(format!("{} more", found.len() - steps.len()));
+        }
+        CaseError::SeveralSteps {
+            asked: asked.to_owned(),
+            steps: steps.join(", "),
+        }
     }
 
     fn unknown_step(&self, asked: &str) -> CaseError {
@@ -286,18 +365,7 @@ impl Case {
             return Ok(derived.field(&self.grid));
         }
         let values = match property.name.as_str() {
-            SOIL => {
-                let mut soil = vec![1.0; self.grid.active_cells().len()];
-                for phase in ["SWAT", "SGAS"] {
-                    if self.properties.iter().any(|p| p.name == phase) {
-                        let field = self.file_values(phase, step)?;
-                        for (s, v) in soil.iter_mut().zip(field.values()) {
-                            *s -= v;
-                        }
-                    }
-                }
-                soil
-            }
+            _ if !property.rest_of.is_empty() => self.rest_of(&property.rest_of, step)?,
             CONNECTIONS => self.connection_counts(),
             _ => {
                 let thickness = self.derived_thickness()?;
@@ -311,6 +379,28 @@ impl Case {
             }
         };
         Ok(CellField::new(values))
+    }
+
+    /// 1 minus the sum of some saturations.
+    fn rest_of(&self, names: &[String], step: usize) -> Result<Vec<f32>, CaseError> {
+        let mut rest = vec![1.0; self.grid.active_cells().len()];
+        for name in names {
+            let field = self.file_values(name, step)?;
+            for (rest, value) in rest.iter_mut().zip(field.values()) {
+                *rest -= value;
+            }
+        }
+        Ok(rest)
+    }
+
+    /// True where a property is 0 in all cells at a step, as where a run has a phase in name only.
+    ///
+    /// # Errors
+    /// As [`Self::field`].
+    pub fn is_all_zero(&self, name: &str, step: usize) -> Result<bool, CaseError> {
+        let field = self.field(name, step)?;
+        let mut defined = field.values().iter().filter(|v| !v.is_nan()).peekable();
+        Ok(defined.peek().is_some() && defined.all(|v| *v == 0.0))
     }
 
     /// Connections of each active cell.
@@ -333,8 +423,6 @@ impl Case {
     }
 }
 
-/// Oil saturation where the file leaves it out.
-pub const SOIL: &str = "SOIL";
 /// Number of non-neighbor connections of a cell.
 pub const CONNECTIONS: &str = "NNC";
 /// Porosity times net-to-gross times thickness.

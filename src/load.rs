@@ -1,19 +1,23 @@
 //! From files to a [`Case`]: the one module that knows both the file formats and the model.
 
 mod grids;
+mod pore_volume;
 mod properties;
 mod slots;
 mod source;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use strataray_parsers::case::{RestartSource, find};
+use strataray_parsers::case::{CaseFiles, GridSource, RestartSource, find, find_with};
 use strataray_parsers::cells::CellArrays;
+use strataray_parsers::deck::{Grdecl, UnitSystem};
 use strataray_parsers::restart::{self, Step as FileStep};
 use strataray_parsers::{At, ParseError, Warnings, init};
 
 use self::grids::Loaded;
+use self::properties::Setting;
+use self::slots::{CellSlots, ResultCells};
 use self::source::FileSource;
 use crate::case::{About, Case, FieldCache, OverSteps, Step};
 
@@ -22,19 +26,80 @@ use crate::case::{About, Case, FieldCache, OverSteps, Step};
 /// # Errors
 /// When there is no readable grid. A missing or unfitting INIT or restart only leaves a note.
 pub fn open(path: &Path) -> Result<Case, ParseError> {
-    match open_with(path, &|_| true)? {
+    open_with(path, &[])
+}
+
+/// As [`open`], with files added to the case: text with properties or faults, an INIT or restart of another name.
+///
+/// # Errors
+/// As [`open`], and when an added file is not there or is damaged.
+pub fn open_with(path: &Path, with: &[PathBuf]) -> Result<Case, ParseError> {
+    match open_reporting(path, with, &|_| true)? {
         Some(case) => Ok(case),
         None => Err(ParseError::new(path, At::File, "", "was not opened")),
     }
 }
 
-/// As [`open`]; `progress` is told what is read next, and returns false to leave it: the result is `None`
+/// A case by one of its files, with files that were added to it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct CasePaths {
+    /// What names the case.
+    pub path: PathBuf,
+    /// Files added to it.
+    pub with: Vec<PathBuf>,
+}
+
+/// The cases that several paths name together: a file without a grid of its own is added to the case before it, or
+/// to the first one; further files of the same case are left away.
+pub fn group(paths: &[PathBuf]) -> Vec<CasePaths> {
+    let case = |path: &PathBuf| CasePaths {
+        path: path.clone(),
+        with: Vec::new(),
+    };
+    if let [only] = paths {
+        return vec![case(only)];
+    }
+    let grids: Vec<Option<GridSource>> = paths.iter().map(|path| own_grid(path)).collect();
+    let mut cases: Vec<(CasePaths, &GridSource)> = Vec::new();
+    let mut early = Vec::new();
+    for (path, grid) in paths.iter().zip(&grids) {
+        if let Some(grid) = grid {
+            if !cases.iter().any(|(_, known)| *known == grid) {
+                cases.push((case(path), grid));
+            }
+        } else {
+            let last = cases.last_mut().map(|(case, _)| &mut case.with);
+            last.unwrap_or(&mut early).push(path.clone());
+        }
+    }
+    match cases.first_mut() {
+        Some((first, _)) => first.with.splice(0..0, early).for_each(drop),
+        // Nothing can be opened: each path tells why.
+        None => return paths.iter().map(case).collect(),
+    }
+    cases.into_iter().map(|(case, _)| case).collect()
+}
+
+/// The grid of the case that `path` names; `None` for a file that only belongs to one.
+fn own_grid(path: &Path) -> Option<GridSource> {
+    let grid = find(path).ok()?.grid;
+    match &grid {
+        GridSource::Deck(deck) if !Grdecl::is_grid(deck).unwrap_or(true) => None,
+        _ => Some(grid),
+    }
+}
+
+/// As [`open_with`]; `progress` is told what is read next, and returns false to leave it: the result is `None`
 /// then.
 ///
 /// # Errors
-/// As [`open`].
-pub fn open_with(path: &Path, progress: &dyn Fn(&str) -> bool) -> Result<Option<Case>, ParseError> {
-    let files = find(path)?;
+/// As [`open_with`].
+pub fn open_reporting(
+    path: &Path,
+    with: &[PathBuf],
+    progress: &dyn Fn(&str) -> bool,
+) -> Result<Option<Case>, ParseError> {
+    let files = find_with(path, with)?;
     if !progress("the grid") {
         return Ok(None);
     }
@@ -44,76 +109,100 @@ pub fn open_with(path: &Path, progress: &dyn Fn(&str) -> bool) -> Result<Option<
         ..About::default()
     };
     for (file, why) in &files.not_read {
-        about
-            .notes
-            .push(format!("{} was not read: {why}", file.display()));
+        let note = format!("{} was not read: {why}", file.display());
+        about.notes.push(note);
     }
-    let Loaded {
-        grid,
-        cells,
-        deck,
-        connections,
-        fault_faces,
-    } = grids::read(&files, &mut about, &mut warnings)?;
+    let loaded = grids::read(&files, &mut about, &mut warnings)?;
+    if !progress("static properties") {
+        return Ok(None);
+    }
+    let init = open_init(&files, &mut about, &mut warnings);
+    if !progress("time steps") {
+        return Ok(None);
+    }
+    let steps = open_restart(&files.restart, &mut about, &mut warnings);
+    note_missing(&files, loaded.is_deck, &mut about);
+    let case = build(loaded, init, steps, about, &warnings);
+    Ok(Some(case))
+}
+
+/// The case of what was read.
+fn build(
+    mut loaded: Loaded,
+    init: Option<CellArrays>,
+    steps: Vec<FileStep>,
+    mut about: About,
+    warnings: &Warnings,
+) -> Case {
+    let first = steps.first().map(|s| &s.arrays);
+    let heads: Vec<_> = init
+        .iter()
+        .chain(first)
+        .filter_map(|a| a.head().ok())
+        .collect();
+    let units = heads.iter().find_map(|head| head.units);
+    let length = loaded.settle_units(units, &mut about);
+    let units = units.or(loaded.units).unwrap_or(match length.short() {
+        "FT" => UnitSystem::Field,
+        "CM" => UnitSystem::Lab,
+        _ => UnitSystem::Metric,
+    });
+    let phases = heads
+        .iter()
+        .map(|head| head.phases)
+        .find(|phases| *phases > 0);
+    pore_volume::leave_small(&mut loaded, units, length, &mut about.notes);
+    let active = heads
+        .iter()
+        .filter_map(|head| usize::try_from(head.active).ok());
+    let results = ResultCells {
+        active: active.into_iter().find(|active| *active > 0),
+        init: init.as_ref(),
+    };
+    let cells = CellSlots::new(&mut loaded.grid, &loaded.flags, &results, &mut about.notes);
     let mut source = FileSource {
         cells,
         init: None,
         steps: Vec::new(),
-        deck,
+        texts: loaded.texts,
     };
-    if !progress("static properties") {
-        return Ok(None);
-    }
-    if let Some(path) = &files.init {
-        source.init = open_init(path, &source, &mut about);
-    }
-    if !progress("time steps") {
-        return Ok(None);
-    }
-    match open_restart(&files.restart, &source, &mut warnings) {
-        Ok(steps) => {
-            let read = steps.iter().map(|s| s.arrays.file().path().to_owned());
-            about.files.extend(read);
-            about.files.dedup();
-            source.steps = steps;
-            leave_unfinished(&mut source.steps, &mut about.notes);
-        }
-        Err(error) => about
-            .notes
-            .push(format!("time steps were not loaded: {error}")),
-    }
-    note_missing(&files.restart, files.init.is_some(), &source, &mut about);
+    source.take_fitting(init, steps, &mut about);
+    leave_unfinished(&mut source.steps, &mut about.notes);
+    about.notes.extend(source.misfits());
     read_wells(&source, &mut about);
-    let properties = properties::of(&source, !connections.is_empty(), &mut about);
+    let setting = Setting {
+        units,
+        length,
+        phases: phases.unwrap_or(loaded.phases),
+        has_connections: !loaded.connections.is_empty(),
+    };
+    let properties = properties::of(&source, &setting, &mut about);
     about.notes.extend(warnings.iter().map(ToString::to_string));
-    Ok(Some(Case {
-        grid: Arc::new(grid),
+    Case {
+        grid: Arc::new(loaded.grid),
         about,
-        fault_faces: Arc::new(fault_faces),
-        connections,
+        fault_faces: Arc::new(loaded.fault_faces),
+        connections: loaded.connections,
         steps: source.steps.iter().map(step).collect(),
         properties,
         source: Box::new(source),
         cache: FieldCache::default(),
         over_steps: OverSteps::default(),
         minus: None,
-    }))
+    }
 }
 
 fn step(step: &FileStep) -> Step {
     Step {
         report: step.report,
-        date: step.head.date.clone(),
+        date: step.head.time(),
         days: step.days,
     }
 }
 
-fn open_init(path: &Path, source: &FileSource, about: &mut About) -> Option<CellArrays> {
-    match init::open(path).and_then(|a| source.check(&a, path).map(|()| a)) {
-        Ok(arrays) => {
-            about.files.push(path.to_owned());
-            Some(arrays)
-        }
+fn open_init(files: &CaseFiles, about: &mut About, warnings: &mut Warnings) -> Option<CellArrays> {
+    match init::open(files.init.as_ref()?, warnings) {
+        Ok(arrays) => Some(arrays),
         Err(error) => {
             about.notes.push(format!("INIT was not loaded: {error}"));
             None
@@ -151,16 +240,16 @@ fn read_wells(source: &FileSource, about: &mut About) {
     }
 }
 
-fn note_missing(restart: &RestartSource, has_init: bool, source: &FileSource, about: &mut About) {
-    if source.deck.is_some() {
+fn note_missing(files: &CaseFiles, is_deck: bool, about: &mut About) {
+    if is_deck {
         return;
     }
-    if !has_init {
+    if files.init.is_none() && files.added.is_empty() {
         about
             .notes
             .push("there is no INIT file, so static properties such as PORO are missing".into());
     }
-    if *restart == RestartSource::None {
+    if files.restart == RestartSource::None {
         about.notes.push(
             "there is no restart file, so time steps and dynamic properties are missing".into(),
         );
@@ -169,16 +258,18 @@ fn note_missing(restart: &RestartSource, has_init: bool, source: &FileSource, ab
 
 fn open_restart(
     restart: &RestartSource,
-    source: &FileSource,
+    about: &mut About,
     warnings: &mut Warnings,
-) -> Result<Vec<FileStep>, ParseError> {
+) -> Vec<FileStep> {
     let steps = match restart {
-        RestartSource::None => Vec::new(),
-        RestartSource::Unified(path) => restart::open_unified(path, warnings)?,
-        RestartSource::Separate(files) => restart::open_separate(files, warnings)?,
+        RestartSource::None => Ok(Vec::new()),
+        RestartSource::Unified(path) => restart::open_unified(path, warnings),
+        RestartSource::Separate(files) => restart::open_separate(files, warnings),
     };
-    if let Some(first) = steps.first() {
-        source.check(&first.arrays, first.arrays.file().path())?;
-    }
-    Ok(steps)
+    steps.unwrap_or_else(|error| {
+        about
+            .notes
+            .push(format!("time steps were not loaded: {error}"));
+        Vec::new()
+    })
 }

@@ -168,6 +168,7 @@ fn to_egrid(geometry: Geometry) -> Egrid {
         coord,
         zcorn,
         actnum: Some(actnum),
+        coarse: None,
         map_units: map_axes.map(|_| METRES.into()),
         map_axes,
         grid_unit: Some(egrid::GridUnit {

@@ -277,7 +277,7 @@ fn what_is_hidden_contributes_nothing() {
     assert!(found.cells[0].contribution > 0.8 && found.cells[0].contribution < 0.82);
     // From a filter, only what is drawn.
     scene.filter = Filter {
-        i: Some([2, 2]),
+        i: Some([2, 2].into()),
         ..Filter::default()
     };
     let found = pick(&case, &scene).unwrap();
@@ -391,7 +391,7 @@ fn a_fault_is_picked_where_it_is_what_is_seen() {
     let case = faulted();
     let scene = |opacity: f64| {
         let mut scene = from_west(&BLUE_TO_RED, &[[0.0, opacity], [1.0, opacity]]);
-        scene.show.faults = true;
+        scene.show.faults = true.into();
         scene
     };
     let Some(found) = pick(&case, &scene(0.05)) else {
@@ -438,7 +438,7 @@ fn a_fault_is_picked_where_it_is_what_is_seen() {
     assert!(half.fault.is_some());
     // Nor where no faults are shown.
     let mut without = scene(0.05);
-    without.show.faults = false;
+    without.show.faults = false.into();
     assert_eq!(pick(&case, &without).unwrap().fault, None);
 }
 
@@ -455,9 +455,9 @@ fn one_picker_answers_for_every_view() {
         (Hull::Hidden, true),
     ] {
         let mut scene = plain.clone();
-        (scene.show.hull, scene.show.faults) = (hull, faults);
+        (scene.show.hull, scene.show.faults) = (hull, faults.into());
         scenes.push(scene.clone());
-        scene.filter.i = Some([8, 30]);
+        scene.filter.i = Some([8, 30].into());
         scenes.push(scene.clone());
         scene.show.inactive = Inactive::Ghost;
         scenes.push(scene);

@@ -34,6 +34,8 @@ pub struct CaseFiles {
     pub grid: GridSource,
     /// A deck beside an EGRID file, which has what that lacks, such as FAULTS.
     pub deck: Option<PathBuf>,
+    /// Text files that were added by hand: properties, faults and what else goes on where the grid's text ends.
+    pub added: Vec<PathBuf>,
     /// Static properties.
     pub init: Option<PathBuf>,
     /// Time steps.
@@ -176,6 +178,7 @@ pub fn find(path: &Path) -> Result<CaseFiles, ParseError> {
         name: stem,
         grid,
         deck,
+        added: Vec::new(),
         init: first(Role::Init),
         restart,
         not_read: files
@@ -183,6 +186,39 @@ pub fn find(path: &Path) -> Result<CaseFiles, ParseError> {
             .filter_map(|(p, r)| Some((p.clone(), reason(r)?)))
             .collect(),
     })
+}
+
+/// As [`find`], with files added by hand to what is found: text beside the grid, an INIT or restart of another name.
+///
+/// # Errors
+/// As [`find`]; and when an added file is not there or can be no part of a case.
+pub fn find_with(path: &Path, with: &[PathBuf]) -> Result<CaseFiles, ParseError> {
+    let mut files = find(path)?;
+    let mut separate = Vec::new();
+    for added in with {
+        let refuse = |message: &str| ParseError::new(added, At::File, "", message);
+        if !added.is_file() {
+            return Err(refuse("there is no such file"));
+        }
+        match sniff(added) {
+            Role::Deck | Role::Text => files.added.push(added.clone()),
+            Role::Init => files.init = Some(added.clone()),
+            Role::Unified => files.restart = RestartSource::Unified(added.clone()),
+            Role::Separate(report) => separate.push((report, added.clone())),
+            Role::Egrid => {
+                return Err(refuse(
+                    "is a grid of its own and cannot be added to another one",
+                ));
+            }
+            Role::Summary => return Err(refuse("holds curves over time, which are not read")),
+            Role::NotRead(why) => return Err(refuse(why)),
+        }
+    }
+    if !separate.is_empty() {
+        separate.sort();
+        files.restart = RestartSource::Separate(separate);
+    }
+    Ok(files)
 }
 
 /// The grid of a folder that has one case.

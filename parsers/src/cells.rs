@@ -114,6 +114,20 @@ impl CellArrays {
 }
 
 impl Head {
+    /// Date and time of day, `YYYY-MM-DD`, `YYYY-MM-DD hh:mm` or `YYYY-MM-DD hh:mm:ss`: as much as is needed. Empty where
+    /// there is no date.
+    pub fn time(&self) -> String {
+        let [hour, minute, micros] = self.clock;
+        let is_clock = (0..24).contains(&hour) && (0..60).contains(&minute);
+        let second = micros.max(0) / 1_000_000;
+        match (hour, minute, second) {
+            _ if self.date.is_empty() || !is_clock || second > 59 => self.date.clone(),
+            (0, 0, 0) => self.date.clone(),
+            (_, _, 0) => format!("{} {hour:02}:{minute:02}", self.date),
+            _ => format!("{} {hour:02}:{minute:02}:{second:02}", self.date),
+        }
+    }
+
     /// The INTEHEAD array that [`CellArrays::head`] reads as this.
     ///
     /// # Errors

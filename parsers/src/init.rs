@@ -5,15 +5,16 @@ use std::path::Path;
 use std::sync::Arc;
 
 use crate::cells::{CellArrays, Head, write_arrays, write_heads};
-use crate::error::ParseError;
+use crate::error::{ParseError, Warnings};
 use crate::records::{RecordFile, RecordWriter};
 
-/// Opens an INIT file; sections of local grids (LGR to LGRSGONE or ENDLGR) are left out.
+/// Opens an INIT file; sections of local grids (LGR to LGRSGONE or ENDLGR) are left out. Of a file that ends within
+/// an array, those before it are kept, with a warning.
 ///
 /// # Errors
-/// When the file is damaged.
-pub fn open(path: &Path) -> Result<CellArrays, ParseError> {
-    let file = Arc::new(RecordFile::open(path)?);
+/// When the file holds no whole array.
+pub fn open(path: &Path, warnings: &mut Warnings) -> Result<CellArrays, ParseError> {
+    let file = Arc::new(RecordFile::open_lenient(path, warnings)?);
     let all = 0..file.entries().len();
     Ok(CellArrays::new(&file, all, &["LGRSGONE", "ENDLGR"]))
 }

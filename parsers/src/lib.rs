@@ -5,6 +5,8 @@
 //! end in a [`ParseError`] that names file, keyword and place; no reader panics, prints, or
 //! allocates by a count that the remaining bytes do not cover.
 
+pub mod arrays;
+pub mod calendar;
 pub mod case;
 pub mod cells;
 pub mod deck;

@@ -5,6 +5,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use crate::calendar;
 use crate::cells::{CellArrays, Head, write_arrays, write_heads};
 use crate::error::{At, ParseError, Warnings};
 use crate::records::{RecordFile, RecordWriter, refused};
@@ -14,7 +15,7 @@ use crate::records::{RecordFile, RecordWriter, refused};
 pub struct Step {
     /// Report number, which need not start at 0 nor be without gaps: SEQNUM, or the number in the file's extension.
     pub report: u32,
-    /// Days since the start, from DOUBHEAD.
+    /// Days since the start, from DOUBHEAD; where that is missing from the dates.
     pub days: f64,
     /// What INTEHEAD says.
     pub head: Head,
@@ -22,7 +23,7 @@ pub struct Step {
     pub arrays: CellArrays,
 }
 
-/// Opens a unified restart; every SEQNUM starts a step.
+/// Opens a unified restart; every SEQNUM starts a step, in a file without them every INTEHEAD.
 ///
 /// Steps stay in file order, so that a report that a second run appended is there twice, with a
 /// warning.
@@ -33,21 +34,20 @@ pub struct Step {
 pub fn open_unified(path: &Path, warnings: &mut Warnings) -> Result<Vec<Step>, ParseError> {
     let file = Arc::new(RecordFile::open_lenient(path, warnings)?);
     let entries = file.entries();
-    let mut starts: Vec<usize> = (0..entries.len())
-        .filter(|&n| entries[n].name() == "SEQNUM")
-        .collect();
-    if starts.is_empty() {
-        let message = "has no SEQNUM, so it is read as a single step with report number 0";
+    let mut starts = starts(&file, "SEQNUM");
+    let is_numbered = !starts.is_empty();
+    if !is_numbered {
+        let message = "has no SEQNUM: steps are told apart by INTEHEAD and numbered from 0";
         warnings.push(path, At::File, message);
-        starts.push(0);
+        starts = self::starts(&file, "INTEHEAD");
     }
     let mut steps: Vec<Step> = Vec::with_capacity(starts.len());
     let mut known = HashSet::new();
     for (n, &start) in starts.iter().enumerate() {
         let end = starts.get(n + 1).copied().unwrap_or(entries.len());
-        let report = match entries[start].name() {
-            "SEQNUM" => file.i32s(&entries[start])?.first().copied().unwrap_or(0),
-            _ => 0,
+        let report = match is_numbered {
+            true => file.i32s(&entries[start])?.first().copied().unwrap_or(0),
+            false => i32::try_from(n).unwrap_or(0),
         };
         let step = step(&file, start..end, u32::try_from(report).unwrap_or(0))?;
         let at = At::Byte(entries[start].offset);
@@ -62,14 +62,50 @@ pub fn open_unified(path: &Path, warnings: &mut Warnings) -> Result<Vec<Step>, P
         }
         steps.push(step);
     }
-    match steps.is_empty() {
-        true => Err(ParseError::new(
-            path,
-            At::File,
-            "INTEHEAD",
-            "is missing; this is no restart",
-        )),
-        false => Ok(steps),
+    if steps.is_empty() {
+        let message = "is missing; this is no restart";
+        return Err(ParseError::new(path, At::File, "INTEHEAD", message));
+    }
+    count_days(&mut steps, path, warnings);
+    Ok(steps)
+}
+
+/// Where arrays called `name` stand outside the sections of local grids.
+fn starts(file: &RecordFile, name: &str) -> Vec<usize> {
+    let mut starts = Vec::new();
+    let mut is_local = false;
+    for (n, entry) in file.entries().iter().enumerate() {
+        match entry.name() {
+            "LGR" => is_local = true,
+            "ENDLGR" | "LGRSGONE" => is_local = false,
+            found if found == name && !is_local => starts.push(n),
+            _ => {}
+        }
+    }
+    starts
+}
+
+/// Counts days from the dates in steps that have none (no DOUBHEAD): from a step that has them, else from the first.
+fn count_days(steps: &mut [Step], path: &Path, warnings: &mut Warnings) {
+    let lacks = |step: &Step| step.arrays.find("DOUBHEAD").is_none();
+    let moment = |step: &Step| calendar::moment(&step.head.time());
+    let counted = steps
+        .iter()
+        .find(|step| !lacks(step) && moment(step).is_some());
+    let start = counted.map(|step| moment(step).map(|now| now - step.days));
+    let Some(start) = start.unwrap_or_else(|| steps.first().and_then(moment)) else {
+        return;
+    };
+    let mut count = 0;
+    for step in steps.iter_mut().filter(|step| lacks(step)) {
+        if let Some(now) = calendar::moment(&step.head.time()) {
+            step.days = now - start;
+            count += 1;
+        }
+    }
+    if count > 0 {
+        let message = "DOUBHEAD is missing: days are counted from the dates of the steps";
+        warnings.push(path, At::File, message);
     }
 }
 
@@ -99,7 +135,12 @@ pub fn open_separate(
     }
     match failed {
         Some(error) if steps.is_empty() => Err(error),
-        _ => Ok(steps),
+        _ => {
+            if let Some((_, path)) = files.first() {
+                count_days(&mut steps, path, warnings);
+            }
+            Ok(steps)
+        }
     }
 }
 

@@ -270,46 +270,227 @@ fn ok_reading_stops_before_summary_schedule_and_end() {
     }
 }
 
-#[test]
-fn ok_operations_are_named() {
-    let (grid, warning) = warned(&cell(
-        "EQUALS\n PORO 0.2 /\n 'ACTNUM' 0 1 1 1 1 1 1 / shut\n/\nCOPY\n PERMX PERMY /\n/\nEQUALS\nNTG 1 /\n/\nMULTFLT\n'F/1' 0.1 /\n/\nPERMX\n5 /\n",
-    ));
-    assert!(warning.contains("TEST.GRDECL:7:1: EQUALS is not evaluated (here first, 2 times in all); it concerns ACTNUM, NTG, PORO"), "{warning}");
-    assert!(
-        warning.contains("COPY is not evaluated; it concerns PERMY"),
-        "{warning}"
-    );
-    assert!(warning.contains("MULTFLT is not evaluated"), "{warning}");
-    assert_eq!(names(&grid), ["PERMX"]);
+/// A grid of 2 x 2 x 2 cells of a metre with `text` behind it.
+fn cube(text: &str) -> String {
+    let pillar = |n: usize| format!(" {} {} 0 {} {} 2", n % 3, n / 3, n % 3, n / 3);
+    let coord: String = (0..9).map(pillar).collect();
+    format!("SPECGRID\n2 2 2 1 F /\nCOORD\n{coord} /\nZCORN\n16*0 32*1 16*2 /\n{text}")
 }
 
 #[test]
-fn ok_boxes_and_refinements_are_left_out_with_a_warning() {
-    let (grid, warning) = warned(&cell("BOX\n1 1 1 1 1 1 /\nPORO\n0.5 /\nENDBOX\nNTG\n1 /\n"));
-    assert_eq!(names(&grid), ["NTG"]);
+fn ok_operations_are_applied_in_their_order() {
+    let grid = ok(&cube(
+        "EQUALS\n PORO 0.2 /\n 'PORO' 0.3 1 1 1 2 2 2 / a box\n NTG 0.5 / in the same box\n/\n\
+         PERMX\n1 2 3 4 5 6 7 8 /\nCOPY\n PERMX PERMY /\n PERMX PERMZ 1 2 1 2 1 1 /\n/\n\
+         MULTIPLY\n PERMY 10 /\n PERMY 2 1 1 1 1 1 1 /\n MULTZ 0.1 1 2 1 2 2 2 /\n/\n\
+         ADD\n PERMX 1 /\n/\nMINVALUE\n PERMX 4 /\n/\nMAXVALUE\n PERMX 7 /\n/\n",
+    ));
+    let [porosity, gap] = [0.2, f64::NAN];
+    assert_eq!(
+        property(&grid, "PORO"),
+        [
+            porosity, porosity, porosity, porosity, 0.3, porosity, 0.3, porosity
+        ]
+    );
+    // Cells outside the box have what a deck gives where it gives nothing.
+    assert_eq!(
+        property(&grid, "NTG"),
+        [1.0, 1.0, 1.0, 1.0, 0.5, 1.0, 0.5, 1.0]
+    );
+    assert_eq!(
+        property(&grid, "PERMX"),
+        [4.0, 4.0, 4.0, 5.0, 6.0, 7.0, 7.0, 7.0]
+    );
+    assert_eq!(
+        property(&grid, "PERMY"),
+        [20.0, 20.0, 30.0, 40.0, 50.0, 60.0, 70.0, 80.0]
+    );
+    let shown = format!("{:?}", property(&grid, "PERMZ"));
+    assert_eq!(
+        shown,
+        format!("{:?}", [1.0, 2.0, 3.0, 4.0, gap, gap, gap, gap])
+    );
+    assert_eq!(property(&grid, "MULTZ")[3..5], [1.0, 0.1]);
     assert!(
-        warning.contains("PORO inside a BOX is not read")
-            && warning.contains("BOX is not evaluated"),
+        grid.properties
+            .iter()
+            .all(|property| property.doubt.is_none())
+    );
+}
+
+#[test]
+fn ok_arrays_in_boxes() {
+    let grid = ok(&cube(
+        "PORO\n8*0.1 /\nBOX\n2 2 1 2 1 1 /\nPORO\n0.2 0.3 /\nACTNUM\n0 1 /\nEQUALS\n NTG 0.5 /\n/\n\
+         ENDBOX\nSATNUM\n8*3 /\n",
+    ));
+    assert_eq!(
+        property(&grid, "PORO"),
+        [0.1, 0.2, 0.1, 0.3, 0.1, 0.1, 0.1, 0.1]
+    );
+    assert_eq!(
+        property(&grid, "NTG"),
+        [1.0, 0.5, 1.0, 0.5, 1.0, 1.0, 1.0, 1.0]
+    );
+    assert_eq!(grid.actnum.unwrap(), [1, 0, 1, 1, 1, 1, 1, 1]);
+    let (grid, warning) = warned(&cube("BOX\n1 3 1 2 1 1 /\nPORO\n6*0.2 /\nENDBOX\n"));
+    assert!(
+        names(&grid).is_empty() && warning.contains("a BOX outside the grid"),
         "{warning}"
     );
+    let (grid, warning) = warned(&cube("BOX\n1 2 1 2 1 1 /\nPORO\n8*0.2 /\nENDBOX\n"));
+    assert!(
+        names(&grid).is_empty() && warning.contains("8 values for 4 cells"),
+        "{warning}"
+    );
+}
+
+#[test]
+fn ok_what_is_not_applied_is_said_and_doubted() {
+    let (grid, warning) = warned(&cube(
+        "PORO\n8*0.2 /\nPERMX\n8*5 /\nNTG\n8*1 /\nEQUALREG\n PORO 0.3 1 M /\n NTG 0.9 2 M /\n/\n\
+         MULTIREG\n PORO 2 1 M /\n/\nEQUALS\n NTG 1 /\n PERMX 9 1 3 1 1 1 1 /\n/\n\
+         COPY\n PORO PERMY /\n NOSUCH PERMX /\n/\nMULTIPLY\n TRANX 0.5 /\n/\nCOPY\n PERMX PERMZ /\n/\n",
+    ));
+    for expected in [
+        "EQUALREG was not applied to PORO, NTG: this keyword is not evaluated",
+        "EQUALS was not applied to PERMX: its box is outside the grid",
+        "COPY was not applied to PERMX: the array to copy is not in the deck",
+        "MULTIPLY was not applied to TRANX, which the deck does not give",
+    ] {
+        assert!(warning.contains(expected), "{expected}\n{warning}");
+    }
+    let doubt = |name: &str| {
+        let property = grid
+            .properties
+            .iter()
+            .find(|property| property.name == name);
+        property.unwrap().doubt.as_deref()
+    };
+    let both = Some("EQUALREG and MULTIREG of the deck were not applied");
+    assert_eq!([doubt("PORO"), doubt("PERMY")], [both; 2]);
+    assert_eq!(
+        doubt("PERMX"),
+        Some("EQUALS and COPY of the deck were not applied")
+    );
+    assert_eq!(doubt("PERMZ"), doubt("PERMX"));
+    // What is set anew for all cells is as the deck says.
+    assert_eq!(doubt("NTG"), None);
+}
+
+#[test]
+fn ok_faults_have_their_multipliers() {
+    let grid = ok(&cube(
+        "FAULTS\nF1 1 1 1 2 1 2 X /\nF2 1 2 1 1 1 2 Y /\nG 1 1 1 2 1 1 X /\n/\n\
+         MULTFLT\n'F*' 0.5 /\n'F2' 0.0 /\n/\n",
+    ));
+    let multipliers: Vec<_> = grid.faults.iter().map(|fault| fault.multiplier).collect();
+    assert_eq!(multipliers, [Some(0.5), Some(0.0), None]);
+}
+
+#[test]
+fn ok_tables_are_no_properties() {
+    let grid = ok(&cube(
+        "SWOF\n 0.2 0 1 0 1 1 0 0 /\nMYPROP\n8*1 /\nRUNSPEC\nOIL\nWATER\nSTRANGE\n8*1 /\nGRID\nODD\n8*2 /\n\
+         PROPS\nPVDO\n 1 1 1 2 2 2 3 3 /\nUNKNOWN\n8*1 /\nSWL\n8*0.1 /\nREGIONS\nFIPABC\n8*2 /\nSOLUTION\n\
+         EQUIL\n 1 2 3 4 5 6 7 8 /\nSWAT\n8*0.3 /\n",
+    ));
+    assert_eq!(names(&grid), ["MYPROP", "ODD", "SWL", "FIPABC", "SWAT"]);
+    assert_eq!(grid.phases, 3);
+}
+
+#[test]
+fn ok_block_centered_grids() {
+    let deck =
+        "DIMENS\n2 1 2 /\nDXV\n100 50 /\nDY\n4*80 /\nEQUALS\n DZ 10 /\n DZ 20 1 2 1 1 2 2 /\n/\n";
+    let grid = ok(&format!("{deck}TOPS\n1000 1010 /\nPORO\n4*0.2 /\n"));
+    assert_eq!(names(&grid), ["DY", "DZ", "PORO"]);
+    assert_eq!(grid.coord[6..12], [100.0, 0.0, 1000.0, 100.0, 0.0, 1040.0]);
+    assert_eq!(grid.coord[30..33], [150.0, 80.0, 1000.0]);
+    assert_eq!(grid.zcorn[0..4], [1000.0, 1000.0, 1010.0, 1010.0]);
+    assert_eq!(grid.zcorn[8..12], [1010.0, 1010.0, 1020.0, 1020.0]);
+    assert_eq!(grid.zcorn[28..32], [1030.0, 1030.0, 1040.0, 1040.0]);
+    // Tops of deeper layers leave gaps.
+    let grid = ok(&format!("{deck}TOPS\n1000 1010 1015 1* /\n"));
+    assert_eq!(grid.zcorn[16..20], [1015.0, 1015.0, 1020.0, 1020.0]);
+    err(
+        &format!("{deck}TOPS\n1000 1* /\n"),
+        "TOPS: has no value for cell 2 of the first layer",
+    );
+    let half = deck.replace("DY\n4*80", "BOX\n1 1 1 1 1 1 /\nDY\n80");
+    err(
+        &format!("{half}ENDBOX\nTOPS\n2*1000 /\n"),
+        "DY: has no value for cell 2",
+    );
+    let uneven = deck.replace("4*80", "2*80 2*90");
+    let (_, warning) = warned(&format!("{uneven}TOPS\n2*1000 /\n"));
+    assert!(
+        warning.contains("DY differs from layer to layer"),
+        "{warning}"
+    );
+}
+
+#[test]
+fn ok_depths_are_shifted() {
+    let grid = ok(&cube(
+        "ADDZCORN\n 5 1 1 1 2 1 2 /\n 1 1 2 1 2 2 2 4* ALL /\n/\n",
+    ));
+    assert_eq!(grid.zcorn[..4], [5.0, 5.0, 0.0, 0.0]);
+    assert_eq!(grid.zcorn[60..], [8.0, 8.0, 3.0, 3.0]);
+    for more in ["5 1 1 1 2 1 2 1 1 /", "5 1 1 1 2 1 2 4* TOP /"] {
+        let (grid, warning) = warned(&cube(&format!("ADDZCORN\n {more}\n/\n")));
+        assert_eq!(grid.zcorn[0], 0.0);
+        assert!(warning.contains("ADDZCORN with more than"), "{warning}");
+    }
+    let (grid, warning) = warned(&cube("ADDZCORN\n 5 1 3 1 2 1 2 /\n/\n"));
+    assert!(
+        grid.zcorn[0] == 0.0 && warning.contains("box is outside"),
+        "{warning}"
+    );
+}
+
+#[test]
+fn ok_refinements_are_left_out_with_a_warning() {
     let (grid, warning) = warned(&cell(
-        "CARFIN\n'L' 1 1 1 1 1 1 2 2 2 /\nPORO\n0.5 /\nENDFIN\nNTG\n1 /\n",
+        "CARFIN\n'L' 1 1 1 1 1 1 2 2 2 /\nPORO\n0.5 /\nEQUALS\nPERMX 1 /\n/\nENDFIN\nNTG\n1 /\n",
     ));
     assert_eq!(names(&grid), ["NTG"]);
     assert!(warning.contains("local refinements"), "{warning}");
 }
 
 #[test]
+fn ok_files_with_a_mark_of_their_encoding() {
+    let text = [b"\xef\xbb\xbf", cell("PORO\n0.5 /\n").as_bytes()].concat();
+    let (grid, warnings) = read_bytes(&text);
+    assert_eq!((names(&grid.unwrap()), warnings.len()), (vec!["PORO"], 0));
+}
+
+#[test]
+fn ok_dimensions_without_the_number_of_coordinate_systems() {
+    for dims in [
+        "1 1 1 F",
+        "1 1 1  F  ",
+        "1 1 1",
+        "1 1 1 1",
+        "1 1 1 1*",
+        "1 1 1 1* F",
+    ] {
+        assert_eq!(ok(&CELL.replace("1 1 1 1 F", dims)).dims, [1; 3], "{dims}");
+    }
+    err(&CELL.replace("1 1 1 1 F", "1 1 1 T"), "radial");
+}
+
+#[test]
 fn ok_odd_decks_are_warned_about() {
     for (text, expected) in [
-        (
-            "PORO\n2*0.5 /\n",
-            "PORO has 2 values where the grid has 1 cells",
-        ),
+        ("PORO\n2*0.5 /\n", "PORO has 2 values for 1 cells"),
         ("PORO\n0.5 /\nPORO\n0.6 /\n", "PORO is given again"),
         ("NOECHO\n12 abc\n", "belongs to no keyword"),
-        ("GDFILE\n'X.EGRID' /\n", "GDFILE names is not read"),
+        (
+            "GDFILE\n'X.EGRID' U /\n",
+            "GDFILE is not read: the deck has COORD",
+        ),
+        ("IMPORT\n'X.GRDECL' /\n", "IMPORT names is not read"),
         ("some text at the end", "no closing /"),
         ("DIMENS\n2 2 2 /\n", "SPECGRID is followed"),
     ] {
@@ -410,16 +591,19 @@ fn err_missing_keywords() {
             .map(|part| *part.1)
             .collect::<String>()
     };
-    err(
-        &without(0),
-        "no corner-point grid: SPECGRID (or DIMENS) missing",
-    );
-    err(&without(1), "no corner-point grid: COORD missing");
-    err(&without(2), "no corner-point grid: ZCORN missing");
+    err(&without(0), "no grid: SPECGRID (or DIMENS) missing");
+    err(&without(1), "no grid: COORD missing");
+    err(&without(2), "no grid: ZCORN missing");
     err("", "SPECGRID (or DIMENS) and COORD and ZCORN missing");
     err(
-        "DIMENS\n1 1 1 /\nDX\n100 /\nDY\n100 /\nDZ\n1 /\nTOPS\n1000 /\n",
-        "the grid is given by DX, DY, DZ and TOPS",
+        "DIMENS\n1 1 1 /\nDX\n100 /\nDY\n100 /\nDZ\n1 /\n",
+        "no grid: COORD and ZCORN missing",
+    );
+    err("PORO\n0.5 /\n", "has PORO but no grid");
+    err("FAULTS\nA 1 1 1 1 1 1 X /\n/\n", "has FAULTS but no grid");
+    err(
+        "DIMENS\n1 1 1 /\nDR\n1 /\nDTHETA\n360 /\nDZ\n1 /\nTOPS\n1 /\n",
+        "radial",
     );
 }
 
@@ -809,11 +993,12 @@ fn real_reek_deck_with_includes() {
     let grid = grid.unwrap();
     assert_eq!(grid.dims, [40, 64, 14]);
     assert_eq!(grid.unit_system, Some(UnitSystem::Metric));
-    // Counted in the include files: six arrays by keyword, the lines of reek.faults by grep.
+    // Counted in the include files: arrays by keyword and by operations, the lines of reek.faults by grep.
     assert_eq!(
         names(&grid),
         [
-            "PORO", "PERMX", "PERMY", "PERMZ", "SWATINIT", "EQLNUM", "FIPNUM"
+            "PORO", "PERMX", "PERMY", "PERMZ", "MULTZ", "SWL", "SWU", "SGCR", "SWCR", "SGU",
+            "SWATINIT", "EQLNUM", "FIPNUM", "SATNUM", "PVTNUM"
         ]
     );
     let lines = fs::read_to_string(data.join("reek/deck/include/grid/reek.faults")).unwrap();
@@ -821,7 +1006,7 @@ fn real_reek_deck_with_includes() {
         grid.faults.len(),
         lines.lines().filter(|line| line.starts_with("'F")).count()
     );
-    assert_eq!(warnings.len(), 5, "{warnings:#?}");
+    assert!(warnings.is_empty(), "{warnings:#?}");
 }
 
 #[test]
@@ -831,22 +1016,35 @@ fn real_spe9_deck() {
     let grid = grid.unwrap();
     assert_eq!(grid.dims, [24, 25, 15]);
     assert_eq!(grid.unit_system, Some(UnitSystem::Field));
-    assert_eq!(names(&grid), ["PORO", "PERMX"]);
+    assert_eq!(names(&grid), ["PORO", "PERMX", "PERMY", "PERMZ"]);
     assert_eq!(property(&grid, "PORO")[8999], 0.157);
-    assert_eq!(warnings.len(), 2, "{warnings:#?}");
+    let [x, z] = ["PERMX", "PERMZ"].map(|name| property(&grid, name)[4321]);
+    assert!((z / x - 0.01).abs() < 1e-12);
+    assert!(warnings.is_empty(), "{warnings:#?}");
 }
 
 #[test]
-fn real_spe1_deck_is_block_centered() {
+fn real_block_centered_decks() {
     let Some(data) = data() else { return };
-    let message = read(&data.join("spe1/SPE1CASE1.DATA"))
-        .0
-        .unwrap_err()
-        .to_string();
-    assert!(
-        message.contains("the grid is given by DX, DY, DZ and TOPS")
-            || message.contains("cannot open"),
-        "{message}"
+    let (grid, warnings) = read(&data.join("spe1/SPE1CASE1.DATA"));
+    let grid = grid.unwrap();
+    assert_eq!(
+        (grid.dims, warnings.len()),
+        ([10, 10, 3], 0),
+        "{warnings:?}"
+    );
+    // Its text says 10 x 10 cells of 1000 ft, layers of 20, 30 and 50 ft below 8325 ft.
+    assert_eq!(
+        grid.coord[720..],
+        [10000.0, 10000.0, 8325.0, 10000.0, 10000.0, 8425.0]
+    );
+    assert_eq!([grid.zcorn[400], grid.zcorn[2399]], [8345.0, 8425.0]);
+    assert_eq!(property(&grid, "PERMZ")[199..=200], [50.0, 200.0]);
+    let (grid, warnings) = read(&data.join("decks/SPE3CASE1.DATA"));
+    assert_eq!(
+        (grid.unwrap().dims, warnings.len()),
+        ([9, 9, 4], 0),
+        "{warnings:?}"
     );
 }
 

@@ -42,6 +42,7 @@ fn grid() -> Egrid {
         coord: reals(6 * (ni + 1) * (nj + 1)),
         zcorn: reals(8 * ni * nj * nk),
         actnum: Some((0..60).map(|n| i32::from(n % 7 != 0)).collect()),
+        coarse: Some((0..60).map(|n| i32::from(n < 4)).collect()),
         map_units: Some("METRES".into()),
         map_axes: Some([0.0, 100.0, 12.5, -3.0, 9000.0, 1.0]),
         grid_unit: Some(egrid::GridUnit {
@@ -137,7 +138,7 @@ fn ok_init_reads_back_equal() {
     let arrays = [("PORO", vec![0.1, 0.25, f32::NAN]), ("NTG", vec![1.0; 3])];
     let bytes = init::write(Vec::new(), &head(), arrays.clone()).unwrap();
     let (_folder, path) = file("A.INIT", &bytes);
-    let back = init::open(&path).unwrap();
+    let back = init::open(&path, &mut Warnings::default()).unwrap();
     assert_eq!(back.head().unwrap(), head());
     for (name, values) in arrays {
         let read = back.values(back.find(name).unwrap()).unwrap();

@@ -163,11 +163,11 @@ pub fn minus(
         true => (Kind::Dynamic, a.steps.len()),
         false => (Kind::Static, 0),
     };
+    let doubts = [a.property(now), b.property(base)].map(|p| p.ok().and_then(|p| p.doubt.clone()));
     let property = Property {
-        name: name.to_owned(),
-        kind,
-        unit: a.unit(now).to_owned(),
         steps: count,
+        doubt: doubts.into_iter().flatten().next(),
+        ..Property::new(name, kind, a.unit(now))
     };
     Ok(Case {
         grid: a.grid.clone(),
@@ -224,34 +224,14 @@ fn places(a: &Case, b: &Case) -> Vec<Option<u32>> {
 /// The step whose date is nearest to that of another one, or whose days are where dates are missing; `None`
 /// where there are no steps.
 pub fn nearest(step: &Step, steps: &[Step]) -> Option<usize> {
-    let moment = moment(&step.date);
-    let apart = |other: &Step| match (moment, self::moment(&other.date)) {
+    let moment = step.moment();
+    let apart = |other: &Step| match (moment, other.moment()) {
         (Some(a), Some(b)) => (a - b).abs(),
         _ => (step.days - other.days).abs(),
     };
     let all = steps.iter().enumerate();
     all.min_by(|a, b| apart(a.1).total_cmp(&apart(b.1)))
         .map(|(n, _)| n)
-}
-
-/// A date, and the time of day where there is one, in days; `None` where it is none.
-fn moment(date: &str) -> Option<f64> {
-    let (day, time) = date.split_once([' ', 'T']).unwrap_or((date, ""));
-    let numbers = |text: &str, by: char| {
-        let parts = text.split(by).map(|part| part.parse::<f64>().ok());
-        parts.collect::<Option<Vec<f64>>>()
-    };
-    let [year, month, day] = numbers(day, '-')?[..] else {
-        return None;
-    };
-    // Days of a calendar whose year begins in March, after Hinnant, chrono-compatible low-level date
-    // algorithms.
-    let year = if month <= 2.0 { year - 1.0 } else { year };
-    let of_year = ((153.0 * ((month + 9.0) % 12.0) + 2.0) / 5.0).floor() + day - 1.0;
-    let leaps = (year / 4.0).floor() - (year / 100.0).floor() + (year / 400.0).floor();
-    let time = numbers(time, ':').unwrap_or_default();
-    let parts = time.iter().zip([24.0, 1440.0, 86400.0]);
-    Some(365.0 * year + leaps + of_year + parts.map(|(v, part)| v / part).sum::<f64>())
 }
 
 /// Values of a case, and of one property those of another case taken away.
@@ -384,20 +364,5 @@ mod tests {
             a.field("PORO", 0).unwrap()
         );
         assert!(Arc::ptr_eq(&case.grid, &a.grid));
-    }
-
-    #[test]
-    fn dates_are_moments() {
-        for (earlier, later, days) in [
-            ("2000-02-28", "2000-03-01", 2.0),
-            ("1999-12-31", "2000-01-01", 1.0),
-            ("2001-02-28", "2001-03-01", 1.0),
-            ("2025-01-01 06:00", "2025-01-01 18:00", 0.5),
-        ] {
-            let apart = moment(later).unwrap() - moment(earlier).unwrap();
-            assert!((apart - days).abs() < 1e-6, "{earlier} {later}: {apart}");
-        }
-        assert_eq!(moment(""), None);
-        assert_eq!(moment("2001-06"), None);
     }
 }

@@ -11,7 +11,7 @@ use strataray::scene::{Scene, Sequence, Turn, film};
 
 use super::Verbosity;
 use super::progress::Reporter;
-use super::scene_options::{SceneOptions, open_case};
+use super::scene_options::SceneOptions;
 
 #[derive(clap::Args)]
 #[command(after_help = "\
@@ -79,8 +79,8 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let reporter = Reporter::new(arguments.verbosity);
     check(arguments)?;
     arguments.options.set_threads()?;
-    let case = open_case(&arguments.case, &reporter)?;
-    let scene = arguments.options.scene(&case)?;
+    let case = arguments.options.open_case(&arguments.case, &reporter)?;
+    let scene = arguments.options.scene(&case, &reporter)?;
     let sequence = sequence(arguments, &scene, &case, &reporter)?;
     for sentence in sequence.left_out() {
         reporter.note(sentence);

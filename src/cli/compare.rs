@@ -10,7 +10,7 @@ use strataray::strategies::StrategyKind;
 
 use super::Verbosity;
 use super::progress::Reporter;
-use super::scene_options::{SceneOptions, open_case};
+use super::scene_options::SceneOptions;
 
 #[derive(clap::Args)]
 #[command(after_help = "\
@@ -71,8 +71,8 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
     );
     arguments.options.set_threads()?;
     let strategies = strategies(arguments)?;
-    let case = open_case(&arguments.case, &reporter)?;
-    let scene = arguments.options.scene(&case)?;
+    let case = arguments.options.open_case(&arguments.case, &reporter)?;
+    let scene = arguments.options.scene(&case, &reporter)?;
     let plan = Plan {
         strategies,
         reference: match arguments.reference {

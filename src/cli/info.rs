@@ -4,12 +4,12 @@ use std::path::PathBuf;
 
 use rayon::prelude::*;
 use serde_json::{Value, json};
-use strataray::case::{Case, Kind};
+use strataray::case::{Case, Kind, NamedFault, Property};
 use strataray::model::{MapAxes, Spaces};
 
 use super::Verbosity;
 use super::progress::Reporter;
-use super::scene_options::open_case;
+use super::scene_options::AddedFiles;
 
 #[derive(clap::Args)]
 #[command(
@@ -25,12 +25,14 @@ pub struct Arguments {
     #[arg(long, value_name = "NAME[@STEP]")]
     stats: Vec<String>,
     #[command(flatten)]
+    added: AddedFiles,
+    #[command(flatten)]
     verbosity: Verbosity,
 }
 
 pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let reporter = Reporter::new(arguments.verbosity);
-    let case = open_case(&arguments.case, &reporter)?;
+    let case = arguments.added.open_case(&arguments.case, &reporter)?;
     let facts = facts(&case, &arguments.stats)?;
     if arguments.json {
         println!("{}", serde_json::to_string_pretty(&facts)?);
@@ -61,18 +63,12 @@ fn facts(case: &Case, stats: &[String]) -> anyhow::Result<Value> {
         "fault_faces": {
             "i": faults[0],
             "j": faults[1],
-            "named": case.about.named_faults.iter().map(|f| json!({"name": f.name, "faces": f.faces})).collect::<Vec<_>>(),
+            "named": case.about.named_faults.iter().map(named_fault).collect::<Vec<_>>(),
         },
         "nnc": case.about.nnc,
         "lgr": case.about.local_grids.iter().map(|g| json!({"name": g.name, "dims": g.dims, "active": g.active})).collect::<Vec<_>>(),
         "porosity_model": case.about.porosity_model,
-        "properties": case.properties.iter().map(|p| {
-            let mut entry = json!({"name": p.name, "kind": p.kind, "unit": p.unit, "values": "active"});
-            if p.kind == Kind::Dynamic {
-                entry["steps"] = json!(p.steps);
-            }
-            entry
-        }).collect::<Vec<_>>(),
+        "properties": case.properties.iter().map(property).collect::<Vec<_>>(),
         "steps": case.steps.iter().enumerate().map(|(index, s)| {
             json!({"index": index, "report": s.report, "date": s.date, "days": s.days})
         }).collect::<Vec<_>>(),
@@ -80,6 +76,7 @@ fn facts(case: &Case, stats: &[String]) -> anyhow::Result<Value> {
         "notes": case.about.notes,
     });
     if let Some(axes) = grid.map_axes() {
+        facts["map_units"] = json!(case.about.map_unit);
         facts["map_bounds"] = map_bounds(case, axes);
     }
     let mut statistics = serde_json::Map::new();
@@ -96,6 +93,33 @@ fn facts(case: &Case, stats: &[String]) -> anyhow::Result<Value> {
     Ok(facts)
 }
 
+fn named_fault(fault: &NamedFault) -> Value {
+    let mut entry = json!({"name": fault.name, "faces": fault.faces});
+    if let Some(multiplier) = fault.multiplier {
+        entry["multiplier"] = json!(multiplier);
+    }
+    entry
+}
+
+fn property(property: &Property) -> Value {
+    let mut entry = json!({
+        "name": property.name,
+        "kind": property.kind,
+        "unit": property.unit,
+        "values": "active",
+    });
+    if property.kind == Kind::Dynamic {
+        entry["steps"] = json!(property.steps);
+    }
+    if let Some(formula) = property.formula() {
+        entry["formula"] = json!(formula);
+    }
+    if let Some(doubt) = &property.doubt {
+        entry["doubt"] = json!(doubt);
+    }
+    entry
+}
+
 /// Bounds of the active cells in map coordinates; depth stays positive down.
 fn map_bounds(case: &Case, axes: MapAxes) -> Value {
     let spaces = Spaces::new(Some(axes), 1.0);
@@ -104,7 +128,7 @@ fn map_bounds(case: &Case, axes: MapAxes) -> Value {
         let corners = grid.hexahedron(grid.dims().ijk(cell)).0;
         corners.map(|c| {
             let world = spaces.world_from_grid.transform_point3(c);
-            [world.x, world.y, -world.z]
+            spaces.map_from_world(world).to_array()
         })
     });
     let bounds = corners.map(|c| [c, c]).reduce_with(|a, b| {
@@ -128,11 +152,22 @@ fn print_text(case: &Case, facts: &Value) {
         facts["active"]
     );
     println!(
-        "  length unit {}, bulk volume {:.6e}, {}-handed",
+        "  length unit {}, bulk volume {:.6e} {}, {}-handed",
         case.about.length_unit,
         facts["bulk_volume"].as_f64().unwrap_or_default(),
+        case.unit("CELL_VOLUME"),
         facts["handedness"].as_str().unwrap_or_default()
     );
+    if let Some(bounds) = facts.get("map_bounds") {
+        let end = |end: &str, n: usize| bounds[end][n].as_f64().unwrap_or_default();
+        let range = |n: usize| format!("{:.2} to {:.2}", end("min", n), end("max", n));
+        let unit = &case.about.map_unit;
+        println!(
+            "  easting {} {unit}, northing {} {unit}",
+            range(0),
+            range(1)
+        );
+    }
     println!(
         "  fault faces {} along i, {} along j; {} non-neighbor connections; {} local grids",
         facts["fault_faces"]["i"],
@@ -150,6 +185,23 @@ fn print_text(case: &Case, facts: &Value) {
         if !names.is_empty() {
             println!("  {kind:?}: {}", names.join(" "));
         }
+    }
+    for property in &case.properties {
+        if let Some(formula) = property.formula() {
+            println!("  {} = {formula}", property.name);
+        }
+        if let Some(doubt) = &property.doubt {
+            println!("  {}: {doubt}", property.name);
+        }
+    }
+    for fault in &case.about.named_faults {
+        let multiplier = fault.multiplier.map(|m| format!(", multiplier {m}"));
+        println!(
+            "  fault {}: {} faces{}",
+            fault.name,
+            fault.faces,
+            multiplier.unwrap_or_default()
+        );
     }
     for (index, step) in case.steps.iter().enumerate() {
         println!(

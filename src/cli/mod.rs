@@ -74,6 +74,7 @@ pub struct Verbosity {
 
 /// Runs the command line and turns an error into one sentence and exit code 1.
 pub fn run() -> ExitCode {
+    process::give_runtime_folder();
     let arguments = Arguments::parse();
     let result = match arguments.command {
         Some(Command::Info(a)) => info::run(&a),

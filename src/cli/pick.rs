@@ -12,7 +12,7 @@ use strataray::renderer::Renderer;
 
 use super::Verbosity;
 use super::progress::Reporter;
-use super::scene_options::{SceneOptions, open_case};
+use super::scene_options::SceneOptions;
 
 #[derive(clap::Args)]
 #[command(after_help = "Examples:
@@ -43,8 +43,8 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let reporter = Reporter::new(arguments.verbosity);
     let pixel = pixel(&arguments.at)?;
     arguments.options.set_threads()?;
-    let case = open_case(&arguments.case, &reporter)?;
-    let scene = arguments.options.scene(&case)?;
+    let case = arguments.options.open_case(&arguments.case, &reporter)?;
+    let scene = arguments.options.scene(&case, &reporter)?;
     let shot = Shot::of(&scene, &case, arguments.plain)?;
     let at = place(&shot, scene.size, pixel)?;
     let gpu = arguments.options.open_gpu(&reporter)?;

@@ -13,7 +13,7 @@ use strataray::scene::Interpolation;
 
 use super::Verbosity;
 use super::progress::Reporter;
-use super::scene_options::open_case;
+use super::scene_options::AddedFiles;
 
 #[derive(Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 enum On {
@@ -36,10 +36,10 @@ pub struct Arguments {
     /// Time step: number from 0, date, first or last.
     #[arg(long, default_value = "last")]
     step: String,
-    /// CSV of map x, map y and depth (positive down).
+    /// CSV of easting, northing (in MAPUNITS) and depth (positive down, in the grid's unit).
     #[arg(long)]
     points: PathBuf,
-    /// The points are raw grid coordinates, MAPAXES not applied.
+    /// The points are raw grid coordinates, MAPAXES and MAPUNITS not applied.
     #[arg(long)]
     grid_coordinates: bool,
     /// Values within a cell.
@@ -51,6 +51,8 @@ pub struct Arguments {
     /// Part of the name of the GPU adapter to use.
     #[arg(long)]
     adapter: Option<String>,
+    #[command(flatten)]
+    added: AddedFiles,
     /// Where to write; standard output by default.
     #[arg(short, long)]
     output: Option<PathBuf>,
@@ -63,7 +65,7 @@ type Answer = Option<(Ijk, DVec3, f64)>;
 
 pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let reporter = Reporter::new(arguments.verbosity);
-    let case = open_case(&arguments.case, &reporter)?;
+    let case = arguments.added.open_case(&arguments.case, &reporter)?;
     let step = case.step(&arguments.step)?;
     let field = case.field(&arguments.property, step)?;
     let given = read_points(arguments)?;
@@ -71,10 +73,10 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let spaces = Spaces::new(axes, 1.0);
     let in_grid: Vec<DVec3> = given
         .iter()
-        .map(|p| {
+        .map(|&p| {
             spaces
                 .grid_from_world
-                .transform_point3(DVec3::new(p.x, p.y, -p.z))
+                .transform_point3(spaces.world_from_map(p))
         })
         .collect();
     let answers = match arguments.on {

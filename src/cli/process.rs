@@ -1,6 +1,33 @@
-//! What the system says of this process.
+//! What the system says of this process, and what it is given.
 
 use std::time::Duration;
+
+/// Begins this process anew with a runtime folder where it has none: graphics drivers look for a display there and
+/// print a complaint of their own without one, and variables can be set safely only for a program that starts.
+#[cfg(target_os = "linux")]
+pub fn give_runtime_folder() {
+    use std::os::unix::process::CommandExt;
+    const VARIABLE: &str = "XDG_RUNTIME_DIR";
+    let is_folder = |path: &std::ffi::OsString| std::path::Path::new(path).is_dir();
+    let folder = std::env::temp_dir();
+    if std::env::var_os(VARIABLE).is_some_and(|f| is_folder(&f)) || !folder.is_dir() {
+        return;
+    }
+    let Ok(program) = std::env::current_exe() else {
+        return;
+    };
+    let mut command = std::process::Command::new(program);
+    let mut arguments = std::env::args_os();
+    if let Some(name) = arguments.next() {
+        command.arg0(name);
+    }
+    // This comes back only where it fails, and then the process goes on without the folder.
+    let _ = command.args(arguments).env(VARIABLE, folder).exec();
+}
+
+/// Nothing is needed on other systems.
+#[cfg(not(target_os = "linux"))]
+pub fn give_runtime_folder() {}
 
 /// CPU time of this process so far, where the system tells (Linux), else zero.
 pub fn cpu_time() -> Duration {

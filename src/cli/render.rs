@@ -15,7 +15,7 @@ use strataray::renderer::{Frame, Renderer};
 use super::Verbosity;
 use super::process::cpu_time;
 use super::progress::Reporter;
-use super::scene_options::{SceneOptions, open_case};
+use super::scene_options::SceneOptions;
 
 #[derive(clap::Args)]
 #[command(after_help = "Examples:
@@ -63,10 +63,10 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
     arguments.options.set_threads()?;
     let mut stages = Stages::default();
     let start = Instant::now();
-    let case = open_case(&arguments.case, &reporter)?;
+    let case = arguments.options.open_case(&arguments.case, &reporter)?;
     stages.open = start.elapsed();
     let start = Instant::now();
-    let scene = arguments.options.scene(&case)?;
+    let scene = arguments.options.scene(&case, &reporter)?;
     let plain = arguments.plain || format == picture::Format::Exr;
     let shot = Shot::of(&scene, &case, plain)?;
     stages.read = start.elapsed();

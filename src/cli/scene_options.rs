@@ -10,7 +10,8 @@ use strataray::load;
 use strataray::scene::lighting::PRESETS;
 use strataray::scene::look;
 use strataray::scene::{
-    CameraSpec, FramingCamera, Interpolation, LightMode, LightingSpec, Projection, Scene, StepSpec,
+    CameraSpec, FramingCamera, Interpolation, LightMode, LightingSpec, Mode, Projection, Scene,
+    StepSpec,
 };
 
 use super::progress::Reporter;
@@ -32,6 +33,9 @@ pub struct SceneOptions {
     /// Values within a cell.
     #[arg(long)]
     interpolation: Option<Interpolation>,
+    /// Cells as solid bodies, or rays through the volume; by itself what shows more of the property.
+    #[arg(long)]
+    mode: Option<Mode>,
     /// Picture size, such as 1000x1000.
     #[arg(long, value_name = "WxH")]
     pub size: Option<String>,
@@ -57,16 +61,34 @@ pub struct SceneOptions {
     /// Part of the name of the GPU adapter to use.
     #[arg(long)]
     adapter: Option<String>,
+    #[command(flatten)]
+    added: AddedFiles,
+}
+
+/// Files that are added to a case.
+#[derive(clap::Args)]
+pub struct AddedFiles {
+    /// Files to add to the case: properties or faults in text, an INIT or restart of another name.
+    #[arg(long, value_name = "FILE", num_args = 1..)]
+    with: Vec<PathBuf>,
 }
 
 impl SceneOptions {
-    /// The scene in which a case opens, with the keys of the scene file over it, and the options over these.
-    pub fn scene(&self, case: &Case) -> anyhow::Result<Scene> {
+    /// The scene in which a case opens, with the keys of the scene file over it, and the options over these; says
+    /// what of it is not drawn.
+    pub fn scene(&self, case: &Case, reporter: &Reporter) -> anyhow::Result<Scene> {
         let mut written = self.written()?;
         if let Some(property) = &self.property {
             written.insert("property".into(), property.clone().into());
         }
-        self.over(look::opening(case, &written.into())?)
+        if let Some(mode) = self.mode {
+            written.insert("mode".into(), serde_json::to_value(mode)?);
+        }
+        let scene = self.over(look::opening(case, &written.into())?)?;
+        if let Some(sentence) = scene.not_drawn() {
+            reporter.note(sentence);
+        }
+        Ok(scene)
     }
 
     /// The scene of the file with plain defaults, whatever the case, and the options over it: what times of
@@ -76,6 +98,7 @@ impl SceneOptions {
         if self.property.is_some() {
             scene.property.clone_from(&self.property);
         }
+        scene.mode = self.mode.unwrap_or(scene.mode);
         self.over(scene)
     }
 
@@ -143,6 +166,11 @@ impl SceneOptions {
         Ok(())
     }
 
+    /// Opens a case with the files added to it and says what was not loaded.
+    pub fn open_case(&self, path: &Path, reporter: &Reporter) -> anyhow::Result<Case> {
+        self.added.open_case(path, reporter)
+    }
+
     /// Opens the adapter and says where it is none.
     pub fn open_gpu(&self, reporter: &Reporter) -> anyhow::Result<Arc<Gpu>> {
         let gpu = Gpu::new(self.adapter.as_deref())?;
@@ -156,13 +184,20 @@ impl SceneOptions {
     }
 }
 
+impl AddedFiles {
+    /// Opens a case with the files added to it and says what was not loaded.
+    pub fn open_case(&self, path: &Path, reporter: &Reporter) -> anyhow::Result<Case> {
+        let case = load::open_with(path, &self.with)?;
+        for note in &case.about.notes {
+            reporter.note(note);
+        }
+        Ok(case)
+    }
+}
+
 /// Opens a case and says what was not loaded.
 pub fn open_case(path: &Path, reporter: &Reporter) -> anyhow::Result<Case> {
-    let case = load::open(path)?;
-    for note in &case.about.notes {
-        reporter.note(note);
-    }
-    Ok(case)
+    AddedFiles { with: Vec::new() }.open_case(path, reporter)
 }
 
 fn lighting_preset(name: &str) -> Result<LightingSpec, String> {

@@ -1,32 +1,86 @@
-//! The grid of a case with what else its file says: EGRID or a deck.
+//! The grid of a case with what else its files say: EGRID or a deck, and text that was added.
 
 use std::path::Path;
 use std::time::Instant;
 
 use strataray_parsers::case::{CaseFiles, GridSource};
-use strataray_parsers::deck::{FaultFaces as DeckFault, Grdecl};
+use strataray_parsers::deck::{DeckCells, DeckProperty, FaultFaces as DeckFault, Grdecl};
 use strataray_parsers::egrid::{Egrid, PorosityModel};
+use strataray_parsers::units::{LengthUnit, UnitSystem};
 use strataray_parsers::{At, ParseError, Warnings};
 
-use super::slots::CellSlots;
+use super::slots::CellFlags;
 use crate::case::{About, LoadTimes, LocalGrid, NamedFault};
 use crate::model::topology::Face;
-use crate::model::{CellIndex, Dims, FaultFaces, Grid, GridInput, Ijk, MapAxes, ModelError};
+use crate::model::{
+    CellIndex, Dims, FaultFaces, Grid, GridInput, Ijk, MapAxes, MapUnit, ModelError,
+};
 
 fn model_error(path: &Path, error: &ModelError) -> ParseError {
     ParseError::new(path, At::File, "", error.to_string())
 }
 
-/// What the file of the grid gives.
+/// What the files of the grid give.
 pub struct Loaded {
     pub grid: Grid,
-    pub cells: CellSlots,
-    pub deck: Option<Grdecl>,
+    pub flags: CellFlags,
+    /// Arrays of decks and other text.
+    pub texts: Vec<DeckProperty>,
     pub connections: Vec<[Ijk; 2]>,
     pub fault_faces: FaultFaces,
+    /// What a deck's RUNSPEC says.
+    pub units: Option<UnitSystem>,
+    pub phases: i32,
+    /// MINPV.
+    pub min_pore_volume: Option<f64>,
+    pub is_deck: bool,
+    map: MapKeywords,
 }
 
-/// Reads the grid; what else its file says goes into `about`.
+/// Where a grid lies in the map, and the units, as its file says.
+struct MapKeywords {
+    axes: Option<[f64; 6]>,
+    unit: Option<String>,
+    /// GRIDUNIT.
+    length: Option<String>,
+    /// True where coordinates are map coordinates already.
+    is_map: bool,
+}
+
+impl Loaded {
+    /// Settles the length unit, from GRIDUNIT or else the results' unit system or the deck's, and with it the map axes.
+    pub fn settle_units(&mut self, results: Option<UnitSystem>, about: &mut About) -> LengthUnit {
+        let system = results.or(self.units);
+        let implied = system.map_or(LengthUnit::Metre, UnitSystem::length);
+        let named = self.map.length.as_deref().filter(|name| !name.is_empty());
+        let length = named.map_or(Some(implied), LengthUnit::from_name);
+        let length = length.unwrap_or_else(|| {
+            about.notes.push(format!(
+                "GRIDUNIT {} is not known: lengths are taken for {}",
+                named.unwrap_or_default(),
+                implied.name()
+            ));
+            implied
+        });
+        // Without MAPUNITS, and where coordinates are those of the map, everything is in one unit.
+        let map = self.map.unit.as_deref().filter(|_| !self.map.is_map);
+        let map = map.and_then(LengthUnit::from_name).unwrap_or(length);
+        let axes = self.map.axes.and_then(MapAxes::from_keyword);
+        let axes = axes.filter(|_| !self.map.is_map);
+        self.grid.set_map_axes(axes.map(|axes| match map == length {
+            true => axes,
+            false => axes.in_unit(MapUnit {
+                name: map.name(),
+                length: map.metres() / length.metres(),
+            }),
+        }));
+        about.length_unit = length.name().to_owned();
+        about.map_unit = map.name().to_owned();
+        length
+    }
+}
+
+/// Reads the grid; what else its files say goes into `about`.
 pub fn read(
     files: &CaseFiles,
     about: &mut About,
@@ -35,12 +89,13 @@ pub fn read(
     match &files.grid {
         GridSource::Egrid(path) => {
             let mut loaded = read_egrid(path, about, warnings)?;
-            if let Some(deck) = &files.deck {
-                loaded.fault_faces = deck_faults(deck, loaded.grid.dims(), about, warnings);
-            }
+            add_texts(&mut loaded, files, about, warnings)?;
             Ok(loaded)
         }
-        GridSource::Deck(path) => read_deck(path, about, warnings),
+        GridSource::Deck(path) => {
+            let deck = Grdecl::read_with(path, &files.added, warnings)?;
+            read_deck(path, deck, about)
+        }
     }
 }
 
@@ -51,25 +106,18 @@ fn read_egrid(
 ) -> Result<Loaded, ParseError> {
     let egrid = Egrid::read(path, warnings)?;
     let start = Instant::now();
-    let is_map = egrid.grid_unit.as_ref().is_some_and(|u| u.is_map);
     let grid = Grid::new(&GridInput {
         dims: dims(egrid.dims),
         coord: &egrid.coord,
         zcorn: &egrid.zcorn,
         actnum: egrid.actnum.as_deref(),
-        map_axes: egrid
-            .map_axes
-            .and_then(MapAxes::from_keyword)
-            .filter(|_| !is_map),
+        map_axes: None,
     })
     .map_err(|e| model_error(path, &e))?;
     about.load_times = LoadTimes {
         model: start.elapsed(),
     };
     about.files.push(path.to_owned());
-    about.length_unit = egrid
-        .grid_unit
-        .map_or_else(|| "METRES".into(), |u| u.length);
     about.map_axes = egrid.map_axes;
     about.nnc = egrid.nnc.len();
     about.porosity_model = match egrid.porosity_model {
@@ -99,61 +147,86 @@ fn read_egrid(
             active: l.active,
         })
         .collect();
-    let slots = CellSlots::new(&grid, egrid.actnum.as_deref(), egrid.porosity_model);
     let connections = connections(&egrid.nnc, grid.dims());
+    let unit = egrid.grid_unit;
     Ok(Loaded {
         grid,
-        cells: slots,
-        deck: None,
+        flags: CellFlags::new(egrid.actnum, egrid.coarse, egrid.porosity_model),
+        texts: Vec::new(),
         connections,
         fault_faces: FaultFaces::default(),
+        units: None,
+        phases: 0,
+        min_pore_volume: None,
+        is_deck: false,
+        map: MapKeywords {
+            axes: egrid.map_axes,
+            unit: egrid.map_units,
+            is_map: unit.as_ref().is_some_and(|u| u.is_map),
+            length: unit.map(|u| u.length),
+        },
     })
 }
 
-fn read_deck(
-    path: &Path,
-    about: &mut About,
-    warnings: &mut Warnings,
-) -> Result<Loaded, ParseError> {
-    let deck = Grdecl::read(path, warnings)?;
+fn read_deck(path: &Path, deck: Grdecl, about: &mut About) -> Result<Loaded, ParseError> {
     let start = Instant::now();
-    let is_map = deck.grid_unit.as_ref().is_some_and(|u| u.is_map);
     let grid = Grid::new(&GridInput {
         dims: dims(deck.dims),
         coord: &deck.coord,
         zcorn: &deck.zcorn,
         actnum: deck.actnum.as_deref(),
-        map_axes: deck
-            .map_axes
-            .and_then(MapAxes::from_keyword)
-            .filter(|_| !is_map),
+        map_axes: None,
     })
     .map_err(|e| model_error(path, &e))?;
     about.load_times = LoadTimes {
         model: start.elapsed(),
     };
-    about.files.extend(deck.files.iter().cloned());
-    about.length_unit = match &deck.grid_unit {
-        Some(unit) => unit.name.clone(),
-        None => "METRES".into(),
-    };
+    about.files.extend(deck.files);
     about.map_axes = deck.map_axes;
     about.porosity_model = "single".into();
     about.named_faults = named_faults(&deck.faults);
-    let slots = CellSlots::new(&grid, deck.actnum.as_deref(), PorosityModel::Single);
     let fault_faces = fault_faces(&deck.faults, &about.named_faults);
-    let deck = Grdecl {
-        coord: Vec::new(),
-        zcorn: Vec::new(),
-        ..deck
-    };
     Ok(Loaded {
         grid,
-        cells: slots,
-        deck: Some(deck),
+        flags: CellFlags::default(),
+        texts: deck.properties,
         connections: Vec::new(),
         fault_faces,
+        units: deck.unit_system,
+        phases: deck.phases,
+        min_pore_volume: deck.min_pore_volume,
+        is_deck: true,
+        map: MapKeywords {
+            axes: deck.map_axes,
+            unit: deck.map_units,
+            is_map: deck.grid_unit.as_ref().is_some_and(|u| u.is_map),
+            length: deck.grid_unit.map(|u| u.name),
+        },
     })
+}
+
+/// Faults of the deck beside an EGRID file, and all that was added by hand.
+fn add_texts(
+    loaded: &mut Loaded,
+    files: &CaseFiles,
+    about: &mut About,
+    warnings: &mut Warnings,
+) -> Result<(), ParseError> {
+    let Dims { ni, nj, nk } = loaded.grid.dims();
+    let added = DeckCells::read(&files.added, [ni, nj, nk], warnings)?;
+    about.files.extend(added.files);
+    loaded.texts = added.properties;
+    loaded.units = added.unit_system;
+    loaded.phases = added.phases;
+    let faults = match &files.deck {
+        Some(deck) if added.faults.is_empty() => {
+            deck_faults(deck, loaded.grid.dims(), about, warnings)
+        }
+        _ => added.faults,
+    };
+    about.named_faults = named_faults(&faults);
+    loaded.fault_faces = fault_faces(&faults, &about.named_faults);
+    Ok(())
 }
 
 /// Pairs of cells by their numbers in the file, which count from 1; pairs of cells outside the grid are
@@ -168,19 +241,23 @@ fn connections(pairs: &[[i32; 2]], dims: Dims) -> Vec<[Ijk; 2]> {
 }
 
 /// The named faults of a deck beside an EGRID file.
-fn deck_faults(path: &Path, dims: Dims, about: &mut About, warnings: &mut Warnings) -> FaultFaces {
+fn deck_faults(
+    path: &Path,
+    dims: Dims,
+    about: &mut About,
+    warnings: &mut Warnings,
+) -> Vec<DeckFault> {
     match Grdecl::read_faults(path, [dims.ni, dims.nj, dims.nk], warnings) {
         Ok(faults) => {
-            about.named_faults = named_faults(&faults);
             if !faults.is_empty() {
                 about.files.push(path.to_owned());
             }
-            fault_faces(&faults, &about.named_faults)
+            faults
         }
         Err(error) => {
             let note = format!("names of faults were not read: {error}");
             about.notes.push(note);
-            FaultFaces::default()
+            Vec::new()
         }
     }
 }
@@ -196,6 +273,7 @@ fn named_faults(faults: &[DeckFault]) -> Vec<NamedFault> {
             None => named.push(NamedFault {
                 name: fault.name.clone(),
                 faces,
+                multiplier: fault.multiplier,
             }),
         }
     }

@@ -1,84 +1,202 @@
-//! How cell arrays of files map to the grid's active cells.
+//! Which cells of a grid the results are for, and where in their arrays the value of each stands.
 
+use strataray_parsers::cells::CellArrays;
 use strataray_parsers::egrid::PorosityModel;
 
-use crate::model::Grid;
+use crate::model::{CellIndex, Grid};
 
 /// How cell arrays of a file map to the grid's active cells.
 pub struct CellSlots {
     /// Natural index of each active cell.
-    pub cells: Vec<u32>,
+    cells: Vec<u32>,
     /// All cells.
     total: usize,
-    /// For dual porosity: by active cell, its rank among those with an active matrix.
-    pub matrix: Option<Matrix>,
+    /// Where values stand, if not for one active cell after the other.
+    places: Option<Places>,
 }
 
-pub struct Matrix {
-    rank: Vec<Option<u32>>,
-    /// Active matrix cells, and matrix and fracture cells together.
-    pub counts: [usize; 2],
+/// Where in arrays the values of active cells stand.
+struct Places {
+    /// By active cell: number among the values of an array of active cells, and natural index of the cell that has
+    /// the value; `None` for a cell without one.
+    of: Vec<Option<(u32, u32)>>,
+    /// Values of an array of active cells.
+    count: usize,
+    /// Values of an array of all cells.
+    whole: usize,
+}
+
+/// What the grid's file says of its cells beside their activity.
+#[derive(Default)]
+pub struct CellFlags {
+    /// For dual porosity, one a cell: 1 matrix, 2 fracture, 3 both.
+    pub porosity: Option<Vec<i32>>,
+    /// Number of the coarse cell that a cell is part of, or 0.
+    pub coarse: Option<Vec<i32>>,
+}
+
+impl CellFlags {
+    /// Flags of a grid file.
+    pub fn new(actnum: Option<Vec<i32>>, coarse: Option<Vec<i32>>, model: PorosityModel) -> Self {
+        Self {
+            porosity: actnum.filter(|_| model != PorosityModel::Single),
+            coarse: coarse.filter(|numbers| numbers.iter().any(|&number| number > 0)),
+        }
+    }
+}
+
+/// What results say of the cells that they are for.
+pub struct ResultCells<'a> {
+    /// Active cells (INTEHEAD); `None` where unknown.
+    pub active: Option<usize>,
+    /// The INIT file.
+    pub init: Option<&'a CellArrays>,
+}
+
+impl ResultCells<'_> {
+    /// Which of all cells have pore volume, if PORV says so of as many as are active.
+    fn with_pore_volume(&self, total: usize) -> Option<Vec<bool>> {
+        let init = self.init?;
+        let entry = init.find("PORV").filter(|e| e.count as usize == total)?;
+        let volumes = init.values(entry).ok()?;
+        let has: Vec<bool> = volumes.iter().map(|v| *v > 0.0).collect();
+        (Some(has.iter().filter(|has| **has).count()) == self.active).then_some(has)
+    }
 }
 
 impl CellSlots {
-    pub fn new(grid: &Grid, actnum: Option<&[i32]>, model: PorosityModel) -> Self {
-        let cells: Vec<u32> = grid.active_cells().iter().map(|c| c.0).collect();
-        let matrix = actnum
-            .filter(|_| model != PorosityModel::Single)
-            .map(|actnum| {
-                let mut counts = [0, 0];
-                let rank = cells.iter().map(|&c| {
-                    let flags = actnum[c as usize];
-                    counts[1] += usize::from(flags & 2 != 0);
-                    (flags & 1 != 0).then(|| {
-                        counts[0] += 1;
-                        counts[0] as u32 - 1
-                    })
-                });
-                let rank = rank.collect();
-                Matrix {
-                    rank,
-                    counts: [counts[0], counts[0] + counts[1]],
-                }
-            });
-        Self {
-            cells,
-            total: grid.dims().cells(),
-            matrix,
+    /// Finds the cells that results are for. Where they are for fewer cells than are active in the grid, those without
+    /// pore volume become inactive. What was done about it goes into `notes`.
+    pub fn new(
+        grid: &mut Grid,
+        flags: &CellFlags,
+        results: &ResultCells<'_>,
+        notes: &mut Vec<String>,
+    ) -> Self {
+        let total = grid.dims().cells();
+        let active = grid.active_cells().len();
+        let places = match (&flags.porosity, &flags.coarse) {
+            (Some(porosity), _) => Some(Places::of_matrix(grid, porosity)),
+            (None, Some(coarse)) => {
+                let coarsened = Places::of_coarse(grid, coarse, results);
+                notes.push(coarsened.note(coarse));
+                Some(coarsened)
+            }
+            (None, None) => None,
+        };
+        let differs = results.active.is_some_and(|count| count != active);
+        if places.is_none()
+            && differs
+            && let Some(has) = results.with_pore_volume(total)
+        {
+            grid.retain_active(|cell| has[cell.0 as usize]);
+            let left = grid.active_cells().len();
+            notes.push(format!(
+                "the grid has {active} active cells and the results {left}: cells without pore volume (PORV of INIT) are inactive"
+            ));
         }
+        Self {
+            cells: grid.active_cells().iter().map(|c| c.0).collect(),
+            total,
+            places,
+        }
+    }
+
+    /// Values of an array of active cells.
+    pub fn count(&self) -> usize {
+        self.places.as_ref().map_or(self.cells.len(), |p| p.count)
+    }
+
+    /// True where an INTEHEAD with this number of active cells belongs to the grid.
+    pub fn are_as_many(&self, active: usize) -> bool {
+        active == self.count() || active == self.cells.len()
     }
 
     /// True where an array of this length has a value for each active cell.
     pub fn fits(&self, count: usize) -> bool {
-        let dual = self
-            .matrix
-            .as_ref()
-            .is_some_and(|m| m.counts[1] == count || count == 2 * self.total);
-        dual || count == self.total || count == self.cells.len() && self.matrix.is_none()
+        let whole = self.places.as_ref().is_some_and(|p| p.whole == count);
+        whole || count == self.total || count == self.count()
     }
 
     /// The values of the active cells from an array that fits.
     pub fn pick(&self, values: &[f32]) -> Vec<f32> {
-        match &self.matrix {
-            Some(m) if values.len() == m.counts[1] => m
-                .rank
-                .iter()
-                .map(|r| r.map_or(f32::NAN, |r| values[r as usize]))
-                .collect(),
-            Some(m) => m
-                .rank
-                .iter()
-                .zip(&self.cells)
-                .map(|(r, &c)| {
-                    if r.is_some() {
-                        values[c as usize]
-                    } else {
-                        f32::NAN
-                    }
-                })
-                .collect(),
+        match &self.places {
+            Some(places) => {
+                let by_rank = values.len() == places.count;
+                let value =
+                    |(rank, cell): (u32, u32)| values[if by_rank { rank } else { cell } as usize];
+                let places = places.of.iter();
+                places.map(|place| place.map_or(f32::NAN, value)).collect()
+            }
             None if values.len() == self.cells.len() => values.to_vec(),
             None => self.cells.iter().map(|&c| values[c as usize]).collect(),
         }
+    }
+}
+
+impl Places {
+    /// Of the matrix, whose values come before those of the fractures.
+    fn of_matrix(grid: &Grid, porosity: &[i32]) -> Self {
+        let (mut matrix, mut fractures) = (0, 0);
+        let of = grid.active_cells().iter().map(|cell| {
+            let flags = porosity[cell.0 as usize];
+            fractures += usize::from(flags & 2 != 0);
+            (flags & 1 != 0).then(|| {
+                matrix += 1;
+                (matrix - 1, cell.0)
+            })
+        });
+        let of = of.collect();
+        Self {
+            of,
+            count: matrix as usize + fractures,
+            whole: 2 * grid.dims().cells(),
+        }
+    }
+
+    /// Of cells that were made into coarse ones: all cells of a coarse one have the value of the one that stands for
+    /// it, which has the pore volume, else the first one.
+    fn of_coarse(grid: &Grid, coarse: &[i32], results: &ResultCells<'_>) -> Self {
+        let total = grid.dims().cells();
+        let has_volume = results.with_pore_volume(total);
+        let mut standing: std::collections::HashMap<i32, (u32, u32)> = Default::default();
+        let mut count = 0;
+        let mut own: Vec<Option<(u32, u32)>> = Vec::with_capacity(grid.active_cells().len());
+        for &CellIndex(cell) in grid.active_cells() {
+            let number = coarse[cell as usize];
+            let stands = match &has_volume {
+                Some(has) => has[cell as usize],
+                None => number == 0 || !standing.contains_key(&number),
+            };
+            own.push(stands.then(|| {
+                count += 1;
+                (count - 1, cell)
+            }));
+            if let Some(Some(place)) = own.last()
+                && number > 0
+            {
+                standing.insert(number, *place);
+            }
+        }
+        let cells = grid.active_cells().iter().zip(&own);
+        let of = cells.map(|(cell, own)| {
+            let number = coarse[cell.0 as usize];
+            own.or_else(|| standing.get(&number).copied())
+        });
+        Self {
+            of: of.collect(),
+            count: count as usize,
+            whole: total,
+        }
+    }
+
+    fn note(&self, coarse: &[i32]) -> String {
+        let fine = coarse.iter().filter(|number| **number > 0);
+        let numbers: std::collections::HashSet<_> = fine.clone().collect();
+        format!(
+            "CORSNUM: {} cells are coarsened to {}; each shows the value of its coarse cell, also of PORV",
+            fine.count(),
+            numbers.len()
+        )
     }
 }

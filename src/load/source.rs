@@ -2,77 +2,202 @@
 
 use std::path::Path;
 
+use strataray_parsers::arrays::is_cell_array;
 use strataray_parsers::cells::CellArrays;
-use strataray_parsers::deck::Grdecl;
-use strataray_parsers::records::Entry;
+use strataray_parsers::deck::DeckProperty;
+use strataray_parsers::records::{Entry, Kind};
 use strataray_parsers::restart::Step as FileStep;
-use strataray_parsers::units::UnitSystem;
 use strataray_parsers::{At, ParseError};
 
 use super::slots::CellSlots;
-use crate::case::{CaseError, Source};
+use crate::case::{About, CaseError, Source};
 
-/// Arrays of cell count that are no properties: solver and well bookkeeping.
-const NOT_PROPERTIES: [&str; 3] = ["ACTNUM", "SEQNUM", "INTEHEAD"];
+/// Arrays that are no properties, though there may be as many values as cells: heads, wells, groups, connections.
+const NOT_PROPERTIES: &[&str] = &[
+    "ACTNUM", "SEQNUM", "INTEHEAD", "DOUBHEAD", "TABDIMS", "TAB", "CON", "REGDIMS", "IGRP", "SGRP",
+    "XGRP", "IWEL", "SWEL", "XWEL", "ICON", "SCON", "XCON", "ISEG", "RSEG", "ILBS", "ILBR",
+    "DLYTIM", "THRESHPR", "TRANNNC", "TRANGL", "TRANLL", "TRANNLL", "DIFFNNC", "HEATNNC",
+];
 
 /// Values from the case's files, decoded when asked for.
 pub struct FileSource {
     pub cells: CellSlots,
     pub init: Option<CellArrays>,
     pub steps: Vec<FileStep>,
-    pub deck: Option<Grdecl>,
+    /// Arrays of decks and other text.
+    pub texts: Vec<DeckProperty>,
 }
 
 impl FileSource {
+    /// Takes the results that are of this grid; what is of another one becomes a note.
+    pub fn take_fitting(
+        &mut self,
+        init: Option<CellArrays>,
+        steps: Vec<FileStep>,
+        about: &mut About,
+    ) {
+        if let Some(init) = init {
+            match self.check(&init, init.file().path()) {
+                Ok(()) => {
+                    about.files.push(init.file().path().to_owned());
+                    self.init = Some(init);
+                }
+                Err(error) => about.notes.push(format!("INIT was not loaded: {error}")),
+            }
+        }
+        let first = steps.first().map(|s| &s.arrays);
+        match first.map_or(Ok(()), |a| self.check(a, a.file().path())) {
+            Ok(()) => {
+                let read = steps.iter().map(|s| s.arrays.file().path().to_owned());
+                about.files.extend(read);
+                about.files.dedup();
+                self.steps = steps;
+            }
+            Err(error) => about
+                .notes
+                .push(format!("time steps were not loaded: {error}")),
+        }
+    }
+
     /// Refuses results of another grid.
-    pub fn check(&self, arrays: &CellArrays, path: &Path) -> Result<(), ParseError> {
-        let head = arrays.head()?;
-        let expected = self
-            .cells
-            .matrix
-            .as_ref()
-            .map_or(self.cells.cells.len(), |m| m.counts[1]);
-        let active = usize::try_from(head.active).unwrap_or(0);
-        if active == 0 || active == expected || active == self.cells.cells.len() {
+    fn check(&self, arrays: &CellArrays, path: &Path) -> Result<(), ParseError> {
+        let active = usize::try_from(arrays.head()?.active).unwrap_or(0);
+        if active == 0 || self.cells.are_as_many(active) {
             return Ok(());
         }
         let message = format!(
-            "has {active} active cells and the grid {expected}; it belongs to another grid"
+            "has {active} active cells and the grid {}; it belongs to another grid",
+            self.cells.count()
         );
         Err(ParseError::new(path, At::File, "INTEHEAD", message))
     }
 
     fn arrays(&self, name: &str, step: usize) -> Option<&CellArrays> {
-        let holds = |a: &&CellArrays| a.find(name).is_some_and(|e| self.is_property(e));
-        self.steps
-            .get(step)
-            .map(|s| &s.arrays)
-            .filter(holds)
-            .or_else(|| self.init.as_ref().filter(holds))
+        let arrays = self.steps.get(step).map(|s| &s.arrays);
+        arrays.filter(|a| self.holds(a, name)).or_else(|| {
+            let init = self.init.as_ref();
+            init.filter(|a| self.holds(a, name))
+        })
     }
 
+    fn holds(&self, arrays: &CellArrays, name: &str) -> bool {
+        arrays.find(name).is_some_and(|e| self.is_property(e))
+    }
+
+    /// True where a step has the property.
+    pub fn changes(&self, name: &str) -> bool {
+        self.steps.iter().any(|s| self.holds(&s.arrays, name))
+    }
+
+    /// True where an array has one value a cell.
     pub fn is_property(&self, entry: &Entry) -> bool {
         entry.is_numeric()
             && self.cells.fits(entry.count as usize)
             && !NOT_PROPERTIES.contains(&entry.name())
     }
 
-    pub fn units(&self) -> Option<UnitSystem> {
-        let heads = self
-            .init
-            .iter()
-            .chain(self.steps.first().map(|s| &s.arrays));
-        heads.filter_map(|a| a.head().ok()?.units).next()
+    /// The properties of a step. Beside its solution (STARTSOL to ENDSOL, where marked) stand lists of other things,
+    /// of which whole and double numbers are no properties, unless they are known to be.
+    pub fn properties_of<'a>(&self, arrays: &'a CellArrays) -> Vec<&'a Entry> {
+        let mut is_solution = arrays.find("STARTSOL").is_none();
+        let mut found = Vec::new();
+        for entry in arrays.iter() {
+            match entry.name() {
+                "STARTSOL" => is_solution = true,
+                "ENDSOL" => is_solution = false,
+                name => {
+                    let may_be = is_solution || entry.kind == Kind::Real || is_cell_array(name);
+                    found.extend((may_be && self.is_property(entry)).then_some(entry));
+                }
+            }
+        }
+        found
+    }
+
+    /// One sentence for each array that should have one value a cell and has another number of them.
+    pub fn misfits(&self) -> Vec<String> {
+        let mut found: Vec<Misfit<'_>> = Vec::new();
+        let mut note = |arrays: &CellArrays, step: Option<usize>, entry: &Entry| {
+            let known = found.iter_mut().find(|m| {
+                m.name == entry.name()
+                    && m.count == entry.count
+                    && m.step.is_some() == step.is_some()
+            });
+            match known {
+                Some(known) => known.more += 1,
+                None => found.push(Misfit {
+                    file: arrays.file().path().display().to_string(),
+                    name: entry.name().to_owned(),
+                    count: entry.count,
+                    step,
+                    more: 0,
+                    expected: &self.cells,
+                }),
+            }
+        };
+        if let Some(init) = &self.init {
+            let known = init.iter().filter(|e| is_cell_array(e.name()));
+            for entry in known.filter(|e| self.is_misfit(e)) {
+                note(init, None, entry);
+            }
+        }
+        for (n, step) in self.steps.iter().enumerate() {
+            let mut is_solution = false;
+            for entry in step.arrays.iter() {
+                match entry.name() {
+                    "STARTSOL" => is_solution = true,
+                    "ENDSOL" => is_solution = false,
+                    name => {
+                        let is_cells = is_solution && entry.kind == Kind::Real;
+                        if (is_cells || is_cell_array(name)) && self.is_misfit(entry) {
+                            note(&step.arrays, Some(n), entry);
+                        }
+                    }
+                }
+            }
+        }
+        found.iter().map(ToString::to_string).collect()
+    }
+
+    fn is_misfit(&self, entry: &Entry) -> bool {
+        entry.is_numeric() && entry.count > 0 && !self.cells.fits(entry.count as usize)
+    }
+}
+
+/// An array with another number of values than there are cells.
+struct Misfit<'a> {
+    file: String,
+    name: String,
+    count: u64,
+    /// The first step where it is so; `None` in INIT.
+    step: Option<usize>,
+    /// Further steps.
+    more: usize,
+    expected: &'a CellSlots,
+}
+
+impl std::fmt::Display for Misfit<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}: {}", self.file, self.name)?;
+        if let Some(step) = self.step {
+            write!(f, " of step {step}")?;
+        }
+        if self.more > 0 {
+            write!(f, " and {} further steps", self.more)?;
+        }
+        write!(
+            f,
+            " has {} values for {} active cells: it was left out",
+            self.count,
+            self.expected.count()
+        )
     }
 }
 
 impl Source for FileSource {
     fn values(&self, name: &str, step: usize) -> Result<Option<Vec<f32>>, CaseError> {
-        if let Some(property) = self
-            .deck
-            .as_ref()
-            .and_then(|d| d.properties.iter().find(|p| p.name == name))
-        {
+        let text = self.texts.iter().find(|p| p.name == name);
+        if let Some(property) = text.filter(|_| !self.changes(name)) {
             let values: Vec<f32> = property.values.iter().map(|v| *v as f32).collect();
             return Ok(Some(self.cells.pick(&values)));
         }

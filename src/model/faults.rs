@@ -47,6 +47,11 @@ impl FaultFaces {
         })
     }
 
+    /// True without any face.
+    pub fn is_empty(&self) -> bool {
+        self.faces.is_empty()
+    }
+
     /// Number of the fault that a face of a cell lies on.
     pub fn fault_of(&self, cell: Ijk, face: Face) -> Option<usize> {
         let layers = self.faces.get(&key(cell.i, cell.j, face)?)?;

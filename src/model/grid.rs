@@ -210,6 +210,20 @@ impl Grid {
         }
     }
 
+    /// Makes all cells inactive that `keep` does not hold for.
+    pub fn retain_active(&mut self, keep: impl Fn(CellIndex) -> bool) {
+        self.active_cells.retain(|&cell| keep(cell));
+        self.active_rank.fill(INACTIVE);
+        for (rank, cell) in self.active_cells.iter().enumerate() {
+            self.active_rank[cell.0 as usize] = rank as u32;
+        }
+    }
+
+    /// Sets the map coordinate system.
+    pub fn set_map_axes(&mut self, map_axes: Option<MapAxes>) {
+        self.map_axes = map_axes;
+    }
+
     /// The four depth lists of a column (`i + ni * j`), by corner `di + 2 dj`.
     pub fn column_lists(&self, column: usize) -> [DepthList; 4] {
         let at = 4 * column;

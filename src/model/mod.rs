@@ -18,5 +18,5 @@ pub use faults::FaultFaces;
 pub use fields::{CellField, Statistics, VertexField};
 pub use grid::{Grid, GridInput, ModelError, Pillar};
 pub use ids::{ActiveIndex, CellIndex, Dims, Ijk};
-pub use spaces::{MapAxes, Spaces};
+pub use spaces::{MapAxes, MapUnit, Spaces};
 pub use summary::Summary;

@@ -2,6 +2,7 @@
 
 use rayon::prelude::*;
 
+use super::faults::FaultFaces;
 use super::grid::Grid;
 use super::ids::Ijk;
 
@@ -120,11 +121,15 @@ impl Grid {
     }
 
     /// The lateral faces of the cells that `drawn` (by active index) names behind which an active cell
-    /// of equal k is displaced. A face between two drawn cells is there twice, once for each.
-    pub fn fault_faces_of(&self, drawn: &[bool]) -> Vec<(Ijk, Face)> {
+    /// of equal k is displaced, and those that lie on a named fault, whatever its throw. A face between
+    /// two drawn cells is there twice, once for each.
+    pub fn fault_faces_of(&self, drawn: &[bool], named: &FaultFaces) -> Vec<(Ijk, Face)> {
         let is_lateral = |face: Face| !matches!(face, Face::KMinus | Face::KPlus);
+        let has_name =
+            |ijk: Ijk, face: Face| !named.is_empty() && named.fault_of(ijk, face).is_some();
         self.faces_where(drawn, |ijk, face| {
-            is_lateral(face) && matches!(self.behind(ijk, face), Behind::Displaced(_))
+            let is_displaced = matches!(self.behind(ijk, face), Behind::Displaced(_));
+            is_lateral(face) && (is_displaced || has_name(ijk, face))
         })
     }
 

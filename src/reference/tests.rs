@@ -439,6 +439,7 @@ fn picture_does_not_depend_on_where_the_model_is_nor_on_its_axes() {
             origin: DVec2::new(460_000.0, 5_930_000.0),
             ex: DVec2::X,
             ey: DVec2::Y,
+            unit: None,
         }),
         ..Shape::default()
     }
@@ -457,6 +458,7 @@ fn picture_does_not_depend_on_where_the_model_is_nor_on_its_axes() {
             origin: DVec2::ZERO,
             ex: DVec2::X,
             ey: -DVec2::Y,
+            unit: None,
         }),
         ..Shape::default()
     }

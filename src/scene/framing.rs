@@ -477,6 +477,7 @@ mod tests {
                 origin: DVec2::new(460_000.0, 5_930_000.0),
                 ex,
                 ey: ex.perp(),
+                unit: None,
             }),
         })
         .unwrap()

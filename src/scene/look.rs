@@ -6,7 +6,7 @@ use serde_json::Value;
 
 use super::resolve::{SceneError, default_property};
 use super::{
-    ColorSpec, Coloring, Integration, Interpolation, LibcSettings, LightingSpec, OpacitySpec,
+    ColorSpec, Coloring, Integration, Interpolation, LibcSettings, LightingSpec, Mode, OpacitySpec,
     RangeSpec, ScaleSpec, Scene, TransferSpec,
 };
 use crate::case::{Case, Categories, Kind, ValueRange};
@@ -180,6 +180,24 @@ fn difference(case: &Case, property: &str) -> Look {
     Look::new(range, "coolwarm")
 }
 
+/// Cells that a model needs to have an inside worth looking into.
+const FEW: usize = 2000;
+
+/// The mode that shows more of a property: into the volume where it changes with time and the model has an inside,
+/// cells where that hides what faces show at once: regions, constant and static properties, small models and
+/// sections of one cell.
+pub fn opening_mode(case: &Case, property: &str) -> Mode {
+    let dims = case.grid.dims();
+    let is_small = case.grid.active_cells().len() < FEW;
+    let is_section = [dims.ni, dims.nj, dims.nk].contains(&1);
+    let of_regions = Quantity::of(property) == Quantity::Region;
+    let is_plain = !case.is_dynamic(property) || of_regions || constant(case, property).is_some();
+    match is_small || is_section || is_plain {
+        true => Mode::Cells,
+        false => Mode::Volume,
+    }
+}
+
 /// Ground of a picture that is not taken for a hole, nor for a color of the values.
 const GROUND: &str = "#e9ebee";
 
@@ -199,6 +217,11 @@ pub fn opening(case: &Case, written: &Value) -> Result<Scene, SceneError> {
         },
         lighting: LightingSpec::preset("soft").unwrap_or_default(),
         background: GROUND.into(),
+        mode: match written.get("mode") {
+            // Laid over below.
+            Some(_) => Mode::default(),
+            None => opening_mode(case, &property),
+        },
         ..Scene::default()
     };
     look_of(case, &property).apply(&mut scene);

@@ -111,6 +111,15 @@ impl Default for Scene {
     }
 }
 
+impl Scene {
+    /// One sentence where the scene asks for something that is not drawn yet.
+    pub fn not_drawn(&self) -> Option<&'static str> {
+        let sentence =
+            "the scene asks for wells (\"show\": {\"wells\": true}), which are not drawn yet";
+        self.show.wells.then_some(sentence)
+    }
+}
+
 /// A camera in world coordinates, or one that frames what is drawn.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
@@ -272,7 +281,7 @@ pub struct Show {
     pub faults: ShownFaults,
     /// Lines between the cells of non-neighbor connections.
     pub nnc: bool,
-    /// Wells.
+    /// Wells; not drawn yet, see [`Scene::not_drawn`].
     pub wells: bool,
     /// Edges of the cells on hull, faults and opaque sections; where absent they are drawn in the mode `cells`.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -292,7 +301,7 @@ impl Default for Show {
             hull: Hull::Hidden,
             faults: ShownFaults::All(false),
             nnc: false,
-            wells: true,
+            wells: false,
             cell_edges: None,
             r#box: true,
             legend: true,

@@ -201,10 +201,11 @@ impl View {
     }
 
     /// The fault faces of the drawn cells of `grid` (the case's) that the view shows, with the fault's number
-    /// where it has a name.
+    /// where it has a name; those of named faults are there whatever their throw.
     pub fn fault_faces(&self, grid: &Grid) -> Vec<(Ijk, Face, Option<usize>)> {
-        let faces = grid.fault_faces_of(&self.drawn_active(grid)).into_iter();
+        let faces = grid.fault_faces_of(&self.drawn_active(grid), &self.named_faults);
         faces
+            .into_iter()
             .map(|(cell, face)| (cell, face, self.named_faults.fault_of(cell, face)))
             .filter(|(.., fault)| self.shows_fault(*fault))
             .collect()

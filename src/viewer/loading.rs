@@ -39,7 +39,7 @@ impl Loading {
                 wake();
                 !shared_cancel.load(Ordering::Relaxed)
             };
-            let case = match load::open_with(&path, &progress) {
+            let case = match load::open_reporting(&path, &[], &progress) {
                 Ok(Some(case)) => {
                     progress("values");
                     let first = look::opening(&case, &serde_json::Value::default());

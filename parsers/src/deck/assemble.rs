@@ -1,37 +1,38 @@
 //! The second step: with the dimensions known, turns the arrays into numbers and checks their lengths.
 
-use std::collections::HashMap;
 use std::path::Path;
 
 use rayon::prelude::*;
 
 use super::array::{Rule, Runs, runs};
+use super::cells::{CellArray, CellArrays};
+use super::edit::{Edit, Place, cells_of};
 use super::lexer::{Mistake, keyword};
-use super::scan::{Block, Found, product_text};
-use super::skip::{is_common_property, is_read};
-use super::{DeckProperty, FaultFaces, Grdecl, faults};
+use super::scan::{Block, DepthShift, Found, product_text};
+use super::skip::is_read;
+use super::{DeckCells, FaultFaces, Grdecl, GridUnit, blocks, faults};
+use crate::arrays::is_table;
+use crate::egrid::Egrid;
 use crate::error::{At, ParseError, Warnings};
 
 /// Every value must be there and be a finite number.
-const GEOMETRY: Rule = Rule {
+pub(super) const GEOMETRY: Rule = Rule {
     default: None,
     undefined: None,
 };
 /// Left out or undefined values become NaN.
-const PROPERTY: Rule = Rule {
+pub(super) const PROPERTY: Rule = Rule {
     default: Some(f64::NAN),
     undefined: Some(f64::NAN),
 };
 /// A cell is active where nothing else is said.
-const ACTIVITY: Rule = Rule {
+pub(super) const ACTIVITY: Rule = Rule {
     default: Some(1.0),
     undefined: None,
 };
 
 /// Most cells for each byte of text; a deck needs some text for each column and each layer.
 const MOST_CELLS_A_BYTE: usize = 1000;
-/// A one-record keyword with more values than this and half a value a cell is taken for a property gone wrong.
-const PROPERTY_LIKE: usize = 1000;
 
 /// Builds the grid of what the scan found in the deck at `path`.
 pub(super) fn assemble(
@@ -39,43 +40,137 @@ pub(super) fn assemble(
     mut found: Found,
     warnings: &mut Warnings,
 ) -> Result<Grdecl, ParseError> {
-    let (Some(dims), Some(coord), Some(zcorn)) = (found.dims, &found.coord, &found.zcorn) else {
+    let file = named_grid(&mut found, warnings)?;
+    let Some(dims) = found.dims else {
         return Err(swallowed(&found).unwrap_or_else(|| missing(path, &found)));
     };
-    let [ni, nj, nk] = dims;
-    let cells = ni * nj * nk;
-    if cells / MOST_CELLS_A_BYTE > found.bytes {
-        let message = format!(
-            "{} cells cannot be described by {} bytes of text",
-            product_text(dims),
-            found.bytes
-        );
-        return Err(ParseError::new(path, At::File, "SPECGRID", message));
+    let cells = checked_cells(path, dims, found.bytes, file.is_some())?;
+    let corners = match (&found.coord, &found.zcorn, file) {
+        (Some(coord), Some(zcorn), _) => {
+            let pillars = (dims[0] + 1).saturating_mul(dims[1] + 1);
+            let coord = array(coord, GEOMETRY, pillars.saturating_mul(6))?;
+            Some([coord, array(zcorn, GEOMETRY, cells.saturating_mul(8))?])
+        }
+        (_, _, Some(corners)) => Some(corners),
+        _ => None,
+    };
+    let vectors = std::mem::take(&mut found.vectors);
+    let mut arrays = CellArrays::play(&mut found, dims, warnings)?;
+    let [coord, mut zcorn] = match corners {
+        Some(corners) => corners,
+        None if found.radial || !blocks::are_given(&arrays, &vectors) => {
+            return Err(swallowed(&found).unwrap_or_else(|| missing(path, &found)));
+        }
+        None => blocks::corner_points(path, dims, &mut arrays, &vectors, warnings)?,
+    };
+    for shift in &found.depth_shifts {
+        shift_depths(&mut zcorn, dims, shift, warnings);
     }
-    let pillars = (ni + 1).saturating_mul(nj + 1);
-    let coord = array(coord, GEOMETRY, pillars.saturating_mul(6))?;
-    let zcorn = array(zcorn, GEOMETRY, cells.saturating_mul(8))?;
-    let actnum = found
-        .actnum
-        .take()
-        .map(|block| activity(&block, cells))
-        .transpose()?;
-    let properties = properties(std::mem::take(&mut found.candidates), cells, warnings)?;
-    let faults = inside(std::mem::take(&mut found.faults), dims, warnings);
+    let actnum = arrays.take("ACTNUM");
+    let actnum = actnum.map(|array| activity(&array)).transpose()?;
     Ok(Grdecl {
         dims,
         coord,
         zcorn,
-        actnum,
+        actnum: actnum.or(found.file_actnum.take()),
         map_axes: found.map_axes,
-        map_units: found.map_units,
-        grid_unit: found.grid_unit,
-        gdorient: found.gdorient,
+        map_units: found.map_units.take(),
+        grid_unit: found.grid_unit.take(),
+        gdorient: found.gdorient.take(),
         unit_system: found.unit_system,
-        properties,
-        faults,
+        phases: found.phases,
+        min_pore_volume: found.min_pore_volume,
+        properties: arrays.into_properties(),
+        faults: inside(&mut found, dims, warnings),
         files: found.files,
     })
+}
+
+/// What the decks say of the cells of a grid that was read from elsewhere.
+pub(super) fn cells(
+    mut found: Found,
+    dims: [usize; 3],
+    warnings: &mut Warnings,
+) -> Result<DeckCells, ParseError> {
+    let mut arrays = CellArrays::play(&mut found, dims, warnings)?;
+    arrays.take("ACTNUM");
+    Ok(DeckCells {
+        properties: arrays.into_properties(),
+        faults: inside(&mut found, dims, warnings),
+        unit_system: found.unit_system,
+        phases: found.phases,
+        files: found.files,
+    })
+}
+
+/// Pillars and depths of the binary file that GDFILE names; what else it says completes `found`.
+fn named_grid(
+    found: &mut Found,
+    warnings: &mut Warnings,
+) -> Result<Option<[Vec<f64>; 2]>, ParseError> {
+    let Some((place, path)) = found.grid_file.take() else {
+        return Ok(None);
+    };
+    if found.coord.is_some() && found.zcorn.is_some() {
+        place.warn(warnings, "GDFILE is not read: the deck has COORD and ZCORN");
+        return Ok(None);
+    }
+    let read = Egrid::read(&path, warnings);
+    let grid = read.map_err(|error| {
+        let message = format!("its grid cannot be read: {error}");
+        place.source.error(place.at, &place.keyword, message)
+    })?;
+    if let Some(dims) = found.dims.filter(|dims| *dims != grid.dims) {
+        let message = format!(
+            "the deck has {} cells and {} has {}",
+            product_text(dims),
+            path.display(),
+            product_text(grid.dims)
+        );
+        return Err(place.source.error(place.at, &place.keyword, message));
+    }
+    found.dims = Some(grid.dims);
+    found.file_actnum = grid.actnum;
+    found.map_axes = found.map_axes.or(grid.map_axes);
+    found.map_units = found.map_units.take().or(grid.map_units);
+    let unit = grid.grid_unit.map(|unit| GridUnit {
+        name: unit.length,
+        is_map: unit.is_map,
+    });
+    found.grid_unit = found.grid_unit.take().or(unit);
+    found.files.push(path);
+    let wide = |values: Vec<f32>| values.into_par_iter().map(f64::from).collect();
+    Ok(Some([wide(grid.coord), wide(grid.zcorn)]))
+}
+
+/// The number of cells, where the text can be of so many.
+fn checked_cells(
+    path: &Path,
+    dims: [usize; 3],
+    bytes: usize,
+    has_file: bool,
+) -> Result<usize, ParseError> {
+    let cells = dims.iter().product();
+    if !has_file && cells / MOST_CELLS_A_BYTE > bytes {
+        let message = format!(
+            "{} cells cannot be described by {bytes} bytes of text",
+            product_text(dims)
+        );
+        return Err(ParseError::new(path, At::File, "SPECGRID", message));
+    }
+    Ok(cells)
+}
+
+/// Applies a record of ADDZCORN: all corners of the cells in its box.
+fn shift_depths(zcorn: &mut [f64], dims: [usize; 3], shift: &DepthShift, warnings: &mut Warnings) {
+    let Some(ranges) = shift.cells.ranges(dims) else {
+        let message = "ADDZCORN is not applied: its box is outside the grid";
+        return shift.place.warn(warnings, message);
+    };
+    let twice = |range: std::ops::Range<usize>| 2 * range.start..2 * range.end;
+    for corner in cells_of(ranges.map(twice), dims.map(|n| 2 * n)) {
+        zcorn[corner] += shift.value;
+    }
 }
 
 /// The sentence that names what a grid needs and the deck does not give.
@@ -90,20 +185,34 @@ fn missing(path: &Path, found: &Found) -> ParseError {
         .filter(|part| part.1)
         .map(|part| part.0)
         .collect();
-    let message = if found.block_centered && found.zcorn.is_none() {
-        "the grid is given by DX, DY, DZ and TOPS; only corner-point grids (COORD, ZCORN) \
-         are read from text; run the simulator and open the EGRID"
+    let names = found.edits.iter().filter_map(|edit| match edit {
+        Edit::Given(block, _) => Some(block.name.as_str()).filter(|name| !is_table(name)),
+        _ => None,
+    });
+    let faults = (!found.faults.is_empty()).then_some("FAULTS");
+    let names: Vec<_> = names.take(3).chain(faults).collect();
+    let message = if found.radial {
+        "the grid is radial; only Cartesian grids are read from text: run the simulator and open the EGRID"
             .to_owned()
+    } else if absent.len() == parts.len() && !names.is_empty() {
+        format!(
+            "has {} but no grid: open the grid's file and add this one (--with)",
+            names.join(", ")
+        )
     } else {
-        format!("no corner-point grid: {} missing", absent.join(" and "))
+        format!("no grid: {} missing", absent.join(" and "))
     };
     ParseError::new(path, At::File, "", message)
 }
 
 /// The array without a closing `/` that took a missing keyword for its own data, if there is one.
 fn swallowed(found: &Found) -> Option<ParseError> {
-    let arrays = [&found.coord, &found.zcorn, &found.actnum];
-    let blocks = arrays.into_iter().flatten().chain(&found.candidates);
+    let given = found.edits.iter().filter_map(|edit| match edit {
+        Edit::Given(block, _) => Some(block),
+        _ => None,
+    });
+    let arrays = [&found.coord, &found.zcorn];
+    let blocks = arrays.into_iter().flatten().chain(given);
     blocks.into_iter().find_map(|block| {
         let mistake = numbers(block, PROPERTY).err()?;
         is_swallowed_keyword(block, &mistake).then(|| error(block, mistake))
@@ -111,17 +220,17 @@ fn swallowed(found: &Found) -> Option<ParseError> {
 }
 
 /// Reads an array that must have `expected` values.
-fn array(block: &Block, rule: Rule, expected: usize) -> Result<Vec<f64>, ParseError> {
+pub(super) fn array(block: &Block, rule: Rule, expected: usize) -> Result<Vec<f64>, ParseError> {
     let runs = numbers(block, rule).map_err(|mistake| error(block, mistake))?;
     expand(block, runs, expected)
 }
 
-fn numbers(block: &Block, rule: Rule) -> Result<Runs, Mistake> {
+pub(super) fn numbers(block: &Block, rule: Rule) -> Result<Runs, Mistake> {
     let start = block.data.start;
     runs(&block.source.text()[block.data.clone()], rule).map_err(|mistake| mistake.moved(start))
 }
 
-fn expand(block: &Block, runs: Runs, expected: usize) -> Result<Vec<f64>, ParseError> {
+pub(super) fn expand(block: &Block, runs: Runs, expected: usize) -> Result<Vec<f64>, ParseError> {
     let failed = |message| block.source.error(block.data.end, &block.name, message);
     if runs.count != expected {
         return Err(failed(format!(
@@ -134,7 +243,7 @@ fn expand(block: &Block, runs: Runs, expected: usize) -> Result<Vec<f64>, ParseE
 }
 
 /// Names the place of `mistake`, and the missing slash where a keyword stands there.
-fn error(block: &Block, mut mistake: Mistake) -> ParseError {
+pub(super) fn error(block: &Block, mut mistake: Mistake) -> ParseError {
     if is_swallowed_keyword(block, &mistake) {
         mistake.message = format!(
             "{}; is the closing / of {} missing?",
@@ -144,13 +253,13 @@ fn error(block: &Block, mut mistake: Mistake) -> ParseError {
     block.source.mistake(&block.name, mistake)
 }
 
-fn is_swallowed_keyword(block: &Block, mistake: &Mistake) -> bool {
+pub(super) fn is_swallowed_keyword(block: &Block, mistake: &Mistake) -> bool {
     keyword(block.source.text(), mistake.at)
         .is_some_and(|found| found.alone || is_read(&found.name))
 }
 
-fn activity(block: &Block, cells: usize) -> Result<Vec<i32>, ParseError> {
-    let values = array(block, ACTIVITY, cells)?;
+fn activity(array: &CellArray) -> Result<Vec<i32>, ParseError> {
+    let values = &array.values;
     let whole = |&value: &f64| value.fract() == 0.0 && (0.0..=255.0).contains(&value);
     if let Some(cell) = values.par_iter().position_first(|value| !whole(value)) {
         let message = format!(
@@ -158,7 +267,8 @@ fn activity(block: &Block, cells: usize) -> Result<Vec<i32>, ParseError> {
             values[cell],
             cell + 1
         );
-        return Err(block.source.error(block.at, &block.name, message));
+        let Place { source, at, .. } = &array.place;
+        return Err(source.error(*at, &array.name, message));
     }
     #[allow(
         clippy::cast_possible_truncation,
@@ -167,76 +277,22 @@ fn activity(block: &Block, cells: usize) -> Result<Vec<i32>, ParseError> {
     Ok(values.par_iter().map(|&value| value as i32).collect())
 }
 
-/// Those candidates that have one value a cell; the last one where a name comes twice.
-fn properties(
-    candidates: Vec<Block>,
-    cells: usize,
-    warnings: &mut Warnings,
-) -> Result<Vec<DeckProperty>, ParseError> {
-    let mut properties: Vec<Option<DeckProperty>> = Vec::new();
-    let mut places: HashMap<String, usize> = HashMap::new();
-    for block in candidates {
-        let Some(values) = property(&block, cells, warnings)? else {
-            continue;
-        };
-        let name = block.name.clone();
-        if let Some(earlier) = places.insert(name.clone(), properties.len()) {
-            properties[earlier] = None;
-            let message = format!("{name} is given again; the last one is used");
-            warnings.push(block.source.path(), block.source.at(block.at), message);
-        }
-        properties.push(Some(DeckProperty { name, values }));
-    }
-    Ok(properties.into_iter().flatten().collect())
-}
-
-/// The values of a property; `None` for a keyword that is none.
-fn property(
-    block: &Block,
-    cells: usize,
-    warnings: &mut Warnings,
-) -> Result<Option<Vec<f64>>, ParseError> {
-    let common = is_common_property(&block.name);
-    let runs = match numbers(block, PROPERTY) {
-        Ok(runs) => runs,
-        Err(mistake) if common || is_swallowed_keyword(block, &mistake) => {
-            return Err(error(block, mistake));
-        }
-        // Numbers and words in one record: no array.
-        Err(_) => return Ok(None),
-    };
-    if runs.count == cells {
-        return expand(block, runs, cells).map(Some);
-    }
-    if common || (runs.count > PROPERTY_LIKE && runs.count >= cells / 2) {
-        let message = format!(
-            "{} has {} values where the grid has {cells} cells; it is left out",
-            block.name, runs.count
-        );
-        warnings.push(
-            block.source.path(),
-            block.source.at(block.data.end),
-            message,
-        );
-    }
-    Ok(None)
-}
-
-/// The fault faces that lie inside the grid.
+/// The fault faces that lie inside the grid, with their multipliers.
 pub(super) fn inside(
-    faults: Vec<(std::rc::Rc<super::source::Source>, usize, FaultFaces)>,
+    found: &mut Found,
     dims: [usize; 3],
     warnings: &mut Warnings,
 ) -> Vec<FaultFaces> {
-    let mut kept = Vec::with_capacity(faults.len());
-    for (source, at, fault) in faults {
-        if let Some(place) = faults::outside(&fault, dims) {
+    let mut kept = Vec::with_capacity(found.faults.len());
+    for (place, mut fault) in std::mem::take(&mut found.faults) {
+        if let Some(outside) = faults::outside(&fault, dims) {
             let message = format!(
-                "a face of fault {} lies outside the grid ({place}); it is left out",
+                "a face of fault {} lies outside the grid ({outside}); it is left out",
                 fault.name
             );
-            warnings.push(source.path(), source.at(at), message);
+            place.warn(warnings, message);
         } else {
+            fault.multiplier = faults::multiplier_of(&fault.name, &found.fault_multipliers);
             kept.push(fault);
         }
     }

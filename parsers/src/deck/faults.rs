@@ -1,8 +1,9 @@
 //! FAULTS: named lists of cell faces.
 
 use super::FaultFaces;
-use super::header::positive;
+use super::header::{positive, real};
 use super::lexer::{Cursor, Item, Mistake, shown};
+use super::skip::ends_records;
 
 /// Reads records up to the empty one.
 pub(super) fn faults(cursor: &mut Cursor) -> Result<Vec<(usize, FaultFaces)>, Mistake> {
@@ -14,6 +15,31 @@ pub(super) fn faults(cursor: &mut Cursor) -> Result<Vec<(usize, FaultFaces)>, Mi
         };
         faults.push((first.at, fault(&items, first.at)?));
     }
+}
+
+/// MULTFLT: names, which may end with `*`, and transmissibility multipliers, up to the empty record.
+pub(super) fn multipliers(cursor: &mut Cursor) -> Result<Vec<(String, f64)>, Mistake> {
+    let mut multipliers = Vec::new();
+    while cursor.skip_blank() && !ends_records(cursor) {
+        let items = cursor.record()?;
+        let [name, rest @ ..] = items.as_slice() else {
+            break;
+        };
+        let name = String::from_utf8_lossy(name.text.unwrap_or_default()).into_owned();
+        let given = rest.first().filter(|item| item.text.is_some());
+        multipliers.push((name, given.map_or(Ok(1.0), real)?));
+    }
+    Ok(multipliers)
+}
+
+/// The last multiplier that is given for a fault.
+pub(super) fn multiplier_of(fault: &str, multipliers: &[(String, f64)]) -> Option<f64> {
+    let is_meant = |name: &str| match name.strip_suffix('*') {
+        Some(start) => fault.starts_with(start),
+        None => fault == name,
+    };
+    let meant = multipliers.iter().rev().find(|(name, _)| is_meant(name));
+    meant.map(|(_, multiplier)| *multiplier)
 }
 
 fn fault(items: &[Item], at: usize) -> Result<FaultFaces, Mistake> {
@@ -30,6 +56,7 @@ fn fault(items: &[Item], at: usize) -> Result<FaultFaces, Mistake> {
         j: range(j1, j2)?,
         k: range(k1, k2)?,
         face: face_name(face)?,
+        multiplier: None,
     })
 }
 

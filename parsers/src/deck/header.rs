@@ -1,6 +1,7 @@
 //! The short keywords of a grid: dimensions, map axes, units, orientation.
 
 use super::GridUnit;
+use super::edit::CellBox;
 use super::lexer::{Item, Mistake, shown};
 use super::numbers::number;
 
@@ -16,21 +17,15 @@ pub(super) fn dims(items: &[Item], at: usize) -> Result<[usize; 3], Mistake> {
             .ok_or_else(|| Mistake::new(at, "expected three numbers of cells"))?;
         *dim = positive(item)?;
     }
-    if let Some(item) = items.get(3).filter(|item| item.text.is_some())
-        && positive(item)? != 1
-    {
-        return Err(Mistake::new(
-            item.at,
-            "grids with more than one coordinate system (NUMRES) are not read",
-        ));
-    }
-    if let Some(item) = items.get(4)
-        && item.text.is_some_and(|text| {
-            text.first()
-                .is_some_and(|first| first.eq_ignore_ascii_case(&b'T'))
-        })
-    {
-        return Err(Mistake::new(item.at, RADIAL));
+    // The number of coordinate systems, which some writers leave out, and the letter behind it.
+    for item in items.iter().skip(3).take(2) {
+        match item.text.and_then(|text| text.first()) {
+            None => {}
+            Some(b'T' | b't') => return Err(Mistake::new(item.at, RADIAL)),
+            Some(b'F' | b'f') => break,
+            Some(_) if positive(item)? != 1 => return Err(Mistake::new(item.at, SYSTEMS)),
+            Some(_) => {}
+        }
     }
     let cells = dims
         .iter()
@@ -46,6 +41,7 @@ pub(super) fn dims(items: &[Item], at: usize) -> Result<[usize; 3], Mistake> {
 }
 
 const RADIAL: &str = "the grid is radial (T); only Cartesian corner-point grids are read from text";
+const SYSTEMS: &str = "grids with more than one coordinate system (NUMRES) are not read";
 
 /// A whole number of at least 1.
 pub(super) fn positive(item: &Item) -> Result<usize, Mistake> {
@@ -75,12 +71,32 @@ pub(super) fn map_axes(items: &[Item], at: usize) -> Result<[f64; 6], Mistake> {
     }
     let mut axes = [0.0; 6];
     for (axis, item) in axes.iter_mut().zip(items) {
-        let text = item.text.unwrap_or(b"*");
-        *axis = number(text)
-            .filter(|value| value.is_finite())
-            .ok_or_else(|| Mistake::new(item.at, format!("'{}' is not a number", shown(text))))?;
+        *axis = real(item)?;
     }
     Ok(axes)
+}
+
+/// A finite number.
+pub(super) fn real(item: &Item) -> Result<f64, Mistake> {
+    let text = item.text.unwrap_or(b"*");
+    let value = number(text).filter(|value| value.is_finite());
+    value.ok_or_else(|| Mistake::new(item.at, format!("'{}' is not a number", shown(text))))
+}
+
+/// ADDZCORN: what is added, and to which cells where a box is given; `None` where more is asked for.
+pub(super) fn depth_shift(items: &[Item]) -> Result<Option<(f64, Option<CellBox>)>, Mistake> {
+    let [value, rest @ ..] = items else {
+        return Ok(None);
+    };
+    let more = rest.get(6..).unwrap_or_default();
+    let is_all = |item: &Item| {
+        item.text
+            .is_none_or(|text| text.eq_ignore_ascii_case(b"ALL"))
+    };
+    match more.iter().all(is_all) {
+        true => Ok(Some((real(value)?, CellBox::read(rest)?))),
+        false => Ok(None),
+    }
 }
 
 /// The first item in upper case, if it is not left to its default.

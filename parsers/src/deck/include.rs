@@ -1,9 +1,11 @@
-//! INCLUDE and PATHS: how one file leads to the next.
+//! INCLUDE, GDFILE and PATHS: how one file leads to the next.
 
+use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
-use super::lexer::{Cursor, Keyword, Token, line_end};
+use super::edit::Place;
+use super::lexer::{Cursor, Keyword, Token, line_end, record_end};
 use super::scan::{Flow, Scan};
 use super::source::Source;
 use crate::error::ParseError;
@@ -39,41 +41,93 @@ impl Scan<'_> {
         cursor: &mut Cursor,
         keyword: &Keyword,
     ) -> Result<Flow, ParseError> {
-        let (at, written) = included_path(cursor).ok_or_else(|| {
-            source.error(
-                keyword.at,
-                "INCLUDE",
-                "expected the path of a file, in quotes",
-            )
-        })?;
-        let path = self
-            .places
-            .find(&written, source.path())
-            .map_err(|places| {
-                let places: Vec<_> = places
-                    .iter()
-                    .map(|place| place.display().to_string())
-                    .collect();
-                let message = format!(
-                    "'{written}' is not found; looked for {}",
-                    places.join(" and ")
-                );
-                source.error(at, "INCLUDE", message)
-            })?;
-        if self.open.contains(&canonical(&path)) {
+        let (at, written) = named_file(source, cursor, keyword)?;
+        let found = self.places.find(&written, source.path());
+        let path = found.map_err(|places| {
+            let places: Vec<_> = places
+                .iter()
+                .map(|place| place.display().to_string())
+                .collect();
             let message = format!(
-                "'{written}' is being read already: the files include each other in a loop"
+                "'{written}' is not found; looked for {}",
+                places.join(" and ")
             );
-            return Err(source.error(at, "INCLUDE", message));
+            source.error(at, &keyword.name, message)
+        })?;
+        self.include_file(source, keyword, at, &path)
+    }
+
+    /// GDFILE: a text file is included, a binary one noted for when the grid is built.
+    pub(super) fn grid_file(
+        &mut self,
+        source: &Rc<Source>,
+        cursor: &mut Cursor,
+        keyword: &Keyword,
+    ) -> Result<Flow, ParseError> {
+        let (at, written) = named_file(source, cursor, keyword)?;
+        // Some write behind the name whether the file is formatted.
+        if let Some(end) = record_end(cursor.text, cursor.at)
+            && end < line_end(cursor.text, cursor.at)
+        {
+            cursor.at = line_end(cursor.text, end);
+        }
+        let path = match self.places.find(&written, source.path()) {
+            Ok(path) if !is_binary(&path) => return self.include_file(source, keyword, at, &path),
+            Ok(path) => path,
+            // It is missed where the grid is needed, which it is not to read faults alone.
+            Err(places) => places.into_iter().next().unwrap_or_default(),
+        };
+        let place = Place {
+            source: Rc::clone(source),
+            at,
+            keyword: keyword.name.clone(),
+        };
+        self.found.grid_file = Some((place, path));
+        Ok(Flow::On)
+    }
+
+    fn include_file(
+        &mut self,
+        source: &Rc<Source>,
+        keyword: &Keyword,
+        at: usize,
+        path: &Path,
+    ) -> Result<Flow, ParseError> {
+        let name = keyword.name.as_str();
+        if self.open.contains(&canonical(path)) {
+            let message = format!(
+                "'{}' is being read already: the files include each other in a loop",
+                path.display()
+            );
+            return Err(source.error(at, name, message));
         }
         if self.open.len() >= DEEPEST || self.opened >= MOST_FILES {
             let message = format!("more than {DEEPEST} nested or {MOST_FILES} included files");
-            return Err(source.error(at, "INCLUDE", message));
+            return Err(source.error(at, name, message));
         }
         let mut chain = vec![(source.path().to_owned(), source.line(keyword.at))];
         chain.extend_from_slice(&source.included_from);
-        self.file(&path, chain)
+        self.file(path, chain)
     }
+}
+
+/// The path that stands at the cursor, and where.
+fn named_file(
+    source: &Source,
+    cursor: &mut Cursor,
+    keyword: &Keyword,
+) -> Result<(usize, String), ParseError> {
+    let missing = || {
+        let message = "expected the path of a file, in quotes";
+        source.error(keyword.at, &keyword.name, message)
+    };
+    included_path(cursor).ok_or_else(missing)
+}
+
+fn is_binary(path: &Path) -> bool {
+    let mut start = [0; 64];
+    let read = std::fs::File::open(path).and_then(|mut file| file.read(&mut start));
+    read.is_ok_and(|length| start[..length].contains(&0))
 }
 
 pub(super) fn canonical(path: &Path) -> PathBuf {

@@ -1,17 +1,20 @@
-//! Text decks: the corner-point grid, its faults and its cell properties from GRDECL and DATA files.
+//! Text decks: the grid, its faults and its cell properties from GRDECL and DATA files.
 //!
 //! The reader follows INCLUDE, skips what does not describe the grid, and stops at the SUMMARY or
 //! SCHEDULE section. It works in two steps: a scan over all files that notes where each array
-//! lies, and, once the dimensions are known, the parallel conversion of the arrays.
+//! lies and what is done to it, and, once the dimensions are known, the parallel conversion of the
+//! arrays and, in the deck's order, what EQUALS, COPY, ADD, MULTIPLY, MINVALUE and MAXVALUE do to them.
 
 mod array;
 mod assemble;
+mod blocks;
+mod cells;
+mod edit;
 mod faults;
 mod header;
 mod include;
 mod lexer;
 mod numbers;
-mod operations;
 mod scan;
 mod skip;
 mod source;
@@ -46,10 +49,29 @@ pub struct Grdecl {
     pub gdorient: Option<[String; 5]>,
     /// The unit system a full deck names in its RUNSPEC section.
     pub unit_system: Option<UnitSystem>,
-    /// Keywords with one number a cell, in the order of their last appearance.
+    /// Phases that RUNSPEC names, as INTEHEAD numbers them: 1 oil, 2 water, 4 gas, added; 0 where it names none.
+    pub phases: i32,
+    /// MINPV: pore volume below which a cell is inactive, in the unit system's reservoir volumes.
+    pub min_pore_volume: Option<f64>,
+    /// Keywords with one number a cell, in the order of their first appearance.
     pub properties: Vec<DeckProperty>,
     /// Faces of named faults, in file order.
     pub faults: Vec<FaultFaces>,
+    /// All files read, in the order they were opened, each once.
+    pub files: Vec<PathBuf>,
+}
+
+/// What decks say of the cells of a grid that is read from elsewhere.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct DeckCells {
+    /// Keywords with one number a cell, in the order of their first appearance.
+    pub properties: Vec<DeckProperty>,
+    /// Faces of named faults, in file order.
+    pub faults: Vec<FaultFaces>,
+    /// The unit system of a RUNSPEC section.
+    pub unit_system: Option<UnitSystem>,
+    /// As in [`Grdecl::phases`].
+    pub phases: i32,
     /// All files read, in the order they were opened, each once.
     pub files: Vec<PathBuf>,
 }
@@ -68,12 +90,14 @@ pub struct GridUnit {
 pub struct DeckProperty {
     /// The keyword in upper case, such as `PORO`.
     pub name: String,
-    /// One value for each of `ni*nj*nk` cells; NaN where the deck leaves it to a default.
+    /// One value for each of `ni*nj*nk` cells; NaN where the deck gives none.
     pub values: Vec<f64>,
+    /// What of the deck was not applied to it, as part of a sentence; `None` where the values are as the deck says.
+    pub doubt: Option<String>,
 }
 
 /// One record of FAULTS: a box of cells whose named face lies on the fault.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct FaultFaces {
     /// The fault's name.
     pub name: String,
@@ -85,24 +109,40 @@ pub struct FaultFaces {
     pub k: [usize; 2],
     /// The face in upper case as written: `X`, `I`, `Y-`, `J+`, `Z`, `K-` and so on.
     pub face: String,
+    /// MULTFLT: the factor of transmissibilities across the fault; 0 seals it.
+    pub multiplier: Option<f64>,
 }
 
 impl Grdecl {
     /// Reads the grid of the deck at `path` and of all files it includes.
     ///
-    /// What the reader leaves out or cannot evaluate (EQUALS, MULTIPLY, values inside a BOX, local
-    /// refinements) goes to `warnings`.
+    /// What the reader leaves out or cannot evaluate (operations by region, local refinements, files that are
+    /// imported) goes to `warnings`.
     ///
     /// # Errors
-    /// When a file is missing or ends inside a record, when SPECGRID, COORD or ZCORN are missing,
-    /// radial, damaged or of the wrong length, when numbers are not numbers, or when files include
-    /// each other in a loop.
+    /// When a file is missing or ends inside a record, when the grid is missing, radial, damaged or of the wrong
+    /// length, when numbers are not numbers, or when files include each other in a loop.
     pub fn read(path: &Path, warnings: &mut Warnings) -> Result<Self, ParseError> {
-        let found = scan::scan(path, warnings)?;
+        Self::read_with(path, &[], warnings)
+    }
+
+    /// As [`Self::read`], the decks of `with` going on where the one at `path` ends, so that properties may stand in
+    /// files of their own.
+    ///
+    /// # Errors
+    /// As [`Self::read`].
+    pub fn read_with(
+        path: &Path,
+        with: &[PathBuf],
+        warnings: &mut Warnings,
+    ) -> Result<Self, ParseError> {
+        let with = with.iter().map(PathBuf::as_path);
+        let paths: Vec<_> = std::iter::once(path).chain(with).collect();
+        let found = scan::scan(&paths, warnings)?;
         assemble::assemble(path, found, warnings)
     }
 
-    /// Reads FAULTS alone of the deck at `path` and of all files it includes, for a grid of `dims` cells
+    /// Reads FAULTS and MULTFLT alone of the deck at `path` and of all files it includes, for a grid of `dims` cells
     /// that was read from elsewhere. Faces outside it go to `warnings`.
     ///
     /// # Errors
@@ -113,7 +153,33 @@ impl Grdecl {
         warnings: &mut Warnings,
     ) -> Result<Vec<FaultFaces>, ParseError> {
         // What else the deck says is not asked for, so nobody has to know what of it was left out.
-        let found = scan::scan(path, &mut Warnings::default())?;
-        Ok(assemble::inside(found.faults, dims, warnings))
+        let mut found = scan::scan(&[path], &mut Warnings::default())?;
+        Ok(assemble::inside(&mut found, dims, warnings))
+    }
+
+    /// True where the text file at `path`, or one that it includes, describes a grid and not only what belongs to
+    /// one.
+    ///
+    /// # Errors
+    /// As [`Self::read`].
+    pub fn is_grid(path: &Path) -> Result<bool, ParseError> {
+        let found = scan::scan(&[path], &mut Warnings::default())?;
+        Ok(found.describes_grid())
+    }
+}
+
+impl DeckCells {
+    /// Reads what the decks at `paths`, one going on where the other ends, say of the cells of a grid of `dims`.
+    ///
+    /// # Errors
+    /// As [`Grdecl::read`], but for the grid.
+    pub fn read(
+        paths: &[PathBuf],
+        dims: [usize; 3],
+        warnings: &mut Warnings,
+    ) -> Result<Self, ParseError> {
+        let paths: Vec<_> = paths.iter().map(PathBuf::as_path).collect();
+        let found = scan::scan(&paths, warnings)?;
+        assemble::cells(found, dims, warnings)
     }
 }

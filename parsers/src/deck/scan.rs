@@ -1,14 +1,13 @@
 //! The first step: walks through all files, reads the short keywords and notes where the arrays lie.
 
-use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
+use super::edit::{CellBox, Edit, Place};
 use super::include::canonical;
-use super::lexer::{Cursor, Item, Keyword, keyword, line_end, record_end};
-use super::operations::Operation;
-use super::skip::{Skipped, is_operation, skip_records};
+use super::lexer::{Cursor, Item, Keyword, Mistake, keyword, line_end, record_end};
+use super::skip::{Skipped, ends_records, is_operation, skip_records};
 use super::source::{Places, Source};
 use super::{FaultFaces, GridUnit, faults, header};
 use crate::error::{ParseError, Warnings};
@@ -22,6 +21,40 @@ pub(super) struct Block {
     pub(super) at: usize,
     /// From behind the keyword to the closing `/`.
     pub(super) data: Range<usize>,
+    /// The section it stands in; `None` in a file without sections.
+    pub(super) section: Option<Section>,
+}
+
+/// The sections of a deck that describe the grid and its first state.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Section {
+    Runspec,
+    Grid,
+    Edit,
+    Props,
+    Regions,
+    Solution,
+}
+
+impl Section {
+    fn from_keyword(name: &str) -> Option<Self> {
+        Some(match name {
+            "RUNSPEC" => Self::Runspec,
+            "GRID" => Self::Grid,
+            "EDIT" => Self::Edit,
+            "PROPS" => Self::Props,
+            "REGIONS" => Self::Regions,
+            "SOLUTION" => Self::Solution,
+            _ => return None,
+        })
+    }
+}
+
+/// A record of ADDZCORN: depth added to the corners of the cells of a box.
+pub(super) struct DepthShift {
+    pub(super) place: Place,
+    pub(super) value: f64,
+    pub(super) cells: CellBox,
 }
 
 /// What the scan has gathered.
@@ -32,28 +65,44 @@ pub(super) struct Found {
     specgrid: bool,
     pub(super) coord: Option<Block>,
     pub(super) zcorn: Option<Block>,
-    pub(super) actnum: Option<Block>,
-    /// One-record numeric keywords; those with one value a cell are properties.
-    pub(super) candidates: Vec<Block>,
-    pub(super) faults: Vec<(Rc<Source>, usize, FaultFaces)>,
+    /// What is done to arrays of cells, in order.
+    pub(super) edits: Vec<Edit>,
+    /// Sizes by column, row and layer: DXV, DYV, DZV.
+    pub(super) vectors: Vec<Block>,
+    /// A binary file with the geometry, where GDFILE names one.
+    pub(super) grid_file: Option<(Place, PathBuf)>,
+    /// ACTNUM of that file.
+    pub(super) file_actnum: Option<Vec<i32>>,
+    pub(super) depth_shifts: Vec<DepthShift>,
+    pub(super) faults: Vec<(Place, FaultFaces)>,
+    /// MULTFLT: names with multipliers, in order.
+    pub(super) fault_multipliers: Vec<(String, f64)>,
     pub(super) map_axes: Option<[f64; 6]>,
     pub(super) map_units: Option<String>,
     pub(super) grid_unit: Option<GridUnit>,
     pub(super) gdorient: Option<[String; 5]>,
     pub(super) unit_system: Option<UnitSystem>,
-    /// True when DX, DY, DZ or TOPS were met.
-    pub(super) block_centered: bool,
+    /// Phases as INTEHEAD numbers them: 1 oil, 2 water, 4 gas, added.
+    pub(super) phases: i32,
+    pub(super) min_pore_volume: Option<f64>,
+    /// True when radial sizes were met.
+    pub(super) radial: bool,
     pub(super) files: Vec<PathBuf>,
     /// Bytes of all files, each time they are included.
     pub(super) bytes: usize,
 }
 
-/// What part of the grid the arrays at hand belong to.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Scope {
-    Whole,
-    Box,
-    Refinement,
+impl Found {
+    /// True where pillars and depths, a file with them, or sizes of cells were found.
+    pub(super) fn describes_grid(&self) -> bool {
+        let is_size = |edit: &Edit| match edit {
+            Edit::Given(block, _) => block.name == "TOPS",
+            Edit::Changed { target, .. } => target == "TOPS",
+            Edit::NotApplied { .. } => false,
+        };
+        let has_corners = self.coord.is_some() && self.zcorn.is_some();
+        has_corners || self.grid_file.is_some() || self.edits.iter().any(is_size)
+    }
 }
 
 /// How reading goes on after a keyword.
@@ -65,30 +114,36 @@ pub(super) enum Flow {
 }
 
 pub(super) struct Scan<'w> {
-    warnings: &'w mut Warnings,
+    pub(super) warnings: &'w mut Warnings,
     pub(super) places: Places,
-    found: Found,
-    scope: Scope,
+    pub(super) found: Found,
+    section: Option<Section>,
+    /// The cells that arrays at hand belong to.
+    pub(super) input_box: CellBox,
+    refinement: bool,
     /// Canonical paths of the files being read, outermost first.
     pub(super) open: Vec<PathBuf>,
     pub(super) opened: usize,
-    pub(super) operations: BTreeMap<String, Operation>,
 }
 
-/// Reads the deck at `path` up to its arrays.
-pub(super) fn scan(path: &Path, warnings: &mut Warnings) -> Result<Found, ParseError> {
-    let mut scan = Scan {
-        warnings,
-        places: Places::new(path),
-        found: Found::default(),
-        scope: Scope::Whole,
-        open: Vec::new(),
-        opened: 0,
-        operations: BTreeMap::new(),
-    };
-    scan.file(path, Vec::new())?;
-    scan.report_operations();
-    Ok(scan.found)
+/// Reads decks up to their arrays, one after the other as if they were one.
+pub(super) fn scan(paths: &[&Path], warnings: &mut Warnings) -> Result<Found, ParseError> {
+    let mut found = Found::default();
+    for path in paths {
+        let mut scan = Scan {
+            warnings,
+            places: Places::new(path),
+            found,
+            section: None,
+            input_box: CellBox::default(),
+            refinement: false,
+            open: Vec::new(),
+            opened: 0,
+        };
+        scan.file(path, Vec::new())?;
+        found = scan.found;
+    }
+    Ok(found)
 }
 
 impl Scan<'_> {
@@ -153,27 +208,27 @@ impl Scan<'_> {
         match name {
             "END" | "SUMMARY" | "SCHEDULE" | "OPTIMIZE" => return Ok(Flow::EndOfDeck),
             "ENDINC" => return Ok(Flow::EndOfFile),
-            "INCLUDE" => return self.include(source, cursor, keyword),
+            // PFLOTRAN names files to include like this.
+            "INCLUDE" | "EXTERNAL_FILE" => return self.include(source, cursor, keyword),
+            "GDFILE" => return self.grid_file(source, cursor, keyword),
             "TITLE" => skip_title(cursor),
             "SKIP" | "SKIP100" | "SKIP300" => self.skip_region(source, cursor, keyword)?,
             "METRIC" => self.found.unit_system = Some(UnitSystem::Metric),
             "FIELD" => self.found.unit_system = Some(UnitSystem::Field),
             "LAB" => self.found.unit_system = Some(UnitSystem::Lab),
             "PVT-M" => self.found.unit_system = Some(UnitSystem::PvtM),
-            "BOX" | "ENDBOX" | "CARFIN" | "RADFIN" | "RADFIN4" | "REFINE" | "ENDFIN" => {
-                self.change_scope(source, cursor, keyword)?;
+            "OIL" => self.phase(1),
+            "WATER" => self.phase(2),
+            "GAS" => self.phase(4),
+            "ENDBOX" => self.input_box = CellBox::default(),
+            "CARFIN" | "RADFIN" | "RADFIN4" | "REFINE" | "ENDFIN" => {
+                self.refine(source, cursor, keyword)?;
             }
             "COORD" | "ZCORN" | "ACTNUM" => self.array(source, cursor, keyword)?,
             "PATHS" => self.paths(source, cursor)?,
-            "FAULTS" => {
-                let faults =
-                    faults::faults(cursor).map_err(|mistake| source.mistake(name, mistake))?;
-                let placed = faults
-                    .into_iter()
-                    .map(|(at, fault)| (Rc::clone(source), at, fault));
-                self.found.faults.extend(placed);
-            }
-            "SPECGRID" | "DIMENS" | "MAPAXES" | "MAPUNITS" | "GRIDUNIT" | "GDORIENT" => {
+            "FAULTS" | "MULTFLT" | "ADDZCORN" => self.lists(source, cursor, keyword)?,
+            "SPECGRID" | "DIMENS" | "MAPAXES" | "MAPUNITS" | "GRIDUNIT" | "GDORIENT" | "BOX"
+            | "MINPV" | "MINPORV" => {
                 let items = cursor
                     .record()
                     .map_err(|mistake| source.mistake(name, mistake))?;
@@ -192,11 +247,23 @@ impl Scan<'_> {
         items: &[Item],
     ) -> Result<(), ParseError> {
         let name = keyword.name.as_str();
-        if self.scope == Scope::Refinement {
+        if self.refinement {
             return Ok(());
         }
         let placed = |mistake| source.mistake(name, mistake);
         match name {
+            "BOX" => {
+                let cells = CellBox::read(items).map_err(placed)?;
+                self.input_box = cells.unwrap_or_default();
+            }
+            "MINPV" | "MINPORV" => {
+                let least = items
+                    .first()
+                    .map(header::real)
+                    .transpose()
+                    .map_err(placed)?;
+                self.found.min_pore_volume = least;
+            }
             "MAPAXES" => {
                 self.found.map_axes = Some(header::map_axes(items, keyword.at).map_err(placed)?);
             }
@@ -228,6 +295,66 @@ impl Scan<'_> {
         }
     }
 
+    /// FAULTS, MULTFLT and ADDZCORN: records up to an empty one.
+    fn lists(
+        &mut self,
+        source: &Rc<Source>,
+        cursor: &mut Cursor,
+        keyword: &Keyword,
+    ) -> Result<(), ParseError> {
+        let name = keyword.name.as_str();
+        let placed = |mistake| source.mistake(name, mistake);
+        let place = |at| Place {
+            source: Rc::clone(source),
+            at,
+            keyword: name.to_owned(),
+        };
+        match name {
+            "FAULTS" => {
+                let faults = faults::faults(cursor).map_err(placed)?.into_iter();
+                let faults = faults.map(|(at, fault)| (place(at), fault));
+                self.found.faults.extend(faults);
+            }
+            "MULTFLT" => {
+                let multipliers = faults::multipliers(cursor).map_err(placed)?;
+                self.found.fault_multipliers.extend(multipliers);
+            }
+            _ => {
+                while cursor.skip_blank() && !ends_records(cursor) {
+                    let at = cursor.at;
+                    let items = cursor.record().map_err(placed)?;
+                    if items.is_empty() {
+                        break;
+                    }
+                    self.depth_shift(place(at), &items).map_err(placed)?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn depth_shift(&mut self, place: Place, items: &[Item]) -> Result<(), Mistake> {
+        match header::depth_shift(items)? {
+            Some((value, cells)) => self.found.depth_shifts.push(DepthShift {
+                place,
+                value,
+                cells: cells.unwrap_or(self.input_box),
+            }),
+            None => place.warn(
+                self.warnings,
+                "ADDZCORN with more than a value and a box is not evaluated: depths are as ZCORN gives them",
+            ),
+        }
+        Ok(())
+    }
+
+    fn phase(&mut self, bit: i32) {
+        // The words mean phases in the first section alone.
+        if self.section == Some(Section::Runspec) {
+            self.found.phases |= bit;
+        }
+    }
+
     /// COORD, ZCORN, ACTNUM: notes where the array lies.
     fn array(
         &mut self,
@@ -244,18 +371,17 @@ impl Scan<'_> {
             )
         })?;
         cursor.at = line_end(cursor.text, end);
-        let block = block(source, keyword, end);
-        if self.scope == Scope::Refinement {
-            return Ok(());
-        }
-        if name == "ACTNUM" && self.scope == Scope::Box {
-            self.warn(source, keyword.at, "ACTNUM inside a BOX is not read");
+        let block = self.block(source, keyword, end);
+        if self.refinement {
             return Ok(());
         }
         let place = match name {
             "COORD" => &mut self.found.coord,
             "ZCORN" => &mut self.found.zcorn,
-            _ => &mut self.found.actnum,
+            _ => {
+                self.found.edits.push(Edit::Given(block, self.input_box));
+                return Ok(());
+            }
         };
         if place.replace(block).is_some() {
             self.warn(
@@ -280,39 +406,38 @@ impl Scan<'_> {
             Skipped::Unended(at) => {
                 self.warn(source, at, &format!("the text behind {name} has no closing / up to the end of the file; it is skipped"));
             }
-            Skipped::OneNumeric(end) => self.candidate(block(source, keyword, end)),
+            Skipped::OneNumeric(_) if self.refinement => {}
+            Skipped::OneNumeric(end) => {
+                let block = self.block(source, keyword, end);
+                match name {
+                    "DXV" | "DYV" | "DZV" => self.found.vectors.push(block),
+                    _ => self.found.edits.push(Edit::Given(block, self.input_box)),
+                }
+            }
+        }
+        if let Some(section) = Section::from_keyword(name) {
+            self.section = Some(section);
+            self.input_box = CellBox::default();
+            self.refinement = false;
         }
         match name {
-            "DX" | "DY" | "DZ" | "DXV" | "DYV" | "DZV" | "DR" | "DRV" | "TOPS" => {
-                self.found.block_centered = true;
-            }
-            "RUNSPEC" | "GRID" | "EDIT" | "PROPS" | "REGIONS" | "SOLUTION" => {
-                self.scope = Scope::Whole;
-            }
-            "GDFILE" | "IMPORT" => {
-                self.warn(
-                    source,
-                    keyword.at,
-                    &format!("the file that {name} names is not read; open it directly"),
-                );
-            }
+            "DR" | "DRV" | "DTHETA" | "DTHETAV" | "INRAD" => self.found.radial = true,
+            "IMPORT" => self.warn(
+                source,
+                keyword.at,
+                "the file that IMPORT names is not read: its arrays are missing",
+            ),
+            "EQLZCORN" => self.warn(
+                source,
+                keyword.at,
+                "EQLZCORN is not evaluated: depths are as ZCORN gives them",
+            ),
             _ => {}
         }
         Ok(())
     }
 
-    fn candidate(&mut self, block: Block) {
-        match self.scope {
-            Scope::Whole => self.found.candidates.push(block),
-            Scope::Refinement => {}
-            Scope::Box => {
-                let message = format!("{} inside a BOX is not read", block.name);
-                self.warn(&block.source, block.at, &message);
-            }
-        }
-    }
-
-    fn change_scope(
+    fn refine(
         &mut self,
         source: &Rc<Source>,
         cursor: &mut Cursor,
@@ -320,20 +445,29 @@ impl Scan<'_> {
     ) -> Result<(), ParseError> {
         let name = keyword.name.as_str();
         skip_records(cursor, name).map_err(|mistake| source.mistake(name, mistake))?;
-        self.scope = match name {
-            "ENDBOX" | "ENDFIN" => Scope::Whole,
-            "BOX" => Scope::Box,
-            _ => Scope::Refinement,
-        };
-        if name == "BOX" {
-            self.note_operation(source, keyword, Vec::new());
-        } else if self.scope == Scope::Refinement {
+        self.refinement = name != "ENDFIN";
+        if self.refinement {
             let message = format!(
                 "{name}: local refinements are not read from text; run the simulator and open the EGRID to see them"
             );
             self.warn(source, keyword.at, &message);
         }
         Ok(())
+    }
+
+    /// True between the keyword of a local refinement and its end.
+    pub(super) fn in_refinement(&self) -> bool {
+        self.refinement
+    }
+
+    fn block(&self, source: &Rc<Source>, keyword: &Keyword, end: usize) -> Block {
+        Block {
+            source: Rc::clone(source),
+            name: keyword.name.clone(),
+            at: keyword.at,
+            data: keyword.end..end,
+            section: self.section,
+        }
     }
 
     fn skip_region(
@@ -360,15 +494,6 @@ impl Scan<'_> {
 /// `3 x 4 x 5`.
 pub(super) fn product_text([ni, nj, nk]: [usize; 3]) -> String {
     format!("{ni} x {nj} x {nk}")
-}
-
-fn block(source: &Rc<Source>, keyword: &Keyword, end: usize) -> Block {
-    Block {
-        source: Rc::clone(source),
-        name: keyword.name.clone(),
-        at: keyword.at,
-        data: keyword.end..end,
-    }
 }
 
 /// The title is the next line with text.

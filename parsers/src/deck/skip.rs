@@ -23,7 +23,7 @@ const UNTIL_EMPTY: &[&str] = &[
 /// Keywords that change arrays by a rule, all ending with an empty record.
 const OPERATIONS: &[&str] = &[
     "EQUALS", "ADD", "MULTIPLY", "COPY", "MAXVALUE", "MINVALUE", "COPYBOX", "EQUALREG", "ADDREG",
-    "MULTIREG", "COPYREG", "OPERATE", "OPERATER", "MULTFLT",
+    "MULTIREG", "COPYREG", "OPERATE", "OPERATER",
 ];
 
 /// Keywords that this reader knows: found at a line start, they end whatever went before.
@@ -38,24 +38,12 @@ const SECTIONS: &[&str] = &[
     "GRID", "EDIT", "PROPS", "REGIONS", "SOLUTION", "SUMMARY", "SCHEDULE",
 ];
 
-/// Properties so common that wrong data of theirs are worth a message.
-const PROPERTIES: &[&str] = &[
-    "PORO", "PERMX", "PERMY", "PERMZ", "NTG", "PORV", "SWAT", "SGAS", "SOIL", "PRESSURE", "SWL",
-    "SWCR", "SWU", "SATNUM", "PVTNUM", "EQLNUM", "FIPNUM", "FLUXNUM", "MULTNUM", "OPERNUM",
-    "MULTPV", "MULTX", "MULTY", "MULTZ", "MULTX-", "MULTY-", "MULTZ-", "TRANX", "TRANY", "TRANZ",
-    "SWATINIT", "DEPTH", "VSH", "FACIES",
-];
-
 pub(super) fn is_without_data(name: &str) -> bool {
     WITHOUT_DATA.contains(&name)
 }
 
 pub(super) fn is_operation(name: &str) -> bool {
     OPERATIONS.contains(&name)
-}
-
-pub(super) fn is_common_property(name: &str) -> bool {
-    PROPERTIES.contains(&name)
 }
 
 pub(super) fn is_read(name: &str) -> bool {
@@ -82,6 +70,8 @@ pub(super) enum Skipped {
 /// Moves behind all records of the keyword `name`, whose data start at the cursor.
 pub(super) fn skip_records(cursor: &mut Cursor, name: &str) -> Result<Skipped, Mistake> {
     if is_without_data(name) {
+        // What follows on the line is decoration.
+        cursor.at = line_end(cursor.text, cursor.at);
         return Ok(Skipped::Whole);
     }
     let until_empty = UNTIL_EMPTY.contains(&name);
@@ -133,16 +123,7 @@ fn starts_keyword(cursor: &Cursor, until_empty: bool, after_numbers: bool) -> bo
     })
 }
 
-/// Reads the records of an operation up to the empty one and returns the arrays they change.
-pub(super) fn operation(cursor: &mut Cursor, name: &str) -> Result<Vec<String>, Mistake> {
-    let target = usize::from(matches!(name, "COPY" | "COPYBOX" | "COPYREG"));
-    let mut targets = Vec::new();
-    while cursor.skip_blank() && !starts_keyword(cursor, true, false) {
-        let items = cursor.record()?;
-        if items.is_empty() {
-            break;
-        }
-        targets.extend(super::header::name(&items, target));
-    }
-    Ok(targets)
+/// True where a keyword that surely begins something else stands in place of another record of a list.
+pub(super) fn ends_records(cursor: &Cursor) -> bool {
+    starts_keyword(cursor, true, false)
 }

@@ -2,7 +2,7 @@
 
 use std::cell::Cell;
 use std::collections::HashMap;
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 
 use super::lexer::{Mistake, line_end};
 use crate::error::{At, ParseError};
@@ -37,8 +37,10 @@ impl Source {
         })
     }
 
+    /// The text, without the mark that some editors put before it (UTF-8 byte order mark).
     pub(super) fn text(&self) -> &[u8] {
-        self.file.bytes()
+        let bytes = self.file.bytes();
+        bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes)
     }
 
     pub(super) fn path(&self) -> &Path {
@@ -117,10 +119,10 @@ impl Places {
         let beside = from.parent().unwrap_or(Path::new(""));
         let mut places = vec![self.root.join(&named), beside.join(&named)];
         places.dedup();
-        match places.iter().find(|place| place.is_file()) {
-            Some(place) => Ok(place.clone()),
-            None => Err(places),
-        }
+        let exact = places.iter().find(|place| place.is_file()).cloned();
+        // Decks from systems that ignore letter case are read on those that do not.
+        let found = exact.or_else(|| places.iter().find_map(|place| as_on_disk(place)));
+        found.ok_or(places)
     }
 
     /// Replaces `$NAME` by its directory and backslashes, which some systems write, by slashes.
@@ -140,4 +142,25 @@ impl Places {
         }
         path
     }
+}
+
+/// The file that `path` means in the letter case of its folders and its name on disk.
+fn as_on_disk(path: &Path) -> Option<PathBuf> {
+    let mut found = PathBuf::new();
+    for part in path.components() {
+        let next = found.join(part);
+        if next.exists() || !matches!(part, Component::Normal(_)) {
+            found = next;
+            continue;
+        }
+        let folder = match found.as_os_str().is_empty() {
+            true => Path::new("."),
+            false => found.as_path(),
+        };
+        let names = std::fs::read_dir(folder).ok()?.flatten();
+        let names = names.map(|entry| entry.file_name());
+        let same = names.filter(|name| name.eq_ignore_ascii_case(part));
+        found.push(same.min()?);
+    }
+    found.is_file().then_some(found)
 }

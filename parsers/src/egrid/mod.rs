@@ -1,6 +1,6 @@
 //! EGRID: the geometry of a case, as written.
 //!
-//! Keywords: FILEHEAD, MAPUNITS, MAPAXES, GRIDUNIT, GRIDHEAD, COORD, ZCORN, ACTNUM, NNC1 with NNC2;
+//! Keywords: FILEHEAD, MAPUNITS, MAPAXES, GRIDUNIT, GRIDHEAD, COORD, ZCORN, ACTNUM, CORSNUM, NNC1 with NNC2;
 //! sections of local grids start at LGR and end at ENDLGR. The README lists what is skipped.
 
 mod write;
@@ -57,6 +57,8 @@ pub struct Egrid {
     pub zcorn: Vec<f32>,
     /// One value a cell; absent = all active. Dual porosity: 1 matrix, 2 fracture, 3 both.
     pub actnum: Option<Vec<i32>>,
+    /// CORSNUM: number of the coarse cell that each cell was made part of, or 0.
+    pub coarse: Option<Vec<i32>>,
     /// Unit of MAPAXES.
     pub map_units: Option<String>,
     /// A point on the y axis, the origin, a point on the x axis.
@@ -113,25 +115,21 @@ impl Egrid {
             coord.truncate(6 * pillars);
         }
         let zcorn = sized(&file, need("ZCORN")?, 8 * cells, false)?;
-        let actnum = match find("ACTNUM") {
-            None => None,
-            Some(entry) if entry.count as usize == cells => Some(file.i32s(entry)?),
+        let of_cells = |name: &str| match find(name) {
+            None => Ok(None),
+            Some(entry) if entry.count as usize == cells => file.i32s(entry).map(Some),
             Some(entry) => {
-                return Err(file.error(
-                    entry,
-                    format!("expected {cells} values, found {}", entry.count),
-                ));
+                let found = entry.count;
+                Err(file.error(entry, format!("expected {cells} values, found {found}")))
             }
         };
+        let actnum = of_cells("ACTNUM")?;
+        let coarse = of_cells("CORSNUM")?;
         let grid_unit = find("GRIDUNIT").map(|e| grid_unit(&file, e)).transpose()?;
         let map_axes = match find("MAPAXES") {
             Some(entry) => map_axes(&file, entry, warnings)?,
             None => None,
         };
-        if let Some(entry) = find("CORSNUM") {
-            let message = "CORSNUM: coarsened cells are read as the fine cells they were";
-            warnings.push(path, At::Byte(entry.offset), message);
-        }
         let porosity_model = porosity_model(&file)?;
         // Fracture cells are numbered on behind the matrix cells.
         let numbered = match porosity_model {
@@ -144,6 +142,7 @@ impl Egrid {
             coord,
             zcorn,
             actnum,
+            coarse,
             map_units: find("MAPUNITS")
                 .map(|e| file.strings(e))
                 .transpose()?

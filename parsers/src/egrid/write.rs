@@ -24,6 +24,13 @@ impl Egrid {
         let actnum = self.actnum.as_deref();
         let finite = |v: &f32| v.is_finite();
         geometry::check(self.dims, &self.coord, &self.zcorn, actnum, finite)?;
+        let cells = self.zcorn.len() / 8;
+        if let Some(coarse) = self.coarse.as_ref().filter(|c| c.len() != cells) {
+            let found = coarse.len();
+            return Err(refused(format!(
+                "CORSNUM: expected {cells} values, found {found}"
+            )));
+        }
         let [ni, nj, nk] = self.dims.map(|n| n as i32);
         let mut out = RecordWriter::new(out);
         out.inte("FILEHEAD", &file_head(self.porosity_model))?;
@@ -46,6 +53,9 @@ impl Egrid {
         out.real("ZCORN", &self.zcorn)?;
         if let Some(actnum) = actnum {
             out.inte("ACTNUM", actnum)?;
+        }
+        if let Some(coarse) = &self.coarse {
+            out.inte("CORSNUM", coarse)?;
         }
         out.inte("ENDGRID", &[])?;
         if !self.nnc.is_empty() {

@@ -153,8 +153,7 @@ fn data_end(bytes: &[u8], data: u64, count: u64, kind: Kind) -> Result<u64, Faul
     let too_short = |needed: u64| {
         let missing = needed.saturating_sub(length - data);
         let message = format!(
-            "its {count} values take {needed} bytes and the file ends {missing} bytes too early, \
-             at byte {length}: it is cut short, or the count is wrong"
+            "its {count} values take {needed} bytes and the file ends {missing} bytes too early"
         );
         fault(data, message)
     };

@@ -142,12 +142,13 @@ impl RecordFile {
             if entries.is_empty() {
                 return Err(error);
             }
-            let keyword = Some(&error.keyword).filter(|k| !k.is_empty());
-            let keyword = keyword.map_or(String::new(), |k| format!("{k}: "));
-            let message = format!(
-                "{keyword}{}: the rest of the file was left out",
-                error.message
-            );
+            let message = match error.keyword.as_str() {
+                "" => format!("the end of the file was left out: {}", error.message),
+                keyword => format!(
+                    "{keyword} and what follows it were left out: {}",
+                    error.message
+                ),
+            };
             warnings.push(path, error.at, message);
         }
         Ok(Self {

@@ -4,6 +4,7 @@ use glam::{DVec2, DVec3};
 
 use super::edges::{self, Edge};
 use super::{Area, Arrangement, overlap};
+use crate::picture::annotate::short_unit;
 use crate::picture::ticks::plain_labels;
 use crate::scene::View;
 use crate::scene::camera::middle;
@@ -49,10 +50,21 @@ impl Coordinate {
     }
 
     fn of(self, view: &View, point: DVec3) -> f64 {
+        let map = view.spaces.map_from_world(point);
         match self {
-            Self::Easting => point.x,
-            Self::Northing => point.y,
-            Self::Depth => -point.z / view.vertical_exaggeration,
+            Self::Easting => map.x,
+            Self::Northing => map.y,
+            Self::Depth => map.z,
+        }
+    }
+}
+
+impl Coordinate {
+    /// Its unit: that of the map where it is not the grid's.
+    fn unit(self, view: &View, length_unit: &str) -> String {
+        match (self, view.spaces.map_unit) {
+            (Self::Easting | Self::Northing, Some(unit)) => short_unit(unit.name),
+            _ => length_unit.to_owned(),
         }
     }
 }
@@ -140,7 +152,7 @@ impl Scale {
             let free = free.filter(|l| layout.is_free(&l.area) && (moves || !l.is_moved));
             let free: Vec<Label> = free.collect();
             if few && free.len() >= LABELS[1] {
-                self.write(layout, &free, length_unit);
+                self.write(layout, &free, &self.coordinate.unit(view, length_unit));
                 return true;
             }
         }
