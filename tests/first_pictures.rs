@@ -1,6 +1,8 @@
 //! What the first picture of a case shows: the picture that opens without a scene, in the window and from the
 //! command line alike.
 
+#![allow(missing_docs, clippy::unwrap_used, clippy::panic, reason = "tests")]
+
 mod common;
 
 use common::{data, gpu, sample};
@@ -18,8 +20,8 @@ const FIELDS: [&str; 3] = [
     "spe9/SPE9_CP.EGRID",
 ];
 
-fn opened(case: &Case, written: serde_json::Value) -> (Scene, View) {
-    let scene = look::opening(case, &written).unwrap();
+fn opened(case: &Case, written: &serde_json::Value) -> (Scene, View) {
+    let scene = look::opening(case, written).unwrap();
     let view = scene::resolve(&scene, case).unwrap();
     (scene, view)
 }
@@ -55,7 +57,7 @@ fn the_oil_shows() {
     );
     let mut hidden = 0;
     for case in &cases {
-        let (scene, view) = opened(case, json!({"property": "SOIL", "mode": "volume"}));
+        let (scene, view) = opened(case, &json!({"property": "SOIL", "mode": "volume"}));
         let share = oil_that_shows(case, &view);
         eprintln!(
             "{}: {:.1} % of the oil shows",
@@ -78,7 +80,7 @@ fn the_oil_shows() {
 fn silhouette(renderer: &mut Renderer, case: &Case, written: &serde_json::Value) -> Vec<bool> {
     let mut cells = written.clone();
     cells["mode"] = "cells".into();
-    let (_, view) = opened(case, cells);
+    let (_, view) = opened(case, &cells);
     let image = renderer
         .render(&case.grid, &view, &|_| true)
         .unwrap()
@@ -118,7 +120,7 @@ fn nothing_inside_the_outline_is_taken_for_the_background() {
             let inside = apart.iter().zip(&is_inside).filter(|p| *p.1);
             inside.filter(|p| *p.0 < 10.0).count()
         };
-        let (_, view) = opened(&case, volume.clone());
+        let (_, view) = opened(&case, &volume);
         let inside = is_inside.iter().filter(|i| **i).count();
         let found = confused(&mut renderer, &view);
         eprintln!("{}: {found} of {inside} pixels", case.about.name);
@@ -126,7 +128,7 @@ fn nothing_inside_the_outline_is_taken_for_the_background() {
         assert_eq!(found, 0, "{}", case.about.name);
         // Without the faint hull there are some.
         volume["show"] = json!({"hull": "hidden"});
-        let (_, bare) = opened(&case, volume);
+        let (_, bare) = opened(&case, &volume);
         assert!(confused(&mut renderer, &bare) > 0, "{}", case.about.name);
     }
 }
@@ -141,7 +143,7 @@ fn sections_and_constant_properties_show_in_every_strategy() {
         for mode in ["cells", "volume"] {
             for strategy in ["plts", "libc", "srg"] {
                 let written = json!({"size": [240, 170], "mode": mode, "strategy": strategy});
-                let (_, view) = opened(&case, written);
+                let (_, view) = opened(&case, &written);
                 let image = renderer
                     .render(&case.grid, &view, &|_| true)
                     .unwrap()
@@ -164,7 +166,7 @@ fn sections_and_constant_properties_show_in_every_strategy() {
 fn a_case_opens_in_the_mode_that_shows_it() {
     let mode = |path: &std::path::Path, written| {
         let case = load::open(path).unwrap();
-        opened(&case, written).0.mode
+        opened(&case, &written).0.mode
     };
     use strataray::scene::Mode;
     assert_eq!(mode(&sample(), json!({})), Mode::Volume);
