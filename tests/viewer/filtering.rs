@@ -3,7 +3,7 @@
 use eframe::egui::{Key, Modifiers, vec2};
 use egui_kittest::kittest::Queryable;
 use strataray::scene::{Filter, Indices, ShownFaults};
-use strataray::viewer::Counts;
+use strataray::viewer::{Action, Counts};
 
 use super::common::{gpu, sample};
 use super::driven::{Driven, covered};
@@ -128,7 +128,10 @@ fn categories_are_checked_one_by_one() {
     let mut driven = Driven::sized(&[sample()], [1280.0, 1400.0], false);
     driven.wait_final();
     let all = drawn(&driven);
-    driven.click("FIPNUM");
+    driven
+        .harness
+        .state_mut()
+        .apply(Action::Property("FIPNUM".into()));
     driven.wait_final();
     driven.click("Property filters");
     driven.wait_settled();
@@ -138,7 +141,7 @@ fn categories_are_checked_one_by_one() {
     });
     let spread = driven.document().spreads[0].clone();
     let Some(Counts::Categories(blocks)) = &spread.counts else {
-        panic!("FIPNUM has categories");
+        panic!("{} has {:?}", spread.property, spread.counts);
     };
     assert_eq!(blocks.len(), 4);
     driven.click("FIPNUM 2");

@@ -1,6 +1,6 @@
 //! Which cells are drawn by I, J and K, single slices, and the vertical exaggeration.
 
-use eframe::egui::{self, Color32, Role, Ui, WidgetInfo};
+use eframe::egui::{self, Color32, Id, Role, Ui, WidgetInfo};
 
 use super::About;
 use super::range_slider::RangeSlider;
@@ -19,8 +19,9 @@ pub fn show(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
     for (axis, name) in AXES.into_iter().enumerate() {
         ui.push_id(name, |ui| {
             let count = count(dims, axis);
-            ui.horizontal(|ui| along(ui, name, filter.along_mut(axis), count));
-            refusal(ui, filter.along(axis), count);
+            let id = ui.scope_id().with("typed");
+            ui.horizontal(|ui| along(ui, id, name, filter.along_mut(axis), count));
+            refusal(ui, id, filter.along(axis), count);
         });
     }
     slices(ui, about, &mut filter, actions);
@@ -42,7 +43,7 @@ pub fn clear(ui: &mut Ui, filter: &mut Filter) {
 }
 
 /// First and last of an axis, by two handles, and a field for lists.
-fn along(ui: &mut Ui, name: &str, kept: &mut Option<Indices>, count: usize) {
+fn along(ui: &mut Ui, id: Id, name: &str, kept: &mut Option<Indices>, count: usize) {
     ui.label(name);
     let [first, last] = kept.as_ref().and_then(Indices::ends).unwrap_or([1, count]);
     let [first, last] = [first, last].map(|n| n.clamp(1, count));
@@ -63,19 +64,33 @@ fn along(ui: &mut Ui, name: &str, kept: &mut Option<Indices>, count: usize) {
             *kept = Some(Indices::Range([a, b])).filter(|_| [a, b] != [1, count]);
         }
     }
-    field(ui, name, kept, count);
+    field(ui, id, name, kept, count);
+}
+
+/// What was typed into a field and is not taken yet, and the text of the filter that it would replace.
+#[derive(Clone, Default, PartialEq)]
+struct Typed {
+    text: String,
+    over: String,
+}
+
+impl Typed {
+    fn of(ui: &Ui, id: Id, shown: &str) -> Option<Self> {
+        let typed: Option<Self> = ui.data(|d| d.get_temp(id));
+        typed.filter(|t| t.over == shown)
+    }
+}
+
+fn shown(kept: Option<&Indices>, count: usize) -> String {
+    kept.map_or_else(|| format!("1-{count}"), Indices::text)
 }
 
 /// A field for a number, a range or a list; what cannot be understood stays, and is said below.
-fn field(ui: &mut Ui, name: &str, kept: &mut Option<Indices>, count: usize) {
-    let id = ui.scope_id().with("typed");
-    let shown = match kept {
-        Some(kept) => kept.text(),
-        None => format!("1-{count}"),
-    };
-    let typed: Option<String> = ui.data(|d| d.get_temp(id));
-    let mut text = typed.clone().unwrap_or_else(|| shown.clone());
-    let is_wrong = typed.is_some_and(|t| Indices::typed(&t, count).is_err());
+fn field(ui: &mut Ui, id: Id, name: &str, kept: &mut Option<Indices>, count: usize) {
+    let shown = shown(kept.as_ref(), count);
+    let typed = Typed::of(ui, id, &shown);
+    let mut text = typed.map_or_else(|| shown.clone(), |t| t.text);
+    let is_wrong = Indices::typed(&text, count).is_err();
     let mut edit = egui::TextEdit::singleline(&mut text).desired_width(FIELD - 10.0);
     if is_wrong {
         edit = edit.text_color(wrong(ui));
@@ -86,29 +101,21 @@ fn field(ui: &mut Ui, name: &str, kept: &mut Option<Indices>, count: usize) {
     let response = response.on_hover_text(format!(
         "{name} drawn, 1 to {count}: a number, a range or a list such as {FORM}, where :2 takes every second"
     ));
-    if response.changed() {
-        ui.data_mut(|d| d.insert_temp(id, text.clone()));
-    }
-    if response.lost_focus() {
-        match Indices::typed(&text, count) {
-            Ok(indices) => {
-                ui.data_mut(|d| d.remove_temp::<String>(id));
-                *kept = indices;
-            }
-            Err(_) => {
-                ui.data_mut(|d| d.insert_temp(id, text));
-            }
-        }
-    } else if !response.has_focus() && text != shown && !is_wrong {
-        ui.data_mut(|d| d.remove_temp::<String>(id));
+    if response.lost_focus()
+        && let Ok(indices) = Indices::typed(&text, count)
+    {
+        *kept = indices;
+        ui.data_mut(|d| d.remove_temp::<Typed>(id));
+    } else if response.changed() {
+        let typed = Typed { text, over: shown };
+        ui.data_mut(|d| d.insert_temp(id, typed));
     }
 }
 
 /// Why what was typed is not taken.
-fn refusal(ui: &mut Ui, kept: Option<&Indices>, count: usize) {
-    let typed: Option<String> = ui.data(|d| d.get_temp(ui.scope_id().with("typed")));
-    let why = match (typed, kept) {
-        (Some(text), _) => Indices::typed(&text, count).err(),
+fn refusal(ui: &mut Ui, id: Id, kept: Option<&Indices>, count: usize) {
+    let why = match (Typed::of(ui, id, &shown(kept, count)), kept) {
+        (Some(typed), _) => Indices::typed(&typed.text, count).err(),
         (None, Some(kept)) => kept.flags(count).err(),
         (None, None) => None,
     };

@@ -1,6 +1,6 @@
 //! The faults that have a name: color, on or off, largest throw.
 
-use eframe::egui::{self, Color32, Role, Ui, WidgetInfo, vec2};
+use eframe::egui::{self, Color32, Ui, vec2};
 
 use super::About;
 use super::controls::significant;
@@ -52,13 +52,9 @@ fn list(ui: &mut Ui, about: &About<'_>, shown: &mut ShownFaults) {
         .show(ui, |ui| {
             for (n, fault) in named.iter().enumerate() {
                 ui.horizontal(|ui| {
-                    let mut is_on = shown.shows(Some(&fault.name));
-                    let check = ui.checkbox(&mut is_on, "");
-                    check.widget_info(|| {
-                        WidgetInfo::selected(Role::CheckBox, true, is_on, &fault.name)
-                    });
                     swatch(ui, Some(n));
-                    ui.label(&fault.name);
+                    let mut is_on = shown.shows(Some(&fault.name));
+                    let check = ui.checkbox(&mut is_on, &fault.name);
                     if check.changed() {
                         let names = named.iter().map(|f| f.name.clone());
                         let kept = |name: &String| match *name == fault.name {
@@ -75,11 +71,11 @@ fn list(ui: &mut Ui, about: &About<'_>, shown: &mut ShownFaults) {
                 ui.end_row();
             }
             ui.horizontal(|ui| {
-                let mut is_on = shown.shows(None);
-                let check = ui.add_enabled(false, egui::Checkbox::without_text(&mut is_on));
-                check.on_disabled_hover_text("Faults without a name are drawn with All");
                 swatch(ui, None);
-                ui.weak("without a name");
+                let mut is_on = shown.shows(None);
+                let check = egui::Checkbox::new(&mut is_on, "without a name");
+                ui.add_enabled(false, check)
+                    .on_disabled_hover_text("Faults without a name are drawn with All");
             });
             ui.end_row();
         });

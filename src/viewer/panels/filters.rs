@@ -191,13 +191,12 @@ fn categories(ui: &mut Ui, about: &About<'_>, row: &mut PropertyFilter, all: &[(
         .show(ui, |ui| {
             for (n, (value, cells)) in all.iter().enumerate() {
                 ui.horizontal(|ui| {
-                    let name = format!("{} {value}", row.name);
-                    let check = ui.checkbox(&mut flags[n], "");
-                    let is_on = flags[n];
-                    check.widget_info(|| WidgetInfo::selected(Role::CheckBox, true, is_on, &name));
                     let (place, _) = ui.allocate_exact_size(vec2(12.0, 12.0), egui::Sense::hover());
                     ui.painter().rect_filled(place, 2.0, colors[n]);
-                    ui.label(value.to_string());
+                    let name = format!("{} {value}", row.name);
+                    let check = ui.checkbox(&mut flags[n], value.to_string());
+                    let is_on = flags[n];
+                    check.widget_info(|| WidgetInfo::selected(Role::CheckBox, true, is_on, &name));
                     ui.weak(match cells {
                         1 => "1 cell".to_owned(),
                         cells => format!("{cells} cells"),
