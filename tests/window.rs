@@ -16,11 +16,14 @@ use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
 use x11rb::connection::Connection;
+use x11rb::protocol::Event;
 use x11rb::protocol::xproto::{
-    self, ClientMessageEvent, ConfigureWindowAux, ConnectionExt as _, ImageFormat, InputFocus,
+    self, AtomEnum, ClientMessageEvent, ConfigureWindowAux, ConnectionExt as _, CreateWindowAux,
+    ImageFormat, InputFocus, PropMode, SelectionNotifyEvent, WindowClass,
 };
 use x11rb::protocol::xtest::ConnectionExt as _;
 use x11rb::rust_connection::RustConnection;
+use x11rb::wrapper::ConnectionExt as _;
 
 const SIZE: [u16; 2] = [1280, 800];
 /// Longest wait for anything on a machine that does other things too.
@@ -143,6 +146,17 @@ impl Display {
         }
     }
 
+    fn atom(&self, name: &str) -> u32 {
+        let atom = self.x.intern_atom(false, name.as_bytes()).unwrap();
+        atom.reply().unwrap().atom
+    }
+
+    /// Gives a window the keys.
+    fn focus(&self, window: u32) {
+        let asked = self.x.set_input_focus(InputFocus::PARENT, window, 0u32);
+        asked.unwrap().check().unwrap();
+    }
+
     /// The window of the viewer, once it is there.
     fn window(&self) -> u32 {
         let start = Instant::now();
@@ -190,6 +204,9 @@ fn viewer(display: &Display, case: &Path, config: &Path) -> Ends {
         .arg(case)
         .env("DISPLAY", &display.name)
         .env_remove("WAYLAND_DISPLAY")
+        // Without a session bus there is no dialog of a desktop.
+        .env_remove("DBUS_SESSION_BUS_ADDRESS")
+        .env("XDG_RUNTIME_DIR", config)
         .env("STRATARAY_CONFIG", config)
         .spawn();
     Ends(child.unwrap())
@@ -218,6 +235,8 @@ fn used(process: &Ends, meanwhile: Duration) -> f64 {
 
 const CONTROL: u32 = 0xffe3;
 const ALT: u32 = 0xffe9;
+const SHIFT: u32 = 0xffe1;
+const RETURN: u32 = 0xff0d;
 
 #[test]
 fn the_window_shows_a_case_and_follows_the_hand() {
@@ -230,12 +249,7 @@ fn the_window_shows_a_case_and_follows_the_hand() {
     let mut process = viewer(&display, &case, config.path());
     let window = display.window();
     let first = display.settled("the first picture", |p| colored(p) > 5_000);
-    display
-        .x
-        .set_input_focus(InputFocus::PARENT, window, 0u32)
-        .unwrap()
-        .check()
-        .unwrap();
+    display.focus(window);
     // Once the picture is final, the window takes no CPU time.
     let start = Instant::now();
     while used(&process, Duration::from_secs(1)) > 0.0 {
@@ -295,6 +309,158 @@ fn the_window_shows_a_case_and_follows_the_hand() {
     assert!(status.success(), "{status}");
 }
 
+/// Another program on the display: it reads the clipboard and puts text on it.
+struct Other<'a> {
+    display: &'a Display,
+    window: u32,
+}
+
+impl<'a> Other<'a> {
+    fn new(display: &'a Display) -> Self {
+        let x = &display.x;
+        let window = x.generate_id().unwrap();
+        let shape = CreateWindowAux::new();
+        let class = WindowClass::INPUT_OUTPUT;
+        let made = x.create_window(0, window, display.root, 0, 0, 1, 1, 0, class, 0, &shape);
+        made.unwrap().check().unwrap();
+        Self { display, window }
+    }
+
+    /// The next event, if there is one within a while.
+    fn event(&self) -> Option<Event> {
+        for _ in 0..20 {
+            if let Some(event) = self.display.x.poll_for_event().unwrap() {
+                return Some(event);
+            }
+            std::thread::sleep(Duration::from_millis(10));
+        }
+        None
+    }
+
+    /// The text on the clipboard; `None` where nobody has any.
+    fn reads(&self) -> Option<String> {
+        let Display { x, .. } = self.display;
+        let [clipboard, utf8, here] =
+            ["CLIPBOARD", "UTF8_STRING", "STRATARAY_TEST"].map(|n| self.display.atom(n));
+        x.convert_selection(self.window, clipboard, utf8, here, 0u32)
+            .unwrap()
+            .check()
+            .unwrap();
+        while let Some(event) = self.event() {
+            if let Event::SelectionNotify(answer) = event {
+                (answer.property != 0).then_some(())?;
+                let all = u32::MAX / 4;
+                let property = x.get_property(true, self.window, here, AtomEnum::ANY, 0, all);
+                return String::from_utf8(property.unwrap().reply().unwrap().value).ok();
+            }
+        }
+        None
+    }
+
+    /// Waits until the clipboard has what is looked for.
+    fn waits(&self, what: &str, holds: impl Fn(&str) -> bool) -> String {
+        let start = Instant::now();
+        loop {
+            if let Some(text) = self.reads().filter(|t| holds(t)) {
+                return text;
+            }
+            assert!(start.elapsed() < PATIENCE, "the clipboard never has {what}");
+        }
+    }
+
+    /// Takes the clipboard.
+    fn owns(&self) {
+        let clipboard = self.display.atom("CLIPBOARD");
+        let taken = self
+            .display
+            .x
+            .set_selection_owner(self.window, clipboard, 0u32);
+        taken.unwrap().check().unwrap();
+    }
+
+    /// Gives a text to who asks for what is on the clipboard, until `done`.
+    fn gives(&self, text: &str, done: impl Fn() -> bool) {
+        let Display { x, .. } = self.display;
+        let [utf8, targets] = ["UTF8_STRING", "TARGETS"].map(|n| self.display.atom(n));
+        let start = Instant::now();
+        while !done() {
+            assert!(start.elapsed() < PATIENCE, "nobody pastes");
+            let Some(Event::SelectionRequest(asked)) = self.event() else {
+                continue;
+            };
+            let (to, at) = (asked.requestor, asked.property);
+            let replace = PropMode::REPLACE;
+            let given = match asked.target == targets {
+                true => x.change_property32(replace, to, at, AtomEnum::ATOM, &[targets, utf8]),
+                false => x.change_property8(replace, to, at, utf8, text.as_bytes()),
+            };
+            given.unwrap().check().unwrap();
+            let answer = SelectionNotifyEvent {
+                response_type: xproto::SELECTION_NOTIFY_EVENT,
+                sequence: 0,
+                time: asked.time,
+                requestor: to,
+                selection: asked.selection,
+                target: asked.target,
+                property: at,
+            };
+            let sent = x.send_event(false, to, xproto::EventMask::NO_EVENT, answer);
+            sent.unwrap().check().unwrap();
+        }
+    }
+}
+
+#[test]
+fn text_goes_to_other_programs_and_comes_from_them() {
+    let Some(display) = Display::start() else {
+        return;
+    };
+    let config = tempfile::tempdir().unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let case = common::copy_of_sample(folder.path());
+    let mut process = viewer(&display, &case, config.path());
+    let window = display.window();
+    display.settled("the first picture", |p| colored(p) > 5_000);
+    display.focus(window);
+    // The command line goes out, and runs as it stands, in another folder.
+    let other = Other::new(&display);
+    display.keys(&[CONTROL, SHIFT, u32::from(b'c')]);
+    let line = other.waits("the command", |text| text.contains(" render "));
+    let elsewhere = tempfile::tempdir().unwrap();
+    let taken = elsewhere.path().join("scene.json");
+    std::fs::write(&taken, "mine").unwrap();
+    let run = Command::new("sh")
+        .args(["-c", &line])
+        .current_dir(elsewhere.path())
+        .output();
+    let run = run.unwrap();
+    assert!(run.status.success(), "{line}\n{run:?}");
+    assert_eq!(std::fs::read_to_string(&taken).unwrap(), "mine");
+    let made = std::fs::read_dir(elsewhere.path()).unwrap().flatten();
+    let made: Vec<_> = made.map(|e| e.path()).filter(|p| *p != taken).collect();
+    assert_eq!(made.len(), 1, "{made:?}");
+    let (width, height) = image::image_dimensions(&made[0]).unwrap();
+    let wanted = format!("\"size\":[{width},{height}]");
+    assert!(line.contains(&wanted) && width > 400, "{wanted}: {line}");
+    // A path comes in: pasted into the sheet that asks for one, it is where the scene is saved.
+    let file = folder.path().join("pasted scene.json");
+    display.keys(&[CONTROL, u32::from(b's')]);
+    display.settled("the sheet for a path", |_| true);
+    other.owns();
+    for keys in [
+        &[CONTROL, u32::from(b'a')][..],
+        &[CONTROL, u32::from(b'v')],
+        &[RETURN],
+    ] {
+        display.keys(keys);
+    }
+    other.gives(&file.display().to_string(), || file.is_file());
+    let saved = std::fs::read_to_string(&file).unwrap();
+    assert!(saved.contains("\"property\""), "{saved}");
+    close(&display, window);
+    process.0.wait().unwrap();
+}
+
 #[test]
 fn without_a_display_one_sentence_says_so() {
     let output = Command::new(env!("CARGO_BIN_EXE_strataray"))
@@ -313,12 +479,8 @@ fn without_a_display_one_sentence_says_so() {
 
 /// Asks the window to close, as a window manager does.
 fn close(display: &Display, window: u32) {
-    let atom = |name: &str| {
-        let atom = display.x.intern_atom(false, name.as_bytes()).unwrap();
-        atom.reply().unwrap().atom
-    };
-    let data = [atom("WM_DELETE_WINDOW"), 0, 0, 0, 0];
-    let message = ClientMessageEvent::new(32, window, atom("WM_PROTOCOLS"), data);
+    let data = [display.atom("WM_DELETE_WINDOW"), 0, 0, 0, 0];
+    let message = ClientMessageEvent::new(32, window, display.atom("WM_PROTOCOLS"), data);
     let sent = display
         .x
         .send_event(false, window, xproto::EventMask::NO_EVENT, message);

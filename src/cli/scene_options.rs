@@ -18,7 +18,7 @@ use super::progress::Reporter;
 
 #[derive(clap::Args)]
 pub struct SceneOptions {
-    /// Scene file (JSON); the options below override it.
+    /// Scene file (JSON), or - for standard input; the options below override it.
     #[arg(long)]
     pub scene: Option<PathBuf>,
     /// Property, or a difference such as PRESSURE-PRESSURE@0.
@@ -143,8 +143,11 @@ impl SceneOptions {
         let Some(path) = &self.scene else {
             return Ok(serde_json::Map::new());
         };
-        let text = std::fs::read_to_string(path)
-            .with_context(|| format!("cannot read {}", path.display()))?;
+        let text = match path.as_os_str() == "-" {
+            true => std::io::read_to_string(std::io::stdin()),
+            false => std::fs::read_to_string(path),
+        };
+        let text = text.with_context(|| format!("cannot read {}", path.display()))?;
         // As a whole scene first, for errors that name line and column.
         let _: Scene =
             serde_json::from_str(&text).with_context(|| format!("{}", path.display()))?;

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::slices::Slicing;
-use super::state::{Comparison, Pace, State};
+use super::state::{Comparison, CurvePlots, Pace, State};
 use crate::scene::{
     CameraSpec, ClipSpec, Filter, Interpolation, LibcSettings, LightingSpec, RangeSpec, Scene,
     Show, SrgSettings, StepSpec, TransferSpec,
@@ -52,6 +52,8 @@ pub enum Action {
     Select([usize; 3], Beside),
     /// Selects none.
     Deselect,
+    /// Shows curves of the selected cells.
+    Curves(CurvePlots),
     /// How time plays.
     Pace(Pace),
     /// How slices are stepped through.
@@ -91,6 +93,7 @@ impl Action {
             Self::Scene(_) => "scene",
             Self::Compare(_) => "comparison",
             Self::Select(..) | Self::Deselect => "selection",
+            Self::Curves(_) => "curves",
             Self::Pace(_) => "pace",
             Self::Slicing(_) => "slices",
         }
@@ -120,6 +123,7 @@ impl Action {
             Self::Compare(v) => state.setup.comparison = v,
             Self::Select(cell, beside) => select(&mut state.selected, cell, beside),
             Self::Deselect => state.selected.clear(),
+            Self::Curves(v) => state.curves = v,
             Self::Pace(v) => state.pace = v,
             Self::Slicing(v) => state.slicing = v,
         }

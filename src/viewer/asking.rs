@@ -17,7 +17,7 @@ use crate::scene::{Scene, model_corners};
 #[derive(Default, PartialEq)]
 pub struct Asked {
     table: Option<(Cells, usize)>,
-    curves: Option<(Cells, String)>,
+    curves: Option<(Cells, Vec<String>)>,
     ahead: Option<(usize, Vec<(String, usize)>)>,
     look: Option<(usize, String)>,
     spreads: Vec<(String, usize)>,
@@ -129,7 +129,14 @@ impl Window {
                 cells,
             };
             asked.table = Some((of.clone(), step));
-            asked.curves = Some((of, property.clone()));
+            let chosen = &document.state.curves.properties;
+            asked.curves = Some((
+                of,
+                match chosen.is_empty() {
+                    true => vec![property.clone()],
+                    false => chosen.clone(),
+                },
+            ));
         }
         let filters = document.state.setup.scene.filter.properties.iter();
         let names: Vec<String> = filters.map(|f| f.name.clone()).chain([property]).collect();
@@ -156,9 +163,9 @@ impl Window {
             self.reader.table(of.clone(), *step);
         }
         if asked.curves != self.asked.curves
-            && let Some((of, property)) = &asked.curves
+            && let Some((of, properties)) = &asked.curves
         {
-            self.reader.curves(of.clone(), property.clone());
+            self.reader.curves(of.clone(), properties.clone());
         }
         if asked.look != self.asked.look
             && let Some((_, property)) = &asked.look

@@ -21,9 +21,10 @@ const MENUS: [(&str, &[Command]); 5] = [
             Command::SaveTable,
             Command::CopyLine,
             Command::Close,
+            Command::Reopen,
         ],
     ),
-    ("Edit", &[Command::Undo, Command::Redo]),
+    ("Edit", &[Command::Undo, Command::Redo, Command::Settings]),
     (
         "Look",
         &[
@@ -48,11 +49,16 @@ const MENUS: [(&str, &[Command]); 5] = [
             Command::NextStrategy,
             Command::Light,
             Command::Compare,
+            Command::Curves,
             Command::Play,
         ],
     ),
     ("Help", &[Command::Help, Command::Notes]),
 ];
+
+/// Narrower windows do without the buttons beside the menus, and without the adapter's name.
+const WIDTH_OF_BUTTONS: f32 = 400.0;
+const WIDTH_OF_ADAPTER: f32 = 700.0;
 
 /// Menus and tabs.
 pub fn top(window: &mut Window, ui: &mut Ui, ctx: &Context) {
@@ -68,13 +74,17 @@ pub fn top(window: &mut Window, ui: &mut Ui, ctx: &Context) {
                     }
                 });
             }
+            // All of these are in the menus too.
+            if ui.available_width() < WIDTH_OF_BUTTONS {
+                return;
+            }
             ui.separator();
             for (name, command) in [
                 ("Open", Command::Open),
                 ("Undo", Command::Undo),
                 ("Redo", Command::Redo),
                 ("Frame all", Command::Look(Look::FrameAll)),
-                ("Save picture", Command::Screenshot),
+                ("Save image", Command::Screenshot),
                 ("Keys", Command::Help),
             ] {
                 let hint = hint(ctx, command);
@@ -146,8 +156,20 @@ pub fn bottom(window: &mut Window, ui: &mut Ui, ctx: &Context) {
             Some(Asked::Change(action)) => window.apply(action),
             None => {}
         }
-        ui.horizontal(|ui| {
-            message(window, ui);
+        let row = egui::vec2(ui.available_width(), ui.spacing().interact_size.y);
+        // From the right: what is left of the row is the message's, which never lies under something else.
+        let layout = egui::Layout::right_to_left(egui::Align::Center);
+        ui.allocate_ui_with_layout(row, layout, |ui| {
+            if let Some((name, _)) = &window.pictures.adapter
+                && row.x > WIDTH_OF_ADAPTER
+            {
+                ui.weak(name);
+            }
+            ui.label(progress(window));
+            if let Some(document) = window.document_mut() {
+                loading(ui, document);
+            }
+            exporting(window, ui);
             let case = window.document().and_then(|d| d.case.as_ref());
             let notes = case.map_or(0, |c| c.about.notes.len());
             let text = match notes {
@@ -157,15 +179,8 @@ pub fn bottom(window: &mut Window, ui: &mut Ui, ctx: &Context) {
             if notes > 0 && ui.link(text).clicked() {
                 command = Some(Command::Notes);
             }
-            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                if let Some((name, _)) = &window.pictures.adapter {
-                    ui.weak(name);
-                }
-                ui.label(progress(window));
-                if let Some(document) = window.document_mut() {
-                    loading(ui, document);
-                }
-                exporting(window, ui);
+            ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
+                message(window, ui);
             });
         });
     });
@@ -174,18 +189,24 @@ pub fn bottom(window: &mut Window, ui: &mut Ui, ctx: &Context) {
     }
 }
 
+/// What is told, in one line, in full where the pointer rests on it.
 fn message(window: &Window, ui: &mut Ui) {
-    let red = Color32::from_rgb(220, 80, 60);
-    match &window.message {
-        Some((text, true)) => ui.colored_label(red, text),
-        Some((text, false)) => ui.label(text),
-        None => {
-            // Why a case that is shown could not be read again.
-            let shown = window.document().filter(|d| d.case.is_some());
-            let error = shown.and_then(|d| d.error.as_deref());
-            ui.colored_label(red, error.unwrap_or_default())
-        }
+    // Why a case that is shown could not be read again.
+    let shown = window.document().filter(|d| d.case.is_some());
+    let stale = shown.and_then(|d| d.error.as_ref());
+    let told = window
+        .message
+        .as_ref()
+        .map(|(text, is_error)| (text, *is_error));
+    let Some((text, is_error)) = told.or(stale.map(|error| (error, true))) else {
+        return;
     };
+    let rich = egui::RichText::new(text);
+    let rich = match is_error {
+        true => rich.color(Color32::from_rgb(220, 80, 60)),
+        false => rich,
+    };
+    ui.add(egui::Label::new(rich).truncate());
 }
 
 /// How far the picture is.
@@ -213,7 +234,7 @@ fn loading(ui: &mut Ui, document: &mut super::document::Document) {
     {
         document.loading = None;
     }
-    ui.label(format!("reading again: {stage}"));
+    ui.label(format!("again: {stage}"));
 }
 
 /// A picture or film that is being made for a file.

@@ -12,17 +12,27 @@ pub fn scene_text(scene: &Scene) -> Result<String, String> {
     serde_json::to_string_pretty(scene).map_err(|e| format!("the scene cannot be written: {e}"))
 }
 
-/// A line for a shell: the whole scene is in it, so that nothing else is needed.
+/// A line for a POSIX shell that can be run as it stands, in any folder: the whole scene is in it, `program`
+/// and `case` are absolute, and the name of the picture has the time at which the line is run, so that no
+/// file is replaced.
 ///
 /// # Errors
 /// As [`scene_text`].
-pub fn command(case: &Path, scene: &Scene) -> Result<String, String> {
+pub fn command(program: &Path, case: &Path, scene: &Scene) -> Result<String, String> {
     let json =
         serde_json::to_string(scene).map_err(|e| format!("the scene cannot be written: {e}"))?;
+    let name = case.file_stem().unwrap_or_default().to_string_lossy();
+    let absolute = |path: &Path| {
+        let path = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+        quoted(&path.display().to_string())
+    };
     Ok(format!(
-        "printf '%s' {} > scene.json && strataray render {} --scene scene.json -o picture.png",
+        "printf '%s' {} | {} render {} --scene - -o {}-$(date +%Y%m%d-%H%M%S).png",
         quoted(&json),
-        quoted(&case.display().to_string())
+        absolute(program),
+        absolute(case),
+        // A name that begins with a dash would be an option.
+        quoted(&format!("./{name}")),
     ))
 }
 
@@ -32,6 +42,7 @@ fn quoted(text: &str) -> String {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "tests")]
 mod tests {
     use super::*;
 
@@ -39,5 +50,39 @@ mod tests {
     fn quotes_survive_a_shell() {
         assert_eq!(quoted("a b"), "'a b'");
         assert_eq!(quoted("it's"), r"'it'\''s'");
+    }
+
+    /// A shell runs the line; a program that only tells what it got stands for ours.
+    #[cfg(unix)]
+    #[test]
+    fn a_shell_hands_over_scene_and_paths() {
+        use std::os::unix::fs::PermissionsExt;
+        let folder = tempfile::tempdir().unwrap();
+        let program = folder.path().join("it's a program");
+        std::fs::write(&program, "#!/bin/sh\nprintf '%s\\n' \"$@\"; cat\n").unwrap();
+        std::fs::set_permissions(&program, PermissionsExt::from_mode(0o755)).unwrap();
+        let case = folder.path().join("-of two words.EGRID");
+        let scene = Scene {
+            property: Some("it's SOIL $HOME `id`".into()),
+            size: [123, 45],
+            ..Scene::default()
+        };
+        let line = command(&program, &case, &scene).unwrap();
+        let run = std::process::Command::new("sh")
+            .args(["-c", &line])
+            .output();
+        let said = String::from_utf8(run.unwrap().stdout).unwrap();
+        let mut lines = said.splitn(7, '\n');
+        let mut next = || lines.next().unwrap().to_owned();
+        assert_eq!(next(), "render");
+        assert_eq!(next(), case.display().to_string());
+        assert_eq!([next(), next(), next()], ["--scene", "-", "-o"]);
+        let name = next();
+        assert!(
+            name.starts_with("./-of two words-2") && name.ends_with(".png"),
+            "{name}"
+        );
+        let read: Scene = serde_json::from_str(&next()).unwrap();
+        assert_eq!(read, scene);
     }
 }

@@ -1,21 +1,26 @@
 //! What keys and menus do.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 use std::time::Instant;
 
 use eframe::egui::Context;
 
 use super::action::{Action, Beside};
+use super::asking::Asked;
 use super::command;
 use super::dialogs::{Dialog, Purpose};
 use super::document::Document;
 use super::export::Export;
 use super::keys::Command;
-use super::settings::Mouse;
 use super::sheets::Sheets;
-use super::state::{Comparison, State, next_strategy};
+use super::state::{Comparison, CurvePlots, State, next_strategy};
 use super::window::Window;
-use crate::scene::LightingSpec;
+use crate::case::Case;
+use crate::scene::{LightingSpec, Scene};
+
+/// Closed cases that can be opened again, at most.
+const MOST_CLOSED: usize = 10;
 
 impl Window {
     /// Does what a key or a line of a menu says.
@@ -23,6 +28,7 @@ impl Window {
         match command {
             Command::Open => self.ask_file(ctx, Purpose::Case),
             Command::Close => self.close(self.current),
+            Command::Reopen => self.reopen(ctx),
             Command::Reload => self.reload(ctx),
             Command::SaveScene => self.ask_file(ctx, Purpose::SaveScene),
             Command::LoadScene => self.ask_file(ctx, Purpose::LoadScene),
@@ -42,11 +48,9 @@ impl Window {
             Command::Mouse => {
                 self.settings.mouse = self.settings.mouse.next();
                 self.keep_settings();
-                self.tell(match self.settings.mouse {
-                    Mouse::Standard => "left drag turns, middle moves, right zooms",
-                    Mouse::Rms => "left drag zooms, middle turns, right moves",
-                });
+                self.tell(format!("mouse as in {}", self.settings.mouse.name()));
             }
+            Command::Settings => self.sheets.settings = !self.sheets.settings,
             Command::Help => self.sheets.keys = !self.sheets.keys,
             Command::Notes => self.sheets.notes = !self.sheets.notes,
             Command::Deselect if self.sheets.are_open() => self.sheets = Sheets::default(),
@@ -65,23 +69,68 @@ impl Window {
         }
     }
 
-    /// Closes a tab.
+    /// Closes a tab; it can be opened again as it was.
     pub(super) fn close(&mut self, tab: usize) {
-        if tab < self.documents.len() {
-            self.documents.remove(tab);
-            let before = usize::from(tab <= self.current);
-            self.current = self.current.saturating_sub(before);
+        if tab >= self.documents.len() {
+            return;
         }
+        let document = self.documents.remove(tab);
+        let before = usize::from(tab <= self.current);
+        self.current = self.current.saturating_sub(before);
+        if let Some(case) = &document.case {
+            self.forget(case);
+            self.tell(format!(
+                "{} is closed; Ctrl+Shift+T opens it again",
+                document.title()
+            ));
+        }
+        self.closed.push((document.path, document.state));
+        if self.closed.len() > MOST_CLOSED {
+            self.closed.remove(0);
+        }
+    }
+
+    /// Opens the case that was closed last, as it was.
+    fn reopen(&mut self, ctx: &Context) {
+        let Some((path, state)) = self.closed.pop() else {
+            self.tell("no case was closed");
+            return;
+        };
+        let is_open = self.documents.iter().any(|d| d.path == path);
+        self.show_case(ctx, path);
+        if let Some(document) = self.document_mut().filter(|_| !is_open) {
+            document.state = state;
+        }
+    }
+
+    /// Lets go of all that is kept of a case that is closed or was read again.
+    pub(super) fn forget(&mut self, case: &Arc<Case>) {
+        self.pictures.forget(case);
+        self.reader.forget(case);
+        self.asked = Asked::default();
     }
 
     fn copy_command(&mut self, ctx: &Context) {
         let Some(document) = self.document() else {
             return;
         };
-        let line = command::command(&document.path, &document.state.setup.scene);
+        let sizes = self.sides.sizes(ctx.pixels_per_point());
+        let scene = &document.state.setup.scene;
+        let scene = Scene {
+            size: sizes[0].unwrap_or(scene.size),
+            ..scene.clone()
+        };
+        let program = std::env::current_exe().unwrap_or_else(|_| "strataray".into());
+        let line = command::command(&program, &document.path, &scene);
+        let is_first = document.state.setup.comparison.is_some();
         let told = line.map(|line| {
             ctx.copy_text(line);
-            "the command line is in the clipboard".to_owned()
+            match is_first {
+                true => "the command for the first image is on the clipboard".to_owned(),
+                false => {
+                    "the command is on the clipboard; it writes a PNG where it is run".to_owned()
+                }
+            }
         });
         self.answer(told);
     }
@@ -92,12 +141,16 @@ impl Window {
     }
 
     /// Does what a file was asked for.
-    pub(super) fn choose(&mut self, ctx: &Context, purpose: Purpose, path: PathBuf) {
+    pub(super) fn choose(&mut self, ctx: &Context, purpose: Purpose, mut paths: Vec<PathBuf>) {
+        if matches!(purpose, Purpose::Case) {
+            self.open(ctx, paths);
+            return;
+        }
+        let Some(path) = paths.pop().map(|path| purpose.file(path)) else {
+            return;
+        };
         let told = match purpose {
-            Purpose::Case => {
-                self.open(ctx, path);
-                return;
-            }
+            Purpose::Case => return,
             Purpose::Export(spec) => {
                 let waker = ctx.clone();
                 self.export = Some(Export::begin(*spec, path, move || waker.request_repaint()));
@@ -175,6 +228,13 @@ fn change(document: &mut Document, command: Command) -> Option<String> {
             });
             document.apply(Action::Compare(next));
             return told;
+        }
+        Command::Curves => {
+            let curves = &document.state.curves;
+            document.apply(Action::Curves(CurvePlots {
+                is_open: !curves.is_open,
+                ..curves.clone()
+            }));
         }
         Command::Deselect => document.apply(Action::Deselect),
         Command::AlongRay(by) => match document.along_ray(by) {

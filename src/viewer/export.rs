@@ -12,7 +12,7 @@ use super::window::Window;
 use crate::case::Case;
 use crate::filming::shoot;
 use crate::gpu::Gpu;
-use crate::picture::film::{Film, FilmShape};
+use crate::picture::film::{Film, FilmFormat, FilmShape};
 use crate::renderer::Renderer;
 use crate::scene::{Scene, Sequence, Turn, film};
 
@@ -25,6 +25,8 @@ pub struct ExportSpec {
     pub scene: Scene,
     /// One picture, or a film.
     pub kind: Kind,
+    /// Kind of file of a film.
+    pub format: FilmFormat,
     /// Without title, legend and axes.
     pub plain: bool,
     /// The second picture of a still, and how both are shown.
@@ -42,6 +44,16 @@ pub struct Compared {
     pub scene: Scene,
     /// How both are shown.
     pub layout: Layout,
+}
+
+impl ExportSpec {
+    /// Ending of the file; `None` for a folder of numbered pictures.
+    pub fn ending(&self) -> Option<&'static str> {
+        match self.kind {
+            Kind::Still => Some("png"),
+            _ => self.format.ending(),
+        }
+    }
 }
 
 /// What kind of file is made.
@@ -218,6 +230,7 @@ mod tests {
                 ..Scene::default()
             },
             kind,
+            format: FilmFormat::Gif,
             plain: true,
             compared: None,
             marked: Vec::new(),

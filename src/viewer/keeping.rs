@@ -33,14 +33,14 @@ impl Window {
         Ok(format!("the scene is in {}", path.display()))
     }
 
-    /// Saves the values of the selected cells, and their curves, as comma-separated text.
+    /// Saves the values of the selected cells, and their curves, as one comma-separated table.
     ///
     /// # Errors
     /// When none is selected, or the file cannot be written; the sentence names it.
     pub fn save_table(&self, path: &Path) -> Result<String, String> {
         let document = self.document().ok_or("open a case first")?;
         let table = document.table.as_ref().ok_or("select a cell first")?;
-        let text = panels::csv(table, document.curves.as_ref());
+        let text = panels::csv(table, document.curves.as_ref())?;
         std::fs::write(path, text).map_err(|e| format!("{}: {e}", path.display()))?;
         Ok(format!("the values are in {}", path.display()))
     }

@@ -37,6 +37,10 @@ pub enum Command {
     Slice(isize),
     /// To the next axis of slices, or the one before.
     SliceAxis(isize),
+    /// Mouse, theme, size of letters.
+    Settings,
+    /// Curves of the selected cells.
+    Curves,
     /// The next strategy.
     NextStrategy,
     /// Lighting off, or soft.
@@ -45,6 +49,8 @@ pub enum Command {
     Theme,
     /// Closes the tab.
     Close,
+    /// Opens the tab that was closed last.
+    Reopen,
     /// Saves a film.
     Film,
     /// Saves the values of the selected cells.
@@ -78,12 +84,12 @@ const fn from(view: usize) -> Command {
 }
 
 /// Every shortcut, with what it says in the sheet.
-pub const SHORTCUTS: [(Modifiers, Key, Command, &str); 54] = [
+pub const SHORTCUTS: [(Modifiers, Key, Command, &str); 57] = [
     (CTRL, Key::O, Command::Open, "Open a case"),
     (NONE, Key::F5, Command::Reload, "Read the case again"),
     (CTRL, Key::S, Command::SaveScene, "Save the scene"),
     (CTRL, Key::L, Command::LoadScene, "Load a scene"),
-    (NONE, Key::F12, Command::Screenshot, "Save the picture"),
+    (NONE, Key::F12, Command::Screenshot, "Save an image"),
     (CTRL_SHIFT, Key::C, Command::CopyLine, "Copy as command"),
     (CTRL_SHIFT, Key::Z, Command::Redo, "Redo"),
     (CTRL, Key::Z, Command::Undo, "Undo"),
@@ -139,12 +145,25 @@ pub const SHORTCUTS: [(Modifiers, Key, Command, &str); 54] = [
     (NONE, Key::Plus, Command::Look(Look::Zoom(true)), "Closer"),
     (NONE, Key::Equals, Command::Look(Look::Zoom(true)), "Closer"),
     (NONE, Key::Minus, Command::Look(Look::Zoom(false)), "Away"),
-    (CTRL, Key::M, Command::Mouse, "Mouse as usual or as in RMS"),
+    (CTRL, Key::M, Command::Mouse, "Next mouse preset"),
+    (CTRL, Key::Comma, Command::Settings, "Settings"),
+    (
+        CTRL,
+        Key::G,
+        Command::Curves,
+        "Curves of the selected cells",
+    ),
     (NONE, Key::S, Command::NextStrategy, "Next strategy"),
     (NONE, Key::Q, Command::Light, "Occlusion on or off"),
     (CTRL, Key::D, Command::Theme, "Dark or light"),
     (CTRL, Key::W, Command::Close, "Close the case"),
-    (CTRL, Key::F12, Command::Film, "Save a film"),
+    (
+        CTRL_SHIFT,
+        Key::T,
+        Command::Reopen,
+        "Reopen the closed case",
+    ),
+    (CTRL, Key::F12, Command::Film, "Save an animation"),
     (
         CTRL_SHIFT,
         Key::S,

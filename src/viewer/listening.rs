@@ -31,13 +31,13 @@ impl Window {
             self.take(read);
         }
         let dropped = ctx.input(|i| i.raw.dropped_files.clone());
-        for path in dropped.iter().map(|f| f.path().to_owned()) {
-            self.open(ctx, path);
+        if !dropped.is_empty() {
+            self.open(ctx, dropped.iter().map(|f| f.path().to_owned()).collect());
         }
         if let Some(outcome) = self.dialog.as_ref().and_then(Dialog::poll) {
             self.dialog = None;
             match outcome {
-                Outcome::Chosen(purpose, path) => self.choose(ctx, purpose, path),
+                Outcome::Chosen(purpose, paths) => self.choose(ctx, purpose, paths),
                 Outcome::Left => {}
                 Outcome::NoDialog(purpose) => self.sheets.path = Some(PathSheet::new(purpose)),
             }
@@ -84,10 +84,12 @@ impl Window {
 
     /// Cases that came, and files that changed.
     fn listen_to_files(&mut self, ctx: &Context) {
-        let mut opened = Vec::new();
+        let (mut opened, mut replaced) = (Vec::new(), Vec::new());
         let mut gone = None;
         for document in &mut self.documents {
+            let before = document.case.clone();
             if document.listen() {
+                replaced.extend(before);
                 opened.push(document.path.clone());
                 if self.watches
                     && let Some(case) = &document.case
@@ -107,6 +109,9 @@ impl Window {
             self.fail(format!(
                 "a file of {name} is gone; what was read of it stays, and F5 reads it again"
             ));
+        }
+        for case in replaced {
+            self.forget(&case);
         }
         if opened.is_empty() {
             return;

@@ -73,12 +73,13 @@ impl Loading {
         }
     }
 
-    /// What is being read.
+    /// What is being read, in words.
     pub fn stage(&self) -> String {
-        self.stage
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner)
-            .clone()
+        let stage = self.stage.lock().unwrap_or_else(PoisonError::into_inner);
+        match stage.as_str() {
+            "" => "looking for its files".into(),
+            stage => format!("reading {stage}"),
+        }
     }
 
     /// Asks to stop before the next stage.

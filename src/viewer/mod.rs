@@ -6,10 +6,14 @@
 mod action;
 mod asking;
 mod bar;
+mod budget;
+mod cases;
 mod command;
 mod commands;
 mod dialogs;
+mod docks;
 mod document;
+mod drafts;
 mod export;
 mod handles;
 mod history;
@@ -36,6 +40,7 @@ mod state;
 mod still;
 mod studio;
 mod subject;
+mod turning;
 mod viewport;
 mod watch;
 mod welcome;
@@ -46,11 +51,13 @@ use std::path::PathBuf;
 
 pub use action::{Action, Beside};
 pub use document::Document;
-pub use reader::{Curves, Table};
+pub use pictures::DraftCount;
+pub use reader::{Curve, Curves, Table};
 pub use settings::Settings;
 pub use slices::Slicing;
 pub use spread::{Counts, Spread};
-pub use state::{Comparison, Layout, Pace, Setup, State};
+pub use state::{Comparison, CurvePlots, Layout, Pace, Setup, State};
+pub use turning::{Turned, turn};
 pub use window::Window;
 pub use worker::{Difference, Picture};
 

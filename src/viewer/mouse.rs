@@ -19,40 +19,58 @@ pub enum Motion {
 /// A button with keys held down, and what dragging with it does.
 type Binding = (PointerButton, Modifiers, Motion);
 
-/// Left and middle, so that a touchpad needs no other button, then right.
-const STANDARD: [Binding; 5] = [
+/// What every preset has, so that a touchpad needs no other button than the left one.
+const LEFT: [Binding; 2] = [
     (PointerButton::Primary, Modifiers::SHIFT, Motion::Pan),
     (PointerButton::Primary, Modifiers::COMMAND, Motion::Rotate),
+];
+const STANDARD: [Binding; 3] = [
     (PointerButton::Primary, Modifiers::NONE, Motion::Rotate),
     (PointerButton::Middle, Modifiers::NONE, Motion::Pan),
     (PointerButton::Secondary, Modifiers::NONE, Motion::Zoom),
 ];
-const RMS: [Binding; 5] = [
-    (PointerButton::Primary, Modifiers::SHIFT, Motion::Pan),
-    (PointerButton::Primary, Modifiers::COMMAND, Motion::Rotate),
+const GEOQUEST: [Binding; 2] = [
+    (PointerButton::Primary, Modifiers::NONE, Motion::Rotate),
+    (PointerButton::Middle, Modifiers::NONE, Motion::Pan),
+];
+const RMS: [Binding; 3] = [
     (PointerButton::Primary, Modifiers::NONE, Motion::Zoom),
     (PointerButton::Middle, Modifiers::NONE, Motion::Rotate),
     (PointerButton::Secondary, Modifiers::NONE, Motion::Pan),
 ];
+const CAD: [Binding; 3] = [
+    (PointerButton::Primary, Modifiers::NONE, Motion::Pan),
+    (PointerButton::Middle, Modifiers::SHIFT, Motion::Pan),
+    (PointerButton::Middle, Modifiers::NONE, Motion::Rotate),
+];
+const CEETRON: [Binding; 3] = [
+    (PointerButton::Primary, Modifiers::NONE, Motion::Pan),
+    (PointerButton::Middle, Modifiers::NONE, Motion::Zoom),
+    (PointerButton::Secondary, Modifiers::NONE, Motion::Rotate),
+];
 
 impl Mouse {
     /// Its bindings; the first that fits counts.
-    fn bindings(self) -> &'static [Binding] {
-        match self {
+    fn bindings(self) -> impl Iterator<Item = &'static Binding> {
+        let own: &[Binding] = match self {
             Self::Standard => &STANDARD,
+            Self::Geoquest => &GEOQUEST,
             Self::Rms => &RMS,
-        }
+            Self::Cad => &CAD,
+            Self::Ceetron => &CEETRON,
+        };
+        LEFT.iter().chain(own)
     }
 
     /// What a drag with a button does while keys are held down.
     pub fn motion(self, button: PointerButton, held: Modifiers) -> Option<Motion> {
         let fits = |(b, m, _): &&Binding| *b == button && held.contains(*m);
-        self.bindings().iter().find(fits).map(|b| b.2)
+        self.bindings().find(fits).map(|b| b.2)
     }
 
     /// Each drag and what it does, for people.
     pub fn describe(self) -> impl Iterator<Item = (String, &'static str)> {
-        let drags = self.bindings().iter().map(|(button, held, motion)| {
+        let drags = self.bindings().map(|(button, held, motion)| {
             let button = match button {
                 PointerButton::Primary => "left drag",
                 PointerButton::Middle => "middle drag",
@@ -136,19 +154,38 @@ mod tests {
     #[test]
     fn every_preset_does_all_with_the_left_button() {
         let left = PointerButton::Primary;
-        for mouse in [Mouse::Standard, Mouse::Rms] {
+        for mouse in Mouse::ALL {
             let motion = |held| mouse.motion(left, held);
             assert_eq!(motion(Modifiers::SHIFT), Some(Motion::Pan));
             assert_eq!(motion(Modifiers::COMMAND), Some(Motion::Rotate));
-            assert_eq!(mouse.describe().count(), 6);
         }
-        let plain = |mouse: Mouse| {
-            [left, PointerButton::Middle, PointerButton::Secondary]
-                .map(|b| mouse.motion(b, Modifiers::NONE))
-        };
-        let all = [Motion::Rotate, Motion::Pan, Motion::Zoom].map(Some);
-        assert_eq!(plain(Mouse::Standard), all);
-        let rms = [Motion::Zoom, Motion::Rotate, Motion::Pan].map(Some);
-        assert_eq!(plain(Mouse::Rms), rms);
+    }
+
+    #[test]
+    fn presets_are_those_of_the_programs() {
+        let buttons = [
+            PointerButton::Primary,
+            PointerButton::Middle,
+            PointerButton::Secondary,
+        ];
+        let plain = |mouse: Mouse| buttons.map(|b| mouse.motion(b, Modifiers::NONE));
+        let [rotate, pan, zoom] = [Motion::Rotate, Motion::Pan, Motion::Zoom].map(Some);
+        assert_eq!(plain(Mouse::Standard), [rotate, pan, zoom]);
+        assert_eq!(plain(Mouse::Geoquest), [rotate, pan, None]);
+        assert_eq!(plain(Mouse::Rms), [zoom, rotate, pan]);
+        assert_eq!(plain(Mouse::Cad), [pan, rotate, None]);
+        assert_eq!(plain(Mouse::Ceetron), [pan, zoom, rotate]);
+        let shifted = Mouse::Cad.motion(PointerButton::Middle, Modifiers::SHIFT);
+        assert_eq!(shifted, pan);
+        // Each is reached, and each is named after a program.
+        let mut mouse = Mouse::default();
+        for _ in Mouse::ALL {
+            mouse = mouse.next();
+            assert!(mouse.describe().count() > 4);
+        }
+        assert_eq!(mouse, Mouse::default());
+        for program in ["Petrel", "RMS", "ResInsight"] {
+            assert!(Mouse::ALL.iter().any(|m| m.name().starts_with(program)));
+        }
     }
 }

@@ -35,15 +35,22 @@ pub struct Table {
     pub rows: Vec<(String, String, Vec<Option<f32>>)>,
 }
 
-/// A property of some cells over time.
+/// Properties of some cells over time.
 #[derive(Clone, PartialEq)]
 pub struct Curves {
     /// Of which cells.
     pub of: Cells,
+    /// In the order in which they were asked for.
+    pub curves: Vec<Curve>,
+}
+
+/// A property of some cells over time.
+#[derive(Clone, PartialEq)]
+pub struct Curve {
     /// Which property.
     pub property: String,
-    /// By cell: days and value of the steps that have one.
-    pub points: Vec<Vec<[f64; 2]>>,
+    /// By cell: number and value of the steps that have one; none of a property that does not change.
+    pub points: Vec<Vec<(usize, f32)>>,
 }
 
 /// What the thread says.
@@ -66,7 +73,7 @@ type Ahead = (Arc<Case>, Vec<(String, usize)>);
 struct Wishes {
     look: Option<(Arc<Case>, String)>,
     table: Option<(Cells, usize)>,
-    curves: Option<(Cells, String)>,
+    curves: Option<(Cells, Vec<String>)>,
     ahead: Option<Ahead>,
     spreads: Vec<(Arc<Case>, String, usize)>,
     ends: bool,
@@ -102,9 +109,9 @@ impl Reader {
         self.wish(|w| w.look = Some((case, property)));
     }
 
-    /// Asks for a property of some cells over time.
-    pub fn curves(&self, of: Cells, property: String) {
-        self.wish(|w| w.curves = Some((of, property)));
+    /// Asks for properties of some cells over time.
+    pub fn curves(&self, of: Cells, properties: Vec<String>) {
+        self.wish(|w| w.curves = Some((of, properties)));
     }
 
     /// Reads properties at steps, so that they are at hand when they are shown.
@@ -118,6 +125,18 @@ impl Reader {
             .iter()
             .map(|(name, step)| (case.clone(), name.clone(), *step));
         self.wish(|w| w.spreads = all.collect());
+    }
+
+    /// Leaves what was asked for of a case that was closed.
+    pub fn forget(&self, case: &Arc<Case>) {
+        let is_of = |known: &Arc<Case>| Arc::ptr_eq(known, case);
+        self.wish(|w| {
+            w.look.take_if(|(c, _)| is_of(c));
+            w.table.take_if(|(of, _)| is_of(&of.case));
+            w.curves.take_if(|(of, _)| is_of(&of.case));
+            w.ahead.take_if(|(c, _)| is_of(c));
+            w.spreads.retain(|(c, ..)| !is_of(c));
+        });
     }
 
     fn wish(&self, change: impl FnOnce(&mut Wishes)) {
@@ -144,7 +163,7 @@ fn lock(wishes: &Mutex<Wishes>) -> MutexGuard<'_, Wishes> {
 enum Wish {
     Look(Arc<Case>, String),
     Table(Cells, usize),
-    Curves(Cells, String),
+    Curves(Cells, Vec<String>),
     Ahead(Ahead),
     Spread(Arc<Case>, String, usize),
 }
@@ -167,7 +186,7 @@ impl Thread {
                     let rows = rows(&of, step);
                     self.say(Read::Table(Table { of, step, rows }));
                 }
-                Wish::Curves(of, property) => self.follow(of, property),
+                Wish::Curves(of, properties) => self.follow(of, properties),
                 Wish::Spread(case, property, step) => {
                     let spread = Spread::of(&case, &property, step);
                     self.say(Read::Spread(Arc::new(spread)));
@@ -204,8 +223,8 @@ impl Thread {
             if let Some(ahead) = wishes.ahead.take() {
                 return Some(Wish::Ahead(ahead));
             }
-            if let Some((of, property)) = wishes.curves.take() {
-                return Some(Wish::Curves(of, property));
+            if let Some((of, properties)) = wishes.curves.take() {
+                return Some(Wish::Curves(of, properties));
             }
             wishes = self
                 .wishes
@@ -221,36 +240,33 @@ impl Thread {
         w.ends || is_asked || w.ahead.is_some() || !w.spreads.is_empty()
     }
 
-    /// Reads a property step by step. Another wish comes first; the curves then begin anew.
-    fn follow(&self, of: Cells, property: String) {
+    /// Reads properties step by step. Another wish comes first; the curves then begin again.
+    fn follow(&self, of: Cells, properties: Vec<String>) {
         let case = of.case.clone();
-        let count = if case.is_dynamic(&property) {
-            case.steps.len()
-        } else {
-            0
+        let cells: Vec<_> = of.cells.iter().map(|cell| index(&case, *cell)).collect();
+        let empty = |property: &String| Curve {
+            property: property.clone(),
+            points: vec![Vec::new(); cells.len()],
         };
-        let mut points = vec![Vec::new(); of.cells.len()];
-        for step in 0..count {
+        let mut curves: Vec<Curve> = properties.iter().map(empty).collect();
+        for step in 0..case.steps.len() {
             if self.has_wishes() {
                 let mut wishes = lock(&self.wishes.0);
-                wishes.curves.get_or_insert((of, property));
+                wishes.curves.get_or_insert((of, properties));
                 return;
             }
-            // A step that lacks the property, or cannot be read, is a gap in the curve.
-            let Ok(field) = case.field(&property, step) else {
-                continue;
-            };
-            for (points, cell) in points.iter_mut().zip(&of.cells) {
-                if let Some(value) = index(&case, *cell).and_then(|c| field.value(&case.grid, c)) {
-                    points.push([case.steps[step].days, f64::from(value)]);
+            for curve in curves.iter_mut().filter(|c| case.is_dynamic(&c.property)) {
+                // A step that lacks the property, or cannot be read, is a gap in the curve.
+                let Ok(field) = case.field(&curve.property, step) else {
+                    continue;
+                };
+                for (points, cell) in curve.points.iter_mut().zip(&cells) {
+                    let value = cell.and_then(|c| field.value(&case.grid, c));
+                    points.extend(value.map(|v| (step, v)));
                 }
             }
         }
-        self.say(Read::Curves(Curves {
-            of,
-            property,
-            points,
-        }));
+        self.say(Read::Curves(Curves { of, curves }));
     }
 
     fn say(&self, read: Read) {

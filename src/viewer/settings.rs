@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use super::state::Pace;
+use crate::picture::film::FilmFormat;
 
 /// Cases that are remembered, at most.
 const MOST_RECENT: usize = 12;
@@ -19,6 +20,8 @@ pub struct Settings {
     pub dark: bool,
     /// The picture alone, without panels.
     pub hides_panels: bool,
+    /// The panels left and right of the picture that are folded.
+    pub folded: [bool; 2],
     /// Size of letters and controls; 1 is the screen's own.
     pub zoom: f32,
     /// How time plays.
@@ -39,17 +42,41 @@ pub enum Mouse {
     /// Left rotates, middle moves, right zooms.
     #[default]
     Standard,
-    /// As in RMS: left zooms, middle rotates, right moves.
+    /// As in Petrel, and in ResInsight's mode GeoQuest: left rotates, middle moves.
+    Geoquest,
+    /// As in RMS, and in ResInsight's mode RMS, which it has at first: left zooms, middle rotates, right moves.
     Rms,
+    /// ResInsight's mode CAD: left moves, middle rotates.
+    Cad,
+    /// ResInsight's mode Ceetron: left moves, middle zooms, right rotates.
+    Ceetron,
 }
 
 impl Mouse {
-    /// The other preset.
+    /// All presets.
+    pub const ALL: [Self; 5] = [
+        Self::Standard,
+        Self::Geoquest,
+        Self::Rms,
+        Self::Cad,
+        Self::Ceetron,
+    ];
+
+    /// The next preset.
     #[must_use]
     pub fn next(self) -> Self {
+        let at = Self::ALL.iter().position(|m| *m == self);
+        Self::ALL[at.map_or(0, |n| (n + 1) % Self::ALL.len())]
+    }
+
+    /// Its name: the program that it is like.
+    pub fn name(self) -> &'static str {
         match self {
-            Self::Standard => Self::Rms,
-            Self::Rms => Self::Standard,
+            Self::Standard => "StrataRay",
+            Self::Geoquest => "Petrel; ResInsight (GeoQuest)",
+            Self::Rms => "RMS; ResInsight (RMS, its default)",
+            Self::Cad => "ResInsight (CAD)",
+            Self::Ceetron => "ResInsight (Ceetron)",
         }
     }
 }
@@ -58,14 +85,28 @@ impl Mouse {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Export {
-    /// Width and height in pixels.
+    /// Width and height of a picture in pixels.
     pub size: [u32; 2],
     /// With title, legend, box and axes, as the scene says.
     pub annotated: bool,
-    /// A film turns around the model instead of going through time.
+    /// Films.
+    pub film: Film,
+}
+
+/// How films are saved.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Film {
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+    /// Kind of file.
+    pub format: FilmFormat,
+    /// It turns around the model instead of going through time.
     pub turns: bool,
-    /// Pictures a second.
-    pub fps: f64,
+    /// Time steps per second; the player's pace where absent.
+    pub steps_per_second: Option<f64>,
+    /// Pictures per second of a turn.
+    pub turn_fps: f64,
     /// Pictures of a turn.
     pub views: usize,
 }
@@ -75,8 +116,19 @@ impl Default for Export {
         Self {
             size: [1920, 1080],
             annotated: true,
+            film: Film::default(),
+        }
+    }
+}
+
+impl Default for Film {
+    fn default() -> Self {
+        Self {
+            size: [1280, 720],
+            format: FilmFormat::default(),
             turns: false,
-            fps: 10.0,
+            steps_per_second: None,
+            turn_fps: 12.0,
             views: 72,
         }
     }
@@ -88,6 +140,7 @@ impl Default for Settings {
             recent: Vec::new(),
             dark: true,
             hides_panels: false,
+            folded: [false, false],
             zoom: 1.0,
             pace: Pace::default(),
             mouse: Mouse::default(),

@@ -2,11 +2,14 @@
 
 use eframe::egui::{self, Context, Ui};
 
-use super::dialogs::{PathSheet, Purpose};
+use super::dialogs::{Asked, CasesSheet, PathSheet, Purpose};
 use super::export::{ExportSpec, Kind};
 use super::keys;
-use super::settings::{Export, Mouse};
+use super::panels::{Choice, list, one_of};
+use super::settings::{Film, Mouse};
+use super::state::Pace;
 use super::window::Window;
+use crate::picture::film::FilmFormat;
 use crate::scene::Scene;
 
 /// Which sheets are open.
@@ -16,16 +19,24 @@ pub struct Sheets {
     pub keys: bool,
     /// What was not loaded.
     pub notes: bool,
+    /// Mouse, theme, size of letters.
+    pub settings: bool,
     /// How a picture (false) or a film (true) is saved.
     pub export: Option<bool>,
     /// The path of a file.
     pub path: Option<PathSheet>,
+    /// Which of several cases to open.
+    pub cases: Option<CasesSheet>,
 }
 
 impl Sheets {
     /// True where one is.
     pub fn are_open(&self) -> bool {
-        self.keys || self.notes || self.export.is_some() || self.path.is_some()
+        let simple = [self.keys, self.notes, self.settings];
+        simple.contains(&true)
+            || self.export.is_some()
+            || self.path.is_some()
+            || self.cases.is_some()
     }
 }
 
@@ -52,19 +63,75 @@ impl Window {
                     ui.label(note);
                 }
             });
+        self.settings_sheet(ctx);
         if let Some(is_film) = self.sheets.export {
             self.export_sheet(ctx, is_film);
         }
-        if let Some(answer) = self.sheets.path.as_mut().and_then(|sheet| sheet.show(ctx)) {
+        if let Some(asked) = self.sheets.path.as_mut().and_then(|sheet| sheet.show(ctx)) {
             self.sheets.path = None;
-            if let Some((purpose, path)) = answer {
-                self.choose(ctx, purpose, path);
+            if let Asked::Files(purpose, paths) = asked {
+                self.choose(ctx, purpose, paths);
             }
+        }
+        if let Some(chosen) = self.sheets.cases.as_ref().and_then(|sheet| sheet.show(ctx)) {
+            self.sheets.cases = None;
+            self.open(ctx, chosen);
+        }
+    }
+
+    fn settings_sheet(&mut self, ctx: &Context) {
+        let (mut is_open, mut chosen) = (self.sheets.settings, self.settings.clone());
+        egui::Window::new("Settings")
+            .open(&mut is_open)
+            .show(ctx, |ui| {
+                let current = chosen.mouse.name();
+                list(ui, "Mouse", "As in which program", current, |ui| {
+                    for mouse in Mouse::ALL {
+                        ui.selectable_value(&mut chosen.mouse, mouse, mouse.name());
+                    }
+                });
+                egui::Grid::new("drags").num_columns(2).show(ui, |ui| {
+                    for (what, does) in chosen.mouse.describe() {
+                        ui.weak(what);
+                        ui.weak(does);
+                        ui.end_row();
+                    }
+                });
+                let themes = [
+                    (true, "Dark", "Light text on dark panels"),
+                    (false, "Light", "Dark text on light panels"),
+                ];
+                if let Some(dark) = one_of(ui, "Theme", chosen.dark, &themes) {
+                    chosen.dark = dark;
+                }
+                ui.horizontal(|ui| {
+                    ui.label("UI scale");
+                    let mut percent = 100.0 * ctx.zoom_factor();
+                    let drag = egui::DragValue::new(&mut percent).range(50.0..=300.0);
+                    let drag = drag
+                        .max_decimals(0)
+                        .suffix(" %")
+                        .update_while_editing(false);
+                    // Not while it is dragged: the window would change under the pointer.
+                    if ui
+                        .add(drag.speed(0.0))
+                        .on_hover_text("Ctrl + plus, minus, 0")
+                        .changed()
+                    {
+                        ctx.set_zoom_factor(percent / 100.0);
+                    }
+                });
+            });
+        self.sheets.settings = is_open;
+        if chosen != self.settings {
+            self.settings = chosen;
+            self.keep_settings();
         }
     }
 
     fn export_sheet(&mut self, ctx: &Context, is_film: bool) {
-        let Some((case, scene)) = self.subject() else {
+        let pace = self.document().map(|d| d.state.pace);
+        let Some(((case, scene), pace)) = self.subject().zip(pace) else {
             self.sheets.export = None;
             self.fail("open a case first");
             return;
@@ -72,14 +139,16 @@ impl Window {
         let (mut is_open, mut is_asked) = (true, false);
         let mut export = self.settings.export;
         let title = if is_film {
-            "Save a film"
+            "Save an animation"
         } else {
-            "Save a picture"
+            "Save an image"
         };
+        let window = self.sides.sizes(ctx.pixels_per_point())[0];
         egui::Window::new(title).open(&mut is_open).show(ctx, |ui| {
-            size(ui, &mut export);
+            let [of_image, of_film] = [&mut export.size, &mut export.film.size];
+            size(ui, if is_film { of_film } else { of_image }, window);
             if is_film {
-                film(ui, &mut export);
+                film(ui, &mut export.film, pace);
             }
             ui.checkbox(&mut export.annotated, "Title, legend, box and axes");
             is_asked = ui.button("Save ...").clicked();
@@ -92,21 +161,18 @@ impl Window {
             self.sheets.export = None;
         }
         if is_asked {
-            let kind = match (is_film, export.turns) {
-                (false, _) => Kind::Still,
-                (true, false) => Kind::Steps { fps: export.fps },
-                (true, true) => Kind::Orbit {
-                    fps: export.fps,
-                    views: export.views,
-                },
-            };
             let spec = ExportSpec {
                 case,
                 scene: Scene {
-                    size: export.size,
+                    size: if is_film {
+                        export.film.size
+                    } else {
+                        export.size
+                    },
                     ..scene
                 },
-                kind,
+                kind: kind(is_film, &export.film, pace),
+                format: export.film.format,
                 plain: !export.annotated,
                 compared: self.compared(),
                 marked: self
@@ -115,6 +181,19 @@ impl Window {
             };
             self.ask_file(ctx, Purpose::Export(Box::new(spec)));
         }
+    }
+}
+
+fn kind(is_film: bool, film: &Film, pace: Pace) -> Kind {
+    match (is_film, film.turns) {
+        (false, _) => Kind::Still,
+        (true, false) => Kind::Steps {
+            fps: film.steps_per_second.unwrap_or(pace.steps_a_second),
+        },
+        (true, true) => Kind::Orbit {
+            fps: film.turn_fps,
+            views: film.views,
+        },
     }
 }
 
@@ -149,42 +228,71 @@ fn shortcuts(ui: &mut Ui, ctx: &Context, mouse: Mouse) {
         });
 }
 
-fn size(ui: &mut Ui, export: &mut Export) {
-    ui.horizontal(|ui| {
-        for (value, name) in export.size.iter_mut().zip(["Width", "Height"]) {
+fn size(ui: &mut Ui, size: &mut [u32; 2], window: Option<[u32; 2]>) {
+    ui.horizontal_wrapped(|ui| {
+        for (value, name) in size.iter_mut().zip(["Width", "Height"]) {
             ui.label(name);
             let drag = egui::DragValue::new(value).range(16..=16384).suffix(" px");
             ui.add(drag).on_hover_text(format!("{name} in pixels"));
         }
+        let as_shown = ui
+            .button("As in the window")
+            .on_hover_text("The size of the image in the window");
+        if let Some(window) = window.filter(|_| as_shown.clicked()) {
+            *size = window;
+        }
     });
 }
 
-fn film(ui: &mut Ui, export: &mut Export) {
-    ui.horizontal(|ui| {
-        for (turns, name, what) in [
-            (false, "Time steps", "One picture for each time step"),
-            (true, "Turn", "Once around the model"),
-        ] {
-            if ui
-                .selectable_label(export.turns == turns, name)
-                .on_hover_text(what)
-                .clicked()
-            {
-                export.turns = turns;
+fn film(ui: &mut Ui, film: &mut Film, pace: Pace) {
+    let kinds = [
+        (false, "Time steps", "One image per time step"),
+        (true, "Turn", "Once around the model"),
+    ];
+    if let Some(turns) = one_of(ui, "Shows", film.turns, &kinds) {
+        film.turns = turns;
+    }
+    let formats: Vec<_> = FilmFormat::OF_BUILD.iter().map(|f| described(*f)).collect();
+    if let Some(format) = one_of(ui, "Format", film.format, &formats) {
+        film.format = format;
+    }
+    ui.horizontal_wrapped(|ui| match film.turns {
+        true => {
+            let fps = egui::DragValue::new(&mut film.turn_fps)
+                .range(0.2..=60.0)
+                .suffix(" images/s");
+            ui.add(fps).on_hover_text("Images per second");
+            let views = egui::DragValue::new(&mut film.views)
+                .range(2..=1000)
+                .suffix(" images");
+            ui.add(views).on_hover_text("Images of the whole turn");
+        }
+        false => {
+            let mut follows = film.steps_per_second.is_none();
+            let text = format!("Player speed ({} steps/s)", pace.steps_a_second);
+            if ui.checkbox(&mut follows, text).changed() {
+                film.steps_per_second = (!follows).then_some(pace.steps_a_second);
+            }
+            if let Some(steps) = &mut film.steps_per_second {
+                let drag = egui::DragValue::new(steps)
+                    .range(0.2..=60.0)
+                    .suffix(" steps/s");
+                ui.add(drag).on_hover_text("Time steps per second");
             }
         }
     });
-    ui.horizontal(|ui| {
-        let fps = egui::DragValue::new(&mut export.fps)
-            .range(0.2..=60.0)
-            .suffix(" pictures/s");
-        ui.add(fps).on_hover_text("Pictures a second");
-        if export.turns {
-            let views = egui::DragValue::new(&mut export.views)
-                .range(2..=1000)
-                .suffix(" pictures");
-            ui.add(views).on_hover_text("Pictures of the whole turn");
-        }
-    });
-    ui.weak("The name's ending says the format: .png (animated), .gif, .mp4 where built in.");
+}
+
+/// A format, its name and what it is good for.
+fn described(format: FilmFormat) -> Choice<'static, FilmFormat> {
+    let (name, what) = match format {
+        FilmFormat::Gif => ("GIF", "256 colors; plays everywhere, also in slides"),
+        FilmFormat::Apng => (
+            "Animated PNG",
+            "All colors; plays in browsers, not in slides",
+        ),
+        FilmFormat::Mp4 => ("MP4", "H.264 video"),
+        FilmFormat::Frames => ("Numbered images", "PNG files in a folder"),
+    };
+    (format, name, what)
 }

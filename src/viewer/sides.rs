@@ -7,10 +7,10 @@ use glam::DVec2;
 
 use super::action::Action;
 use super::pages::{self, Page};
-use super::panels::{self, About, Panel};
+use super::panels;
 use super::state::{Comparison, Layout};
 use super::viewport::{self, Touched, Viewport};
-use super::welcome::{self, Asked};
+use super::welcome::{self, Answer, Asked};
 use super::window::Window;
 use super::worker::{Wanted, Why};
 use super::{handles, keys::Command, marks, overlay};
@@ -45,12 +45,10 @@ struct Pointed {
     wanted: Wanted,
 }
 
-/// A narrower window shows no panels.
-const WIDTH_OF_PANELS: f32 = 700.0;
 /// Seconds that the pointer rests before what is under it is read.
 const REST: f64 = 0.3;
 /// Points on both sides of a wipe's line within which it is taken.
-const GRIP: f32 = 5.0;
+const GRIP: f32 = 8.0;
 
 impl Sides {
     /// Pixels of the volume of each picture.
@@ -65,16 +63,17 @@ impl Window {
     pub(super) fn body(&mut self, ui: &mut Ui, ctx: &Context) {
         let Some(document) = self.documents.get_mut(self.current) else {
             match welcome::show(ui, &self.settings) {
-                Some(Asked::Open(path)) => self.open(ctx, path),
+                Some(Asked::Open(path)) => self.open(ctx, vec![path]),
                 Some(Asked::Dialog) => self.perform(ctx, Command::Open),
                 None => {}
             }
             return;
         };
         if document.case.is_none() {
-            let closes = welcome::waiting(ui, document);
-            if closes {
-                self.close(self.current);
+            match welcome::waiting(ui, document) {
+                Some(Answer::Close) => self.close(self.current),
+                Some(Answer::Again) => self.reload(ctx),
+                None => {}
             }
             return;
         }
@@ -82,42 +81,16 @@ impl Window {
             return;
         };
         let mut actions = Vec::new();
-        if !self.settings.hides_panels && ui.available_width() >= WIDTH_OF_PANELS {
+        if !self.settings.hides_panels {
             self.panels(ui, &case, &scene, &mut actions);
         }
+        self.curves(ctx, &case, &scene, &mut actions);
         let touched = self.pictures(ui, ctx, &case, &scene);
         actions.extend(touched.camera.map(Action::Camera));
         actions.extend(touched.actions);
         for action in actions {
             self.apply(action);
         }
-    }
-
-    fn panels(&self, ui: &mut Ui, case: &Arc<Case>, scene: &Scene, actions: &mut Vec<Action>) {
-        let Some(document) = self.documents.get(self.current) else {
-            return;
-        };
-        let others = self.documents.iter().filter(|d| d.path != document.path);
-        let others: Vec<_> = others.map(|d| (d.path.clone(), d.title())).collect();
-        let comparison = document.state.setup.comparison.as_ref();
-        let is_compared = comparison.is_some_and(|c| c.layout == Layout::ColorDifference);
-        let about = About {
-            case,
-            state: &document.state,
-            scene,
-            picture: self.pictures.shown(0, case).map(|s| &s.picture),
-            difference: self.pictures.difference().filter(|_| is_compared),
-            refusal: self.difference_of_values().and_then(Result::err),
-            pick: document.pick.as_ref(),
-            table: document.table.as_ref(),
-            curves: document.curves.as_ref(),
-            spreads: &document.spreads,
-            others: &others,
-        };
-        let left = egui::Panel::left("left");
-        side(ui, left, &panels::LEFT, &about, actions);
-        let right = egui::Panel::right("right");
-        side(ui, right, &panels::RIGHT, &about, actions);
     }
 
     fn pictures(
@@ -460,33 +433,4 @@ fn layout(place: Rect, comparison: Option<&Comparison>) -> ([Option<Rect>; 2], O
         Some(Layout::Wipe(_) | Layout::ColorDifference) => [Some(place), Some(place)],
     };
     (rects, layout)
-}
-
-/// Draws the panels of a side, one below the other.
-fn side(
-    ui: &mut Ui,
-    panel: egui::Panel,
-    list: &[Panel],
-    about: &About<'_>,
-    actions: &mut Vec<Action>,
-) {
-    panel
-        .default_size(280.0)
-        .size_range(240.0..=520.0)
-        .show(ui, |ui| {
-            // Filled whatever is in it, so that the picture keeps its size.
-            let scroll = egui::ScrollArea::vertical().auto_shrink(false);
-            scroll.show(ui, |ui| {
-                for panel in list {
-                    let title = match (panel.count)(about) {
-                        0 => panel.title.to_owned(),
-                        count => format!("{} ({count})", panel.title),
-                    };
-                    egui::CollapsingHeader::new(title)
-                        .id_salt(panel.title)
-                        .default_open(panel.is_open)
-                        .show(ui, |ui| (panel.show)(ui, about, actions));
-                }
-            });
-        });
 }

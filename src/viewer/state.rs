@@ -19,6 +19,8 @@ pub struct State {
     pub setup: Setup,
     /// Cells that were picked, by I, J, K from 1.
     pub selected: Vec<[usize; 3]>,
+    /// The window with curves of the selected cells.
+    pub curves: CurvePlots,
     /// How time plays.
     pub pace: Pace,
     /// How slices are stepped through.
@@ -92,6 +94,16 @@ impl Setup {
         }
         Some(other)
     }
+}
+
+/// Curves of the selected cells over time.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct CurvePlots {
+    /// Their window is open.
+    pub is_open: bool,
+    /// Which properties; where there are none, that of the picture.
+    pub properties: Vec<String>,
 }
 
 /// How time plays.

@@ -208,6 +208,7 @@ fn color_difference(a: &Rgb8, b: &Rgb8) -> Fallible<Rgb8> {
 #[allow(clippy::unwrap_used, reason = "tests")]
 mod tests {
     use super::*;
+    use crate::picture::film::FilmFormat;
     use crate::scene::StepSpec;
     use crate::viewer::export::Kind;
 
@@ -222,6 +223,7 @@ mod tests {
                 ..Scene::default()
             },
             kind: Kind::Still,
+            format: FilmFormat::Gif,
             plain: true,
             compared: None,
             marked: Vec::new(),

@@ -1,8 +1,8 @@
 //! What the thread that makes pictures keeps: the device, and for each side a grid on it.
 
 use std::collections::VecDeque;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Weak};
 use std::time::{Duration, Instant};
 
 use glam::DVec2;
@@ -86,6 +86,7 @@ impl Studio {
                 pick.map(|pick| Answer::Picked(why, Box::new(pick)))
             }
             Job::Difference(of) => difference(of).map(|d| Answer::Difference(Box::new(d))),
+            Job::Forget(case, grid) => self.forget(&case, &grid).map(|()| Answer::Forgotten),
         };
         answer.unwrap_or_else(|error| {
             if error.is_device {
@@ -149,6 +150,22 @@ impl Studio {
         };
         if side == 0 && holds_other(&self.sides[0]) {
             self.sides[1] = Side::default();
+        }
+    }
+
+    /// Frees what is kept of a case.
+    fn forget(&mut self, case: &Weak<Case>, grid: &Weak<Grid>) -> Result<(), Failure> {
+        let is_of = |known: &Arc<Case>| std::ptr::eq(Arc::as_ptr(known), case.as_ptr());
+        let has = |known: &Arc<Grid>| std::ptr::eq(Arc::as_ptr(known), grid.as_ptr());
+        for side in &mut self.sides {
+            side.renderer.take_if(|(known, _)| has(known));
+            side.picker = Picker::default();
+            side.resolved.retain(|(wanted, _)| !is_of(&wanted.case));
+        }
+        // The device frees what it is done with when it is asked.
+        match &self.gpu {
+            Some(gpu) => gpu.wait().map_err(|e| Failure::of_device(e.to_string())),
+            None => Ok(()),
         }
     }
 

@@ -1,13 +1,13 @@
 //! The picture with what is drawn over it, and the pointer on it.
 
-use std::sync::Arc;
+use std::sync::{Arc, Weak};
 
 use eframe::egui::{self, Rect, Sense, Ui, vec2};
 use glam::{DVec2, DVec3};
 
 use super::action::Action;
+use super::drafts::Shown;
 use super::mouse::{self, Input, Motion};
-use super::pictures::Shown;
 use super::settings::Mouse;
 use super::{orbit, overlay};
 use crate::case::Case;
@@ -25,8 +25,8 @@ pub struct Viewport {
 
 /// The box of the cells that are drawn, kept while these are the same.
 struct Drawn {
-    /// By active index: true where the cell is drawn.
-    cells: Arc<Vec<bool>>,
+    /// By active index: true where the cell is drawn. Gone where its case was closed.
+    cells: Weak<Vec<bool>>,
     /// Smallest and largest corner in grid space; `None` where none is drawn.
     bounds: Option<[DVec3; 2]>,
 }
@@ -56,7 +56,10 @@ impl Viewport {
         let mut touched = Touched::default();
         let painter = ui.painter_at(rect);
         let Some(shown) = shown else {
-            ui.put(rect, egui::Spinner::new());
+            let line = Rect::from_center_size(rect.center(), vec2(rect.width(), 20.0));
+            ui.put(line, egui::Spinner::new());
+            let words = egui::Label::new("Drawing the first image ...").truncate();
+            ui.put(line.translate(vec2(0.0, 28.0)), words);
             return touched;
         };
         let uv = Rect::from_min_max(egui::Pos2::ZERO, egui::pos2(1.0, 1.0));
@@ -110,9 +113,9 @@ impl Viewport {
     /// A point of world space under a place in the picture.
     fn under(&mut self, view: &View, grid: &Grid, at: DVec2) -> DVec3 {
         let known = self.drawn.take();
-        let known = known.filter(|d| Arc::ptr_eq(&d.cells, &view.drawn));
+        let known = known.filter(|d| std::ptr::eq(d.cells.as_ptr(), Arc::as_ptr(&view.drawn)));
         let drawn = known.unwrap_or_else(|| Drawn {
-            cells: view.drawn.clone(),
+            cells: Arc::downgrade(&view.drawn),
             bounds: view.drawn_bounds(grid),
         });
         let bounds = self.drawn.insert(drawn).bounds;

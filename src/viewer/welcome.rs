@@ -1,8 +1,8 @@
 //! The page without a case: samples, recent cases, where to drop a file.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use eframe::egui::{Color32, RichText, Spinner, Ui};
+use eframe::egui::{CentralPanel, Color32, Label, RichText, ScrollArea, Spinner, Ui};
 
 use super::document::Document;
 use super::settings::Settings;
@@ -27,20 +27,27 @@ const FIRST_STEPS: [(&str, &str); 5] = [
 /// Draws the page.
 pub fn show(ui: &mut Ui, settings: &Settings) -> Option<Asked> {
     let mut asked = None;
-    fill(ui);
-    ui.vertical_centered(|ui| {
-        ui.add_space(0.12 * ui.available_height());
+    page(ui, 0.1, |ui| {
         ui.heading(RichText::new("StrataRay").size(34.0));
-        ui.label("Reservoirs from the inside. Drop a case on the window, or open one.");
+        ui.label("See inside a reservoir model. Open a case, or drop its files on the window.");
         ui.add_space(16.0);
         if ui.button("Open a case ...").clicked() {
             asked = Some(Asked::Dialog);
         }
         if let Some(sample) = sample() {
-            section(ui, "Sample", &[sample], &mut asked);
+            section(ui, "Sample");
+            if ui.link(name_of(&sample)).clicked() {
+                asked = Some(Asked::Open(sample));
+            }
             ui.label("A faulted oil field after 20 years of water flood:\nwhich oil is left, and behind which fault?");
         }
-        section(ui, "Recent cases", &settings.recent, &mut asked);
+        if !settings.recent.is_empty() {
+            section(ui, "Recent cases");
+        }
+        for case in &settings.recent {
+            let case = recent(ui, case);
+            asked = case.map(Asked::Open).or(asked.take());
+        }
         ui.add_space(28.0);
         for (what, does) in FIRST_STEPS {
             ui.weak(format!("{what} {does}"));
@@ -49,51 +56,88 @@ pub fn show(ui: &mut Ui, settings: &Settings) -> Option<Asked> {
     asked
 }
 
-/// Paints the ground of a page without a picture.
-fn fill(ui: &Ui) {
-    let ground = ui.visuals().panel_fill;
-    ui.painter().rect_filled(ui.max_rect(), 0.0, ground);
+/// A case that was opened before, with its folder; it where it was clicked.
+fn recent(ui: &mut Ui, case: &Path) -> Option<PathBuf> {
+    let link = ui.link(name_of(case));
+    let link = link.on_hover_text(case.display().to_string());
+    if let Some(folder) = case.parent() {
+        ui.add(Label::new(RichText::new(short(folder)).weak().small()).truncate());
+    }
+    link.clicked().then(|| case.to_owned())
 }
 
-/// The page of a case that is being opened, or could not be; true where it is closed.
-pub fn waiting(ui: &mut Ui, document: &Document) -> bool {
-    let mut closes = false;
-    fill(ui);
-    ui.vertical_centered(|ui| {
-        ui.add_space(0.4 * ui.available_height());
-        ui.label(document.path.display().to_string());
-        match (&document.loading, &document.error) {
-            (Some(loading), _) => {
-                ui.add(Spinner::new());
-                ui.label(format!("reading {}", loading.stage()));
-                closes = ui.button("Cancel").clicked();
+fn name_of(case: &Path) -> String {
+    let name = case.file_stem().unwrap_or(case.as_os_str());
+    name.to_string_lossy().into_owned()
+}
+
+/// A folder, with `~` for the user's own.
+fn short(folder: &Path) -> String {
+    let home = std::env::var_os("HOME").filter(|h| !h.is_empty());
+    match home.and_then(|home| folder.strip_prefix(home).ok()) {
+        Some(rest) => Path::new("~").join(rest).display().to_string(),
+        None => folder.display().to_string(),
+    }
+}
+
+/// A page in the middle of the window, between menus and status, that scrolls where it has to.
+fn page(ui: &mut Ui, from_top: f32, show: impl FnOnce(&mut Ui)) {
+    CentralPanel::default().show(ui, |ui| {
+        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+            ui.vertical_centered(|ui| {
+                ui.add_space(from_top * ui.available_height());
+                show(ui);
+            });
+        });
+    });
+}
+
+/// What the user asked for on the page of a case that is not there.
+pub enum Answer {
+    /// Leaves it.
+    Close,
+    /// Reads it again.
+    Again,
+}
+
+/// The page of a case that is being opened, or could not be.
+pub fn waiting(ui: &mut Ui, document: &Document) -> Option<Answer> {
+    let mut answer = None;
+    page(ui, 0.3, |ui| match (&document.loading, &document.error) {
+        (Some(loading), _) => {
+            ui.heading(format!("Opening {}", document.title()));
+            ui.add(
+                Label::new(RichText::new(document.path.display().to_string()).weak()).truncate(),
+            );
+            ui.add_space(12.0);
+            ui.add(Spinner::new());
+            ui.label(format!("{} ...", loading.stage()));
+            ui.add_space(12.0);
+            if ui.button("Cancel").clicked() {
+                answer = Some(Answer::Close);
             }
-            (None, error) => {
-                let red = Color32::from_rgb(220, 80, 60);
-                ui.colored_label(red, error.as_deref().unwrap_or("it was not opened"));
-                closes = ui.button("Close").clicked();
+        }
+        (None, error) => {
+            ui.heading(format!("{} was not opened", document.title()));
+            ui.add_space(12.0);
+            let red = Color32::from_rgb(220, 80, 60);
+            let error = error.as_deref().unwrap_or("opening it was cancelled");
+            ui.add(Label::new(RichText::new(error).color(red)).wrap());
+            ui.add_space(12.0);
+            if ui.button("Try again").clicked() {
+                answer = Some(Answer::Again);
+            }
+            if ui.button("Close").clicked() {
+                answer = Some(Answer::Close);
             }
         }
     });
-    closes
+    answer
 }
 
-fn section(ui: &mut Ui, title: &str, cases: &[PathBuf], asked: &mut Option<Asked>) {
-    if cases.is_empty() {
-        return;
-    }
+fn section(ui: &mut Ui, title: &str) {
     ui.add_space(18.0);
     ui.strong(title);
-    for case in cases {
-        let name = case.file_stem().unwrap_or_default().to_string_lossy();
-        if ui
-            .link(name)
-            .on_hover_text(case.display().to_string())
-            .clicked()
-        {
-            *asked = Some(Asked::Open(case.clone()));
-        }
-    }
 }
 
 /// The bundled sample: beside the program, in the folder where it was started, or where it was built.

@@ -7,11 +7,13 @@ use eframe::egui::{self, Context, Ui};
 
 use super::action::Action;
 use super::asking::Asked;
-use super::dialogs::Dialog;
+use super::cases::{self, Meaning};
+use super::dialogs::{CasesSheet, Dialog};
+use super::docks::Docks;
 use super::document::Document;
 use super::export::Export;
 use super::loading::Loading;
-use super::pictures::Pictures;
+use super::pictures::{DraftCount, Pictures};
 use super::reader::Reader;
 use super::settings::Settings;
 use super::sheets::Sheets;
@@ -26,9 +28,12 @@ use crate::picking::Pick;
 pub struct Window {
     pub(super) documents: Vec<Document>,
     pub(super) current: usize,
+    /// Cases that were closed, and how they looked; the last one is at the end.
+    pub(super) closed: Vec<(PathBuf, State)>,
     pub(super) pictures: Pictures,
     pub(super) reader: Reader,
     pub(super) sides: Sides,
+    pub(super) docks: Docks,
     pub(super) settings: Settings,
     pub(super) sheets: Sheets,
     pub(super) dialog: Option<Dialog>,
@@ -50,13 +55,15 @@ pub struct Window {
 impl Window {
     /// The window on some cases; where it `watches`, it follows their files.
     pub fn new(ctx: &Context, cases: Vec<PathBuf>, watches: bool, settings: Settings) -> Self {
-        let waker = ctx.clone();
+        let (waker, reader_waker) = (ctx.clone(), ctx.clone());
         let mut window = Self {
             documents: Vec::new(),
             current: 0,
-            pictures: Pictures::new(ctx),
-            reader: Reader::start(move || waker.request_repaint()),
+            closed: Vec::new(),
+            pictures: Pictures::new(move || waker.request_repaint()),
+            reader: Reader::start(move || reader_waker.request_repaint()),
             sides: Sides::default(),
+            docks: Docks::default(),
             settings,
             sheets: Sheets::default(),
             dialog: None,
@@ -68,14 +75,25 @@ impl Window {
             case_difference: None,
             is_zoomed: false,
         };
-        for case in cases {
-            window.open(ctx, case);
-        }
+        window.open(ctx, cases);
         window
     }
 
+    /// Opens what was named, dropped or chosen together. Each path is a case of its own; of a folder with
+    /// several cases the user chooses.
+    pub fn open(&mut self, ctx: &Context, paths: Vec<PathBuf>) {
+        for path in paths {
+            match cases::meaning(&path) {
+                Meaning::Case(case) if path.is_dir() => self.show_case(ctx, case),
+                Meaning::Several(cases) => self.sheets.cases = Some(CasesSheet::new(cases)),
+                // What is no case says why when it is read.
+                Meaning::Case(_) | Meaning::Nothing(_) => self.show_case(ctx, path),
+            }
+        }
+    }
+
     /// Opens a case in a tab of its own, or brings the tab to the front that has it.
-    pub fn open(&mut self, ctx: &Context, path: PathBuf) {
+    pub(super) fn show_case(&mut self, ctx: &Context, path: PathBuf) {
         if let Some(tab) = self.documents.iter().position(|d| d.path == path) {
             self.current = tab;
             return;
@@ -143,6 +161,11 @@ impl Window {
         let is_awaited = self.awaited.is_some() || self.awaits_difference();
         let is_final = !is_awaited && self.pictures.are_final();
         Some((&shown.picture, is_final))
+    }
+
+    /// How many drafts were asked for, and came.
+    pub fn drafts(&self) -> DraftCount {
+        self.pictures.drafts
     }
 
     /// What is seen where the pointer rests.

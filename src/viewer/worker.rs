@@ -1,9 +1,9 @@
 //! Pictures are made on a thread of their own, so that the window never waits for one.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::{Arc, Weak};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
@@ -14,6 +14,7 @@ use crate::case::Case;
 use crate::gpu::illumination::LightTimes;
 use crate::gpu::{FrameStats, GpuBytes};
 use crate::metrics::Comparison;
+use crate::model::Grid;
 use crate::picking::Pick;
 use crate::picture::Rgb8;
 use crate::scene::{Scene, View};
@@ -57,6 +58,8 @@ pub enum Job {
     },
     /// How far two pictures are apart.
     Difference([Arc<Rgb8>; 2]),
+    /// Frees what is kept of a case that was closed.
+    Forget(Weak<Case>, Weak<Grid>),
 }
 
 /// What a place is looked at for.
@@ -136,6 +139,8 @@ pub enum Answer {
     Picked(Why, Box<Pick>),
     /// How far two pictures are apart.
     Difference(Box<Difference>),
+    /// Nothing is kept of a case any more.
+    Forgotten,
     /// Why there is no picture, in one sentence.
     Failed(String),
     /// Why there is no other answer, in one sentence.
@@ -204,6 +209,12 @@ impl Worker {
             at,
             why,
         });
+    }
+
+    /// Frees what is kept of a case, after what is being made.
+    pub fn forget(&self, case: &Arc<Case>) {
+        let grid = Arc::downgrade(&case.grid);
+        self.send(Job::Forget(Arc::downgrade(case), grid));
     }
 
     fn send(&self, job: Job) {

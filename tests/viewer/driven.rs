@@ -18,8 +18,6 @@ pub struct Driven {
     pub harness: Harness<'static, Window>,
     /// Where it remembers things.
     pub folder: tempfile::TempDir,
-    /// The longest frame so far.
-    pub slowest: Duration,
 }
 
 impl Driven {
@@ -35,11 +33,7 @@ impl Driven {
         let harness = Harness::builder()
             .with_size(vec2(size[0], size[1]))
             .build_eframe(move |cc| Window::new(&cc.egui_ctx, cases, watches, settings));
-        Self {
-            harness,
-            folder,
-            slowest: Duration::ZERO,
-        }
+        Self { harness, folder }
     }
 
     /// A window that shows the final picture of a case.
@@ -51,9 +45,7 @@ impl Driven {
 
     /// A frame.
     pub fn step(&mut self) {
-        let start = Instant::now();
         self.harness.step();
-        self.slowest = self.slowest.max(start.elapsed());
     }
 
     /// Frames until something holds.

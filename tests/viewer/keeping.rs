@@ -4,10 +4,11 @@ use eframe::egui::accesskit::Action as Asked;
 use eframe::egui::{Key, Modifiers};
 use egui_kittest::kittest::{NodeT, Queryable};
 use strataray::metrics::Comparison;
+use strataray::picture::film::FilmFormat;
 use strataray::scene::Scene;
 use strataray::viewer::{Action, Settings, State};
 
-use super::common::{gpu, sample};
+use super::common::{copy_of_sample, gpu, sample};
 use super::driven::Driven;
 
 #[test]
@@ -53,32 +54,167 @@ fn a_saved_scene_makes_the_same_picture() {
     assert_eq!(state, driven.document().state);
 }
 
+/// Frames until the sheet is there that asks for a path; false where the system may have a dialog of its own.
+fn path_is_asked(driven: &mut Driven) -> bool {
+    let is_set = |name: &str| std::env::var_os(name).is_some_and(|v| !v.is_empty());
+    if is_set("DBUS_SESSION_BUS_ADDRESS") || is_set("WAYLAND_DISPLAY") {
+        eprintln!("SKIPPED: the system may show a dialog of its own");
+        return false;
+    }
+    let start = std::time::Instant::now();
+    while driven.harness.query_by_label("Path").is_none() {
+        driven.step();
+        assert!(start.elapsed() < std::time::Duration::from_secs(60));
+        std::thread::sleep(std::time::Duration::from_millis(10));
+    }
+    true
+}
+
+fn type_path(driven: &mut Driven, path: &str) {
+    driven.press(Modifiers::COMMAND, Key::A);
+    driven.harness.get_by_label("Path").type_text(path);
+    driven.step();
+    driven.step();
+}
+
 #[test]
 fn without_a_dialog_of_the_system_a_path_is_typed() {
     let Some(_) = gpu() else { return };
-    if std::env::var_os("DISPLAY").is_some() || std::env::var_os("WAYLAND_DISPLAY").is_some() {
-        eprintln!("SKIPPED: with a display, the system may show a dialog of its own");
-        return;
-    }
     let mut driven = Driven::showing(sample());
     driven.press(Modifiers::COMMAND, Key::S);
-    while driven.harness.query_by_label("Path").is_none() {
-        driven.step();
-        std::thread::sleep(std::time::Duration::from_millis(10));
+    if !path_is_asked(&mut driven) {
+        return;
     }
-    let file = driven.folder.path().join("typed.json");
-    driven.press(Modifiers::COMMAND, Key::A);
+    // A folder is no file, and a folder that is not there holds none.
+    let folder = driven.folder.path().display().to_string();
+    type_path(&mut driven, &folder);
     driven
         .harness
-        .get_by_label("Path")
-        .type_text(&file.display().to_string());
-    driven.step();
+        .get_by_label("This is a folder; add a file name.");
+    type_path(&mut driven, &format!("{folder}/no/scene"));
+    driven.harness.get_by_label("There is no such folder.");
+    // The ending is added.
+    let file = driven.folder.path().join("typed.json");
+    type_path(&mut driven, &format!("{folder}/typed"));
     driven.press(Modifiers::NONE, Key::Enter);
     let (message, is_error) = driven.harness.state().message().unwrap();
     assert!(!is_error && message.contains("typed.json"), "{message}");
     let read: Scene = serde_json::from_str(&std::fs::read_to_string(&file).unwrap()).unwrap();
     assert_eq!(&read, driven.scene());
     assert!(driven.harness.query_by_label("Path").is_none());
+}
+
+#[test]
+fn a_typed_case_may_be_a_base_name_or_a_folder() {
+    let Some(_) = gpu() else { return };
+    let mut driven = Driven::open(&[]);
+    driven.press(Modifiers::COMMAND, Key::O);
+    if !path_is_asked(&mut driven) {
+        return;
+    }
+    let folder = driven.folder.path().join("cases");
+    std::fs::create_dir(&folder).unwrap();
+    copy_of_sample(&folder);
+    let other = folder.join("OTHER.EGRID");
+    std::fs::copy(folder.join("SCISSOR.EGRID"), &other).unwrap();
+    // What is typed is completed: the folder, then what is in it.
+    let outer = driven.folder.path().display().to_string();
+    type_path(&mut driven, &format!("{outer}/ca"));
+    driven.click("cases/");
+    driven.harness.get_by_label("2 cases; choose one:");
+    driven.harness.get_by_label("OTHER.EGRID");
+    type_path(&mut driven, &folder.join("scissor").display().to_string());
+    driven.harness.get_by_label("Opens SCISSOR.EGRID.");
+    driven.press(Modifiers::NONE, Key::Enter);
+    driven.wait_final();
+    assert_eq!(driven.document().title(), "SCISSOR");
+    assert!(driven.document().path.ends_with("cases/SCISSOR.EGRID"));
+}
+
+#[test]
+fn an_animation_has_the_players_pace_and_only_formats_of_this_build() {
+    let Some(_) = gpu() else { return };
+    let mut driven = Driven::showing(sample());
+    let file = driven.folder.path().join("settings.json");
+    let settings = || Settings::in_file(file.clone()).export;
+    driven.press(Modifiers::COMMAND, Key::F12);
+    driven.wait_settled();
+    assert_eq!(settings().film.steps_per_second, None);
+    let pace = driven.document().state.pace.steps_a_second;
+    driven
+        .harness
+        .get_by_label(&format!("Player speed ({pace} steps/s)"));
+    assert_eq!(settings().film.format, FilmFormat::Gif);
+    let has_mp4 = driven.harness.query_by_label("Format: MP4").is_some();
+    assert_eq!(has_mp4, cfg!(feature = "mp4"));
+    // Its size is not that of the next image.
+    let before = settings().size;
+    driven.click("As in the window");
+    let window = driven.picture(0).size;
+    assert_eq!(settings().film.size, window);
+    assert_eq!(settings().size, before);
+    driven.click("Format: Animated PNG");
+    assert_eq!(settings().film.format, FilmFormat::Apng);
+    driven.press(Modifiers::NONE, Key::Escape);
+    driven.press(Modifiers::NONE, Key::F12);
+    driven.wait_settled();
+    driven.harness.get_by_label("Save an image");
+    assert!(driven.harness.query_by_label("Format: GIF").is_none());
+}
+
+#[test]
+fn the_mouse_is_as_in_the_program_that_was_chosen() {
+    let Some(_) = gpu() else { return };
+    let mut driven = Driven::showing(sample());
+    driven.press(Modifiers::COMMAND, Key::Comma);
+    driven.wait_settled();
+    driven.click("Mouse");
+    driven.wait_settled();
+    driven.click("RMS; ResInsight (RMS, its default)");
+    driven.press(Modifiers::NONE, Key::Escape);
+    driven.wait_settled();
+    let file = driven.folder.path().join("settings.json");
+    assert_eq!(
+        Settings::in_file(file).mouse.name(),
+        "RMS; ResInsight (RMS, its default)"
+    );
+    // The left button comes closer now.
+    driven.wait_final();
+    let eye = |d: &Driven| d.harness.state().picture(0).unwrap().0.view.camera.eye;
+    let before = eye(&driven);
+    let middle = driven.place("volume").center();
+    driven.drag(middle, middle - eframe::egui::vec2(0.0, 80.0));
+    driven.wait_final();
+    let after = eye(&driven);
+    let bounds = driven
+        .harness
+        .state()
+        .picture(0)
+        .unwrap()
+        .0
+        .view
+        .world_bounds;
+    let center = (bounds[0] + bounds[1]) / 2.0;
+    assert!(after.distance(center) < 0.95 * before.distance(center));
+}
+
+#[test]
+fn a_command_is_copied_at_the_size_of_the_window() {
+    let Some(_) = gpu() else { return };
+    let mut driven = Driven::showing(sample());
+    let size = driven.picture(0).size;
+    driven
+        .harness
+        .key_press_modifiers(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::C);
+    driven.step();
+    let commands = &driven.harness.output().platform_output.commands;
+    let copied = commands.iter().find_map(|c| match c {
+        eframe::egui::OutputCommand::CopyText(text) => Some(text.clone()),
+        _ => None,
+    });
+    let line = copied.unwrap();
+    let wanted = format!("\"size\":[{},{}]", size[0], size[1]);
+    assert!(line.contains(&wanted), "{line}");
 }
 
 #[test]

@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use eframe::egui::{self, Key, Modifiers, vec2};
-use egui_kittest::kittest::Queryable;
-use strataray::viewer::Settings;
+use egui_kittest::kittest::{NodeT, Queryable};
+use strataray::viewer::{Action, Settings};
 
 use super::common::{copy_of_sample, gpu, sample};
 use super::driven::{Driven, covered};
@@ -165,4 +165,189 @@ fn windows_of_any_size_are_drawn() {
     driven.wait_final();
     let place = driven.place("volume");
     assert!(driven.picture(0).size[0] as f32 > 1.9 * place.width());
+}
+
+/// Number of colors in a place of what the window draws: more than a few where something is written.
+fn colors(driven: &mut Driven, place: egui::Rect) -> usize {
+    let image = driven.harness.render().unwrap();
+    let mut seen = std::collections::BTreeSet::new();
+    for y in place.top() as u32..place.bottom() as u32 {
+        for x in place.left() as u32..place.right() as u32 {
+            seen.insert(image.get_pixel(x, y).0);
+        }
+    }
+    seen.len()
+}
+
+#[test]
+fn pages_without_a_picture_leave_menus_and_status_alone() {
+    let Some(_) = gpu() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let broken = folder.path().join("BROKEN.EGRID");
+    std::fs::write(&broken, "no grid").unwrap();
+    for cases in [vec![], vec![broken]] {
+        let mut driven = Driven::open(&cases);
+        driven.step();
+        driven.wait("the page", |w| {
+            w.document().is_none_or(|d| d.error.is_some())
+        });
+        driven.step();
+        for menu in ["File", "Edit", "Help"] {
+            let place = driven.place(menu);
+            assert!(colors(&mut driven, place) > 3, "{menu} is painted over");
+        }
+        if !cases.is_empty() {
+            let tab = driven.place("Close BROKEN.EGRID");
+            assert!(colors(&mut driven, tab) > 3);
+            driven.harness.get_by_label("BROKEN.EGRID was not opened");
+            driven.harness.get_by_label("Try again");
+        }
+    }
+}
+
+#[test]
+fn of_a_folder_with_several_cases_one_is_chosen() {
+    let Some(_) = gpu() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let first = copy_of_sample(folder.path());
+    for ending in ["EGRID", "INIT", "UNRST"] {
+        let from = first.with_extension(ending);
+        std::fs::copy(from, folder.path().join(format!("OTHER.{ending}"))).unwrap();
+    }
+    let mut driven = Driven::open(&[folder.path().to_owned()]);
+    driven.wait_settled();
+    assert!(driven.harness.state().document().is_none());
+    driven.harness.get_by_label("SCISSOR.EGRID");
+    driven.click("OTHER.EGRID");
+    driven.wait_final();
+    assert_eq!(driven.document().title(), "OTHER");
+    assert!(driven.harness.query_by_label("Choose a case").is_none());
+    // A folder with one case is that case.
+    let one = tempfile::tempdir().unwrap();
+    copy_of_sample(one.path());
+    let driven = Driven::showing(one.path().to_owned());
+    assert_eq!(driven.document().title(), "SCISSOR");
+}
+
+#[test]
+fn a_closed_case_is_let_go_and_comes_back_as_it_was() {
+    let Some(_) = gpu() else { return };
+    let mut driven = Driven::showing(sample());
+    driven.click("SRG");
+    driven.harness.state_mut().apply(Action::Select(
+        [23, 6, 2],
+        strataray::viewer::Beside::Nothing,
+    ));
+    driven.wait("values", |w| w.document().unwrap().table.is_some());
+    driven.wait_final();
+    let state = driven.document().state.clone();
+    let case = std::sync::Arc::downgrade(driven.document().case.as_ref().unwrap());
+    driven.press(Modifiers::COMMAND, Key::W);
+    assert!(driven.harness.state().document().is_none());
+    let (told, is_error) = driven.harness.state().message().unwrap();
+    assert!(!is_error && told.contains("Ctrl+Shift+T"), "{told}");
+    driven.wait("the case's memory", |_| case.strong_count() == 0);
+    // Where it was opened from is told on the page that is there now.
+    let folder = sample().parent().unwrap().to_owned();
+    let home = std::env::var("HOME").unwrap_or_default();
+    let short = folder.display().to_string().replacen(&home, "~", 1);
+    let is_folder = |label: &str| driven.harness.query_by_label(label).is_some();
+    assert!(is_folder(&short) || is_folder(&folder.display().to_string()));
+    driven.press(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::T);
+    driven.wait_final();
+    assert_eq!(driven.document().state, state);
+    // A case that is read again does not keep what was read before.
+    let case = std::sync::Arc::downgrade(driven.document().case.as_ref().unwrap());
+    driven.press(Modifiers::NONE, Key::F5);
+    driven.wait("the memory of what was read before", |_| {
+        case.strong_count() == 0
+    });
+    driven.wait_final();
+}
+
+/// All controls that can be seen or clicked now, by name.
+fn controls(driven: &Driven) -> Vec<(String, egui::Rect)> {
+    let named = |node: egui_kittest::Node<'_>| {
+        let rect = node.rect();
+        let node = node.accesskit_node();
+        let is_control = node
+            .data()
+            .supports_action(eframe::egui::accesskit::Action::Focus);
+        let name = node.label().or_else(|| node.value())?;
+        (is_control && !node.is_hidden()).then_some((name, rect))
+    };
+    let nodes = driven.harness.root().children_recursive();
+    nodes.filter_map(named).collect()
+}
+
+#[test]
+fn nothing_is_out_of_reach_in_a_small_window() {
+    let Some(_) = gpu() else { return };
+    // 800x600 pixels, at 100 % and at 150 %.
+    for (width, height) in [(800.0, 600.0), (533.0, 400.0)] {
+        let mut driven = Driven::sized(&[sample()], [width, height], false);
+        driven.wait_final();
+        let window = egui::Rect::from_min_size(egui::Pos2::ZERO, vec2(width, height));
+        let is_inside = |driven: &Driven, name: &str| {
+            let place = driven.place(name);
+            assert!(window.expand(1.0).contains_rect(place), "{name}: {place:?}");
+        };
+        for name in ["File", "Help", "First", "Play", "Last", "Time step"] {
+            is_inside(&driven, name);
+        }
+        // What lies in no panel that scrolls is inside the window.
+        let outside: Vec<_> = controls(&driven)
+            .into_iter()
+            .filter(|(_, rect)| rect.right() > width + 1.0)
+            .collect();
+        assert!(outside.is_empty(), "{outside:?}");
+        let picture = driven.place("volume");
+        assert!(
+            picture.width() >= 200.0 && picture.height() >= 200.0,
+            "{picture:?}"
+        );
+        // Both sides can be opened, one after the other where both have no room.
+        let is_open = |driven: &Driven, name: &str| driven.harness.query_by_label(name).is_some();
+        assert!(is_open(&driven, "Property"));
+        if !is_open(&driven, "Transfer function") {
+            assert!(width < 790.0);
+            driven.click("Show the right panels");
+            driven.wait_settled();
+            assert!(is_open(&driven, "Transfer function") && !is_open(&driven, "Property"));
+            driven.click("Show the left panels");
+            driven.wait_settled();
+            assert!(is_open(&driven, "Property") && !is_open(&driven, "Transfer function"));
+        }
+        driven.click("Hide the left panels");
+        driven.wait_settled();
+        assert!(!is_open(&driven, "Property"));
+        assert!(driven.place("volume").width() > picture.width() + 100.0);
+        // Sheets fit too.
+        driven.press(Modifiers::NONE, Key::F1);
+        driven.wait_settled();
+        is_inside(&driven, "Keys");
+        driven.press(Modifiers::NONE, Key::Escape);
+        driven.press(Modifiers::COMMAND, Key::F12);
+        driven.wait_settled();
+        is_inside(&driven, "Save ...");
+    }
+}
+
+#[test]
+fn panels_are_widened_by_their_edges() {
+    let Some(_) = gpu() else { return };
+    let mut driven = Driven::showing(sample());
+    let picture = driven.place("volume");
+    for (edge, to) in [(picture.left(), 40.0), (picture.right(), -40.0)] {
+        for off in [-3.0, 3.0] {
+            let before = driven.place("volume").width();
+            let now = driven.place("volume");
+            let edge = if to > 0.0 { now.left() } else { now.right() } + 0.0 * edge;
+            let from = egui::pos2(edge + off, 400.0);
+            driven.drag(from, from + vec2(0.5 * to, 0.0));
+            driven.wait_settled();
+            let after = driven.place("volume").width();
+            assert!(after < before - 10.0, "{before} {after} at {off}");
+        }
+    }
 }

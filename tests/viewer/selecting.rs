@@ -1,10 +1,11 @@
 //! Selecting: filters, clip planes, cells.
 
-use eframe::egui::{Key, Modifiers, pos2, vec2};
+use eframe::egui::{self, Key, Modifiers, pos2, vec2};
+use egui_kittest::kittest::Queryable;
 use strataray::model::Ijk;
 use strataray::picking::Part;
 use strataray::scene::{Hull, Show};
-use strataray::viewer::{Action, Beside};
+use strataray::viewer::{Action, Beside, CurvePlots};
 
 use super::common::{gpu, sample};
 use super::driven::{Driven, covered};
@@ -92,7 +93,7 @@ fn a_picked_cell_tells_its_values() {
         w.document().is_some_and(|d| d.curves.is_some())
     });
     let curves = driven.document().curves.clone().unwrap();
-    assert_eq!(curves.points[0].len(), case.steps.len());
+    assert_eq!(curves.curves[0].points[0].len(), case.steps.len());
     // Another one beside it, then only what is like it.
     driven.click_at(place.center(), Modifiers::COMMAND);
     driven.wait("two cells", |w| {
@@ -176,7 +177,8 @@ fn keys_and_buttons_step_along_the_line_of_sight() {
     });
     let pick = driven.document().pick.clone().unwrap();
     let cells: Vec<[usize; 3]> = pick.cells.iter().map(|c| c.ijk.one_based()).collect();
-    let [before, behind] = pick.around(pick.hit.unwrap().ijk).unwrap();
+    let hit = pick.hit.as_ref().unwrap().ijk;
+    let [before, behind] = pick.around(hit).unwrap();
     driven.wait_settled();
     driven.harness.get_by_label(&told(before, behind));
     assert!(before + behind > 1);
@@ -265,4 +267,158 @@ fn a_pointer_that_rests_on_a_fault_reads_its_throw() {
     driven.wait_settled();
     driven.wait_settled();
     assert!(driven.harness.state().hovered().is_none());
+}
+
+/// Selects some cells and waits for their values.
+fn select(driven: &mut Driven, cells: &[[usize; 3]]) {
+    for (n, cell) in cells.iter().enumerate() {
+        let beside = if n == 0 {
+            Beside::Nothing
+        } else {
+            Beside::Others
+        };
+        driven
+            .harness
+            .state_mut()
+            .apply(Action::Select(*cell, beside));
+    }
+    let count = cells.len();
+    driven.wait("values and curves", |w| {
+        let document = w.document().unwrap();
+        let table = document.table.as_ref();
+        let curves = document.curves.as_ref();
+        table.is_some_and(|t| t.of.cells.len() == count)
+            && curves.is_some_and(|c| c.of.cells.len() == count)
+    });
+    driven.step();
+}
+
+#[test]
+fn many_cells_are_a_table_that_scrolls() {
+    let Some(_) = gpu() else { return };
+    let mut driven = Driven::showing(sample());
+    // Room for the panel of selected cells.
+    driven.click("Transfer function");
+    driven.wait_settled();
+    let cells: Vec<[usize; 3]> = (1..=12).map(|i| [i + 8, 9, 1]).collect();
+    select(&mut driven, &cells);
+    driven.wait_settled();
+    let window = egui::Rect::from_min_size(egui::Pos2::ZERO, vec2(1280.0, 800.0));
+    let head = |cell: &[usize; 3]| format!("{}, {}, {}", cell[0], cell[1], cell[2]);
+    assert!(window.contains_rect(driven.place(&head(&cells[0]))));
+    assert!(driven.harness.query_by_label(&head(&cells[11])).is_none());
+    // To the right and down; heads and names stay.
+    let names = driven.place("PORO");
+    driven
+        .harness
+        .hover_at(driven.place(&head(&cells[0])).center() + vec2(0.0, 60.0));
+    driven.step();
+    let scroll = |delta| egui::Event::MouseWheel {
+        unit: egui::MouseWheelUnit::Point,
+        delta,
+        phase: egui::TouchPhase::Move,
+        source: egui::MouseWheelSource::Wheel,
+        modifiers: Modifiers::NONE,
+    };
+    driven.harness.event(scroll(vec2(-5000.0, 0.0)));
+    driven.wait_settled();
+    let last = driven.place(&head(&cells[11]));
+    assert!(window.contains_rect(last), "{last:?}");
+    assert_eq!(driven.place("PORO"), names);
+    let top = last.top();
+    driven.harness.event(scroll(vec2(0.0, -60.0)));
+    driven.wait_settled();
+    assert_eq!(driven.place(&head(&cells[11])).top(), top);
+}
+
+#[test]
+fn curves_have_a_window_with_dates_and_several_properties() {
+    let Some(_) = gpu() else { return };
+    let mut driven = Driven::showing(sample());
+    select(&mut driven, &[[23, 6, 2], [27, 6, 2]]);
+    driven.press(Modifiers::COMMAND, Key::G);
+    assert!(driven.document().state.curves.is_open);
+    let plots = CurvePlots {
+        is_open: true,
+        properties: vec!["SWAT".into(), "PRESSURE".into()],
+    };
+    driven.harness.state_mut().apply(Action::Curves(plots));
+    driven.wait("both curves", |w| {
+        let curves = w.document().and_then(|d| d.curves.as_ref());
+        curves.is_some_and(|c| c.curves.len() == 2)
+    });
+    driven.wait_settled();
+    // The values at the pointer, at the step that it is nearest to, in all plots.
+    let case = driven.document().case.clone().unwrap();
+    let shown = driven.document().step().unwrap().0;
+    let at = |step: usize| format!("{}   day {}", case.steps[step].date, case.steps[step].days);
+    driven.harness.get_by_label(&at(shown));
+    let first = driven.place("SWAT");
+    driven
+        .harness
+        .hover_at(first.left_bottom() + vec2(150.0, 50.0));
+    driven.wait_settled();
+    assert!(driven.harness.query_by_label(&at(shown)).is_none());
+    let told: Vec<usize> = (0..case.steps.len())
+        .filter(|n| driven.harness.query_by_label(&at(*n)).is_some())
+        .collect();
+    assert_eq!(told.len(), 1, "{told:?}");
+    for (n, name) in ["SWAT", "PRESSURE"].into_iter().enumerate() {
+        let field = case.field(name, told[0]).unwrap();
+        let dims = case.grid.dims();
+        let value = field.value(&case.grid, dims.cell(dims.one_based([23, 6, 2]).unwrap()));
+        let curves = driven.document().curves.clone().unwrap();
+        let read = curves.curves[n].points[0].iter().find(|p| p.0 == told[0]);
+        assert_eq!(read.map(|p| p.1), value);
+    }
+    // Closed and opened again.
+    driven.press(Modifiers::COMMAND, Key::G);
+    driven.wait_settled();
+    assert!(driven.harness.query_by_label("SWAT").is_none());
+    driven.click("Curves ...");
+    driven.wait_settled();
+    driven.harness.get_by_label("SWAT");
+}
+
+#[test]
+fn cells_are_saved_as_one_tidy_table() {
+    let Some(_) = gpu() else { return };
+    let mut driven = Driven::showing(sample());
+    let cells = [[23, 6, 2], [27, 6, 2]];
+    select(&mut driven, &cells);
+    let file = driven.folder.path().join("cells.csv");
+    driven.harness.state().save_table(&file).unwrap();
+    let mut reader = csv::Reader::from_path(&file).unwrap();
+    let heads: Vec<String> = reader.headers().unwrap().iter().map(String::from).collect();
+    assert_eq!(
+        heads.join(","),
+        "case,grid,i,j,k,date,step,property,value,unit"
+    );
+    let rows: Vec<csv::StringRecord> = reader.records().map(Result::unwrap).collect();
+    let case = driven.document().case.clone().unwrap();
+    let document = driven.document();
+    let shown = document.step().unwrap().0;
+    let mut seen = std::collections::BTreeSet::new();
+    for row in &rows {
+        assert_eq!((&row[0], &row[1]), ("SCISSOR", "global"));
+        let cell = [2, 3, 4].map(|n: usize| row[n].parse::<usize>().unwrap());
+        assert!(cells.contains(&cell));
+        let step = row[6].parse::<usize>().ok();
+        assert_eq!(step.is_some(), case.is_dynamic(&row[7]), "{row:?}");
+        let date = step.map_or("", |n| case.steps[n].date.as_str());
+        assert_eq!((&row[5], &row[9]), (date, case.unit(&row[7])));
+        let field = case.field(&row[7], step.unwrap_or(shown)).unwrap();
+        let dims = case.grid.dims();
+        let value = field.value(&case.grid, dims.cell(dims.one_based(cell).unwrap()));
+        assert_eq!(row[8].parse::<f32>().ok(), value);
+        assert!(
+            seen.insert((cell, step, row[7].to_owned())),
+            "{row:?} is there twice"
+        );
+    }
+    // The property shown at every step, the others at the one that is shown.
+    let property = document.state.setup.scene.property.clone().unwrap();
+    let of = |name: &str| rows.iter().filter(|r| &r[7] == name).count();
+    assert_eq!(of(&property), 2 * case.steps.len());
+    assert_eq!((of("PORO"), of("PRESSURE")), (2, 2));
 }

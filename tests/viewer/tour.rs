@@ -136,7 +136,7 @@ fn understand(driven: &mut Driven) {
     }
     driven.wait("curves", |w| {
         let curves = w.document().and_then(|d| d.curves.as_ref());
-        curves.is_some_and(|c| c.points.len() == 2)
+        curves.is_some_and(|c| c.of.cells.len() == 2)
     });
     driven.wait_final();
     shot(driven, "8_cells");

@@ -2,6 +2,7 @@
 
 mod measure;
 mod table;
+mod turning;
 
 use std::path::{Path, PathBuf};
 
@@ -16,6 +17,7 @@ use super::Verbosity;
 use super::progress::Reporter;
 use super::scene_options::SceneOptions;
 use measure::CaseTimes;
+use turning::Turning;
 
 /// Cases where none is named.
 const DEFAULT: [&str; 3] = ["r1", "r2", "r3"];
@@ -30,6 +32,7 @@ Times are in milliseconds; files are timed as the system's cache holds them.
 Examples:
   strataray bench
   strataray bench R4 REEK.EGRID --frames 5 --json bench.json
+  strataray bench BRUGGE.EGRID --turn 30
   strataray bench R5 --size 1000x1000 --property SWAT --strategy plts"
 )]
 pub struct Arguments {
@@ -40,6 +43,9 @@ pub struct Arguments {
     /// Frames to time, after one that is not timed.
     #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..))]
     frames: u32,
+    /// Also turn each model by N moves of the pointer, as in the window, and time the drafts.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000))]
+    turn: Option<u32>,
     /// Write the figures (JSON).
     #[arg(long, value_name = "OUT")]
     json: Option<PathBuf>,
@@ -56,6 +62,8 @@ struct Bench {
     size: [u32; 2],
     frames: u32,
     cases: Vec<CaseTimes>,
+    /// Drafts of each case; empty where they were not asked for.
+    turning: Vec<Turning>,
 }
 
 pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
@@ -77,6 +85,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
         size: scene.size,
         frames: arguments.frames,
         cases: Vec::new(),
+        turning: Vec::new(),
     };
     let scenes = scenes(&scene, options.strategy.is_some());
     let defaults: Vec<PathBuf> = DEFAULT.iter().map(PathBuf::from).collect();
@@ -88,6 +97,10 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
         let files = Files::new(case, &reporter)?;
         let times = measure::case(&files.path, &scenes, &gpu, arguments.frames, &reporter)?;
         bench.cases.push(times);
+        if let Some(moves) = arguments.turn {
+            let turning = turning::case(&files.path, moves as usize, &reporter)?;
+            bench.turning.extend(turning);
+        }
     }
     print!("{}", table::text(&bench));
     if let Some(path) = &arguments.json {

@@ -2,7 +2,7 @@
 
 use strataray::markdown::{Row, row, table};
 
-use super::Bench;
+use super::{Bench, turning};
 
 /// Both tables, in Markdown that reads well as plain text.
 pub fn text(bench: &Bench) -> String {
@@ -14,6 +14,10 @@ pub fn text(bench: &Bench) -> String {
     text += &table(&loading(bench), WORDS);
     text.push('\n');
     text += &table(&frames(bench), WORDS);
+    if !bench.turning.is_empty() {
+        text += "\nTurning in the window, from a move of the pointer to the draft from there:\n\n";
+        text += &table(&turning::rows(&bench.turning), 1 + WORDS);
+    }
     text
 }
 

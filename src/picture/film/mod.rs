@@ -9,16 +9,20 @@ mod mp4;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
+use serde::{Deserialize, Serialize};
+
 use super::PictureError;
 use super::draft::Draft;
 use super::files::{Cause, matching};
 
 /// Kinds of films.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum FilmFormat {
     /// Animated PNG: lossless, plays in browsers.
     Apng,
-    /// 256 colors a picture.
+    /// 256 colors a picture; plays in slides too.
+    #[default]
     Gif,
     /// H.264, in builds with the feature `mp4`.
     Mp4,
@@ -27,6 +31,25 @@ pub enum FilmFormat {
 }
 
 impl FilmFormat {
+    /// The formats that this build writes, the one that plays in most programs first.
+    pub const OF_BUILD: &'static [Self] = &[
+        Self::Gif,
+        Self::Apng,
+        #[cfg(feature = "mp4")]
+        Self::Mp4,
+        Self::Frames,
+    ];
+
+    /// Ending of its files; `None` for a folder.
+    pub fn ending(self) -> Option<&'static str> {
+        match self {
+            Self::Apng => Some("png"),
+            Self::Gif => Some("gif"),
+            Self::Mp4 => Some("mp4"),
+            Self::Frames => None,
+        }
+    }
+
     /// The format that an output asks for by its extension, or by being a folder.
     ///
     /// # Errors

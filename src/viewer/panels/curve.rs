@@ -1,6 +1,6 @@
 //! The opacity curve over the histogram of what is drawn: points to move by pointer or keyboard.
 
-use std::sync::Arc;
+use std::sync::{Arc, Weak};
 
 use eframe::egui::{
     self, Color32, Id, Key, Modifiers, Pos2, Rect, Response, Sense, Stroke, Ui, vec2,
@@ -96,11 +96,11 @@ fn tip(ui: &Ui, rect: Rect, view: &View, unit: &str, point: [f64; 2]) {
     overlay::tip(ui, at, &text);
 }
 
-/// Numbers of drawn cells by position in the range, and what they were counted of.
+/// Numbers of drawn cells by position in the range, and what they were counted of, which may be gone.
 #[derive(Clone)]
 struct Counted {
-    field: Arc<CellField>,
-    drawn: Arc<Vec<bool>>,
+    field: Weak<CellField>,
+    drawn: Weak<Vec<bool>>,
     range: [f64; 2],
     bins: Arc<[u32]>,
 }
@@ -111,14 +111,16 @@ fn bins(ui: &Ui, id: Id, view: &View) -> Arc<[u32]> {
     let range = view.transfer.range;
     let known: Option<Counted> = ui.data(|d| d.get_temp(id));
     let is_same = |c: &Counted| {
-        Arc::ptr_eq(&c.field, &view.field) && Arc::ptr_eq(&c.drawn, &view.drawn) && c.range == range
+        std::ptr::eq(c.field.as_ptr(), Arc::as_ptr(&view.field))
+            && std::ptr::eq(c.drawn.as_ptr(), Arc::as_ptr(&view.drawn))
+            && c.range == range
     };
     if let Some(known) = known.filter(is_same) {
         return known.bins;
     }
     let counted = Counted {
-        field: view.field.clone(),
-        drawn: view.drawn.clone(),
+        field: Arc::downgrade(&view.field),
+        drawn: Arc::downgrade(&view.drawn),
         range,
         bins: count(view.field.values(), &view.drawn, range).into(),
     };

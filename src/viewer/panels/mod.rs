@@ -7,6 +7,7 @@ mod compare;
 mod controls;
 mod curve;
 mod curves;
+mod dates;
 mod faults;
 mod filters;
 mod light;
@@ -17,7 +18,9 @@ mod selection;
 mod statistics;
 mod strategy;
 mod surfaces;
+mod table;
 mod transfer;
+mod values;
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -34,9 +37,11 @@ use crate::case::Case;
 use crate::picking::Pick;
 use crate::scene::Scene;
 
-pub use curves::csv;
+pub use controls::{Choice, list, one_of};
+pub use curves::show as curves;
 pub use player::{Asked, player};
 pub use selection::hover_text;
+pub use table::csv;
 
 /// What a panel knows.
 pub struct About<'a> {
@@ -56,7 +61,7 @@ pub struct About<'a> {
     pub pick: Option<&'a Pick>,
     /// All properties of the selected cells.
     pub table: Option<&'a Table>,
-    /// The property shown over time, in the selected cells.
+    /// Properties over time, in the selected cells.
     pub curves: Option<&'a Curves>,
     /// How the values are spread by which cells are filtered.
     pub spreads: &'a [Arc<Spread>],

@@ -20,7 +20,7 @@ pub fn player(ui: &mut Ui, document: &Document) -> Option<Asked> {
     let (step, count) = document.step()?;
     let case = document.case.as_ref()?;
     let mut asked = None;
-    ui.horizontal(|ui| {
+    ui.horizontal_wrapped(|ui| {
         let play = if document.playing.is_some() {
             "Pause"
         } else {

@@ -1,23 +1,20 @@
-//! The selected cells: where they are, what the case says of them, curves over time, what can be done
-//! with them.
+//! The selected cells: where they are, what the case says of them, what can be done with them.
 
 use eframe::egui::{self, Ui};
 
 use super::controls::significant;
-use super::{About, curves};
+use super::{About, table, values};
 use crate::case::Case;
 use crate::model::Ijk;
 use crate::picking::{Fault, Hit, Part, Pick};
 use crate::picture::short_unit;
 use crate::scene::{Filter, PropertyFilter, ScaleSpec};
 use crate::viewer::action::{Action, Beside};
-use crate::viewer::marks;
 use crate::viewer::reader::Table;
+use crate::viewer::state::CurvePlots;
 
 /// The same on a log scale, as a factor.
 const ALIKE_FACTOR: f64 = 1.25;
-/// Cells whose values are listed beside each other, at most.
-const MOST_COLUMNS: usize = 4;
 /// Half of the part of the color range within which values are alike.
 const ALIKE: f64 = 0.025;
 
@@ -38,17 +35,10 @@ pub fn show(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
             along_ray(ui, pick, cell, actions);
         }
     }
-    let first = selected.len().saturating_sub(MOST_COLUMNS);
-    for (n, cell) in selected.iter().enumerate().skip(first) {
-        ui.colored_label(marks::color(n), named(*cell));
-    }
     go_to(ui, about, actions);
     if let Some(table) = about.table {
-        values(ui, table, about.property());
+        values::show(ui, table, about.property());
         buttons(ui, about, table, actions);
-    }
-    if let Some(curves) = about.curves {
-        curves::show(ui, about, curves);
     }
 }
 
@@ -157,33 +147,24 @@ fn go_to(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
     ui.data_mut(|d| d.insert_temp(id, (start, cell)));
 }
 
-fn values(ui: &mut Ui, table: &Table, shown: Option<&str>) {
-    // The property shown first.
-    let mut rows: Vec<_> = table.rows.iter().collect();
-    rows.sort_by_key(|row| Some(row.0.as_str()) != shown);
-    let list = egui::ScrollArea::both().id_salt("values").max_height(120.0);
-    list.show(ui, |ui| {
-        let grid = egui::Grid::new("values of the selected cells");
-        grid.striped(true).show(ui, |ui| {
-            for (name, unit, values) in rows {
-                ui.label(name);
-                for value in values.iter().rev().take(MOST_COLUMNS).rev() {
-                    ui.label(value.map_or_else(|| "-".into(), |v| significant(f64::from(v))));
-                }
-                ui.weak(unit);
-                ui.end_row();
-            }
-        });
-    });
-}
-
 fn buttons(ui: &mut Ui, about: &About<'_>, table: &Table, actions: &mut Vec<Action>) {
-    ui.horizontal(|ui| {
-        let copy = ui.button("Copy").on_hover_text("All of it as CSV, to the clipboard; Ctrl + Shift + S saves it in a file");
-        if copy.clicked() {
-            ui.ctx().copy_text(curves::csv(table, about.curves));
+    ui.horizontal_wrapped(|ui| {
+        let curves = ui
+            .button("Curves ...")
+            .on_hover_text("Properties of these cells over time, in a window of their own");
+        if curves.clicked() {
+            actions.push(Action::Curves(CurvePlots {
+                is_open: true,
+                ..about.state.curves.clone()
+            }));
         }
-        let clear = ui.button("Clear").on_hover_text("Selects none");
+        let copy = ui.button("Copy").on_hover_text("Copies a table with one row per cell, step and property as CSV; Ctrl + Shift + S saves it");
+        if copy.clicked()
+            && let Ok(text) = table::csv(table, about.curves)
+        {
+            ui.ctx().copy_text(text);
+        }
+        let clear = ui.button("Clear").on_hover_text("Deselects all cells");
         if clear.clicked() {
             actions.push(Action::Deselect);
         }

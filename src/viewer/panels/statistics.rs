@@ -1,13 +1,13 @@
 //! What the values of the drawn cells are like, and what the last picture cost.
 
-use std::sync::Arc;
+use std::sync::{Arc, Weak};
 use std::time::Duration;
 
 use eframe::egui::{self, Ui};
 
 use super::About;
 use super::controls::significant;
-use crate::model::Summary;
+use crate::model::{CellField, Summary};
 use crate::scene::View;
 use crate::viewer::action::Action;
 use crate::viewer::worker::Picture;
@@ -39,17 +39,18 @@ pub fn show(ui: &mut Ui, about: &About<'_>, _actions: &mut Vec<Action>) {
     });
 }
 
+/// Values and cells that a summary is of; they may be gone.
+type Counted = (Weak<CellField>, Weak<Vec<bool>>);
+
 /// Values of the drawn cells at the step shown.
 fn values(ui: &mut Ui, about: &About<'_>, picture: &Picture) {
     let view = &picture.view;
     // Counted again only where values or cells are others.
-    let of = (
-        Arc::as_ptr(&view.field).addr(),
-        Arc::as_ptr(&view.drawn).addr(),
-    );
+    let of = (Arc::downgrade(&view.field), Arc::downgrade(&view.drawn));
     let id = ui.scope_id().with("summary");
-    let known: Option<((usize, usize), Option<Summary>)> = ui.data(|d| d.get_temp(id));
-    let summary = match known.filter(|(known, _)| *known == of) {
+    let known: Option<(Counted, Option<Summary>)> = ui.data(|d| d.get_temp(id));
+    let is_same = |known: &Counted| known.0.ptr_eq(&of.0) && known.1.ptr_eq(&of.1);
+    let summary = match known.filter(|(known, _)| is_same(known)) {
         Some((_, summary)) => summary,
         None => {
             let summary = summary(about, view);

@@ -1,0 +1,157 @@
+//! What a path that someone typed or dropped means: a case, a folder with several, or neither.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+/// What a path means.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Meaning {
+    /// A case: one of its files, its base name, or a folder with one.
+    Case(PathBuf),
+    /// The cases of a folder that has several.
+    Several(Vec<PathBuf>),
+    /// Neither; the sentence says so.
+    Nothing(String),
+}
+
+/// Endings of files that hold a grid; of a case with more than one of them the first counts.
+const GRIDS: [&str; 7] = ["EGRID", "FEGRID", "GRID", "FGRID", "GRDECL", "ROFF", "DATA"];
+/// Entries that are offered while a path is typed, at most.
+const MOST_OFFERED: usize = 200;
+
+/// A path as typed, `~` being the user's folder.
+pub fn expanded(path: &str) -> PathBuf {
+    let path = path.trim();
+    let home = std::env::var_os("HOME").or_else(|| std::env::var_os("USERPROFILE"));
+    let rest = match path {
+        "~" => Some(""),
+        _ => path.strip_prefix("~/"),
+    };
+    match (rest, home) {
+        (Some(rest), Some(home)) => PathBuf::from(home).join(rest),
+        _ => PathBuf::from(path),
+    }
+}
+
+/// What a path means.
+pub fn meaning(path: &Path) -> Meaning {
+    if path.is_dir() {
+        let mut cases = in_folder(path);
+        return match cases.len() {
+            0 => Meaning::Nothing(format!("there is no case in {}", path.display())),
+            1 => Meaning::Case(cases.remove(0)),
+            _ => Meaning::Several(cases),
+        };
+    }
+    if path.is_file() {
+        return Meaning::Case(path.to_owned());
+    }
+    let name = path.file_name().and_then(|n| n.to_str());
+    let is_named = |case: &PathBuf| {
+        let stem = case.file_stem().and_then(|s| s.to_str());
+        stem.zip(name)
+            .is_some_and(|(s, n)| s.eq_ignore_ascii_case(n))
+    };
+    let case = in_folder(&folder_of(path)).into_iter().find(is_named);
+    case.map_or_else(
+        || Meaning::Nothing(format!("there is no case {}", path.display())),
+        Meaning::Case,
+    )
+}
+
+/// The grid of each case in a folder, in the order of their names.
+pub fn in_folder(folder: &Path) -> Vec<PathBuf> {
+    let mut cases: BTreeMap<String, (usize, PathBuf)> = BTreeMap::new();
+    for file in entries(folder).filter(|p| p.is_file()) {
+        let ending = file.extension().and_then(|e| e.to_str());
+        let rank = GRIDS
+            .iter()
+            .position(|g| ending.is_some_and(|e| e.eq_ignore_ascii_case(g)));
+        let (Some(rank), Some(stem)) = (rank, file.file_stem()) else {
+            continue;
+        };
+        let name = stem.to_string_lossy().to_uppercase();
+        let known = cases.entry(name).or_insert((rank, file.clone()));
+        if rank < known.0 {
+            *known = (rank, file);
+        }
+    }
+    cases.into_values().map(|(_, file)| file).collect()
+}
+
+/// Folders and cases that what was typed so far may go on with.
+pub fn offered(path: &Path, typed: &str) -> Vec<PathBuf> {
+    let is_whole = typed.is_empty() || typed.ends_with(std::path::is_separator) || path.is_dir();
+    let (folder, begin) = match is_whole {
+        true => (path.to_owned(), String::new()),
+        false => {
+            let begin = path.file_name().unwrap_or_default().to_string_lossy();
+            (folder_of(path), begin.to_lowercase())
+        }
+    };
+    let begins = |p: &PathBuf| {
+        let name = p.file_name().unwrap_or_default().to_string_lossy();
+        name.to_lowercase().starts_with(&begin) && !name.starts_with('.')
+    };
+    let mut folders: Vec<PathBuf> = entries(&folder).filter(|p| p.is_dir()).collect();
+    folders.sort();
+    let all = in_folder(&folder).into_iter().chain(folders);
+    all.filter(begins).take(MOST_OFFERED).collect()
+}
+
+fn entries(folder: &Path) -> impl Iterator<Item = PathBuf> {
+    let folder = match folder.as_os_str().is_empty() {
+        true => Path::new("."),
+        false => folder,
+    };
+    let list = std::fs::read_dir(folder).into_iter().flatten();
+    list.flatten().map(|entry| entry.path())
+}
+
+fn folder_of(path: &Path) -> PathBuf {
+    path.parent().map(Path::to_owned).unwrap_or_default()
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "tests")]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn paths_mean_files_base_names_and_folders() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        let make = |name: &str| std::fs::write(at(name), "").unwrap();
+        assert!(matches!(meaning(folder.path()), Meaning::Nothing(why) if why.contains("no case")));
+        make("A.EGRID");
+        make("A.DATA");
+        make("A.UNRST");
+        make("readme.txt");
+        assert_eq!(meaning(folder.path()), Meaning::Case(at("A.EGRID")));
+        make("b.grdecl");
+        make("b.data");
+        let both = vec![at("A.EGRID"), at("b.grdecl")];
+        assert_eq!(meaning(folder.path()), Meaning::Several(both.clone()));
+        assert_eq!(meaning(&at("a")), Meaning::Case(at("A.EGRID")));
+        assert_eq!(meaning(&at("B")), Meaning::Case(at("b.grdecl")));
+        assert_eq!(meaning(&at("A.UNRST")), Meaning::Case(at("A.UNRST")));
+        assert!(matches!(meaning(&at("C")), Meaning::Nothing(_)));
+        assert!(matches!(meaning(&at("no/C")), Meaning::Nothing(_)));
+        std::fs::create_dir(at("beyond")).unwrap();
+        let typed = |text: &str| offered(&at(text), text);
+        assert_eq!(typed("b"), [at("b.grdecl"), at("beyond")]);
+        assert_eq!(offered(folder.path(), "").len(), 3);
+        assert!(typed("x").is_empty());
+    }
+
+    #[test]
+    fn a_tilde_is_the_users_folder() {
+        let Some(home) = std::env::var_os("HOME") else {
+            return;
+        };
+        let home = PathBuf::from(home);
+        assert_eq!(expanded("~"), home);
+        assert_eq!(expanded(" ~/a b "), home.join("a b"));
+        assert_eq!(expanded("~a"), PathBuf::from("~a"));
+    }
+}
