@@ -2,7 +2,8 @@
 
 use glam::DQuat;
 
-use super::resolve::{default_property, resolve_over};
+use super::look::default_property;
+use super::resolve::resolve_over;
 use super::{Camera, RangeSpec, ScaleSpec, Scene, SceneError, StepSpec, View, resolve};
 use crate::case::{Case, CaseError};
 

@@ -4,7 +4,7 @@
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use super::resolve::{SceneError, default_property};
+use super::resolve::SceneError;
 use super::{
     ColorSpec, Coloring, Integration, Interpolation, LibcSettings, LightingSpec, Mode, OpacitySpec,
     RangeSpec, ScaleSpec, Scene, TransferSpec,
@@ -89,6 +89,29 @@ pub fn look_of(case: &Case, property: &str) -> Look {
         look.range = RangeSpec::Fixed([value - reach, value + reach]);
     }
     look
+}
+
+/// True where the case has the property and its values differ: from cell to cell at the last step, or at all.
+pub fn varies(case: &Case, property: &str) -> bool {
+    let last = case.last_field(property).ok().flatten();
+    let last = last.and_then(|f| ValueRange::of(&f));
+    let differs = |r: ValueRange| r.max > r.min;
+    // Other steps are read where the last one is even.
+    last.is_some_and(differs) || {
+        let all = case.range_over_steps(property).ok().flatten();
+        all.is_some_and(differs)
+    }
+}
+
+/// The property shown where a scene names none: what the case is about.
+pub fn default_property(case: &Case) -> String {
+    let has = |name: &&&str| case.properties.iter().any(|p| p.name == **name);
+    // A saturation that is the same everywhere tells nothing.
+    let saturations = ["SOIL", "SGAS", "SWAT"].iter();
+    let first = saturations.filter(has).find(|name| varies(case, name));
+    let mut others = ["PRESSURE", "SOIL", "SGAS", "SWAT", "PORO", "PERMX"].iter();
+    let found = first.or_else(|| others.find(has));
+    found.map_or_else(|| "DEPTH".to_owned(), |name| (*name).to_owned())
 }
 
 /// The value of a property that is the same in all cells at all steps.

@@ -27,7 +27,8 @@ pub use filter::{Filter, Indices, PropertyFilter};
 pub use framing::{Direction, Extents, Subject};
 pub use half_turns::{NamedView, TurnAxis, half_turns};
 pub use lighting::{LightMode, Lighting, LightingSpec};
-pub use resolve::{ClipPlane, SceneError, View, default_property, model_corners, resolve};
+pub use look::default_property;
+pub use resolve::{ClipPlane, SceneError, View, model_corners, resolve};
 pub use settings::{ClipSpec, CutFace, Integration, LibcSettings, SrgSettings};
 pub use surfaces::{Hull, ShownFaults, Surfaces};
 pub use transfer::{
@@ -246,6 +247,17 @@ pub enum Mode {
     /// The cells as solid bodies: their outer faces and the sections of clip planes, opaque, each cell in the
     /// color of its value.
     Cells,
+}
+
+impl Mode {
+    /// The other one.
+    #[must_use]
+    pub fn other(self) -> Self {
+        match self {
+            Self::Cells => Self::Volume,
+            Self::Volume => Self::Cells,
+        }
+    }
 }
 
 /// How values vary inside a cell.

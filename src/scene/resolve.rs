@@ -10,11 +10,12 @@ use super::facts::{self, Facts};
 use super::framing::{self, Direction, Subject};
 use super::ghosts::{Ghosts, shown_grid};
 use super::lighting::{self, Lighting};
+use super::look::default_property;
 use super::{
     Blending, Camera, CameraSpec, ClipSpec, CutFace, Inactive, Interpolation, LibcSettings, Mode,
     Scene, SrgSettings, StepSpec, Surfaces, filter, surfaces,
 };
-use crate::case::{Case, CaseError, ValueRange};
+use crate::case::{Case, CaseError};
 use crate::gpu::volume::Shape;
 use crate::model::{CellField, Dims, FaultFaces, Grid, Ijk, Spaces};
 use crate::strategies::StrategyKind;
@@ -461,26 +462,6 @@ fn mean_world_edges(case: &Case, exaggeration: f64) -> DVec3 {
     };
     let sum = grid.sum_active(edges_and_one);
     (sum.truncate() / sum.w.max(1.0)).max(DVec3::splat(1e-6))
-}
-
-/// The property shown where a scene names none.
-pub fn default_property(case: &Case) -> String {
-    // A saturation that is the same everywhere tells nothing. Other steps are read where the last one is even.
-    let varies = |name: &str| {
-        let last = case.last_field(name).ok().flatten();
-        let last = last.and_then(|f| ValueRange::of(&f));
-        let differs = |r: ValueRange| r.max > r.min;
-        last.is_some_and(differs) || {
-            let all = case.range_over_steps(name).ok().flatten();
-            all.is_some_and(differs)
-        }
-    };
-    let has = |name: &&&str| case.properties.iter().any(|p| p.name == **name);
-    let saturations = ["SOIL", "SGAS", "SWAT"].iter();
-    let first = saturations.filter(has).find(|name| varies(name));
-    let mut others = ["PRESSURE", "SOIL", "SGAS", "SWAT", "PORO", "PERMX"].iter();
-    let found = first.or_else(|| others.find(has));
-    found.map_or_else(|| "DEPTH".to_owned(), |name| (*name).to_owned())
 }
 
 /// The step that a scene names, of what changes with time; else 0.

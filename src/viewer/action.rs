@@ -5,8 +5,8 @@ use serde::{Deserialize, Serialize};
 use super::slices::Slicing;
 use super::state::{Comparison, CurvePlots, Pace, State};
 use crate::scene::{
-    CameraSpec, ClipSpec, Filter, Interpolation, LibcSettings, LightingSpec, RangeSpec, Scene,
-    Show, SrgSettings, StepSpec, TransferSpec,
+    CameraSpec, ClipSpec, Filter, Interpolation, LibcSettings, LightingSpec, Mode, RangeSpec,
+    Scene, Show, SrgSettings, StepSpec, TransferSpec,
 };
 
 /// A change of a tab's state.
@@ -16,6 +16,8 @@ pub enum Action {
     Property(String),
     /// Shows another step, by number.
     Step(usize),
+    /// Cells as solid bodies, or rays through the volume.
+    Mode(Mode),
     /// Values in a cell.
     Interpolation(Interpolation),
     /// Ends of the color map.
@@ -77,6 +79,7 @@ impl Action {
         match self {
             Self::Property(_) => "property",
             Self::Step(_) => "time step",
+            Self::Mode(_) => "mode",
             Self::Interpolation(_) => "interpolation",
             Self::Range(_) => "color range",
             Self::Transfer(_) => "transfer function",
@@ -105,6 +108,7 @@ impl Action {
         match self {
             Self::Property(name) => state.setup.show(name),
             Self::Step(step) => scene.step = StepSpec::Index(step),
+            Self::Mode(v) => state.setup.scene.mode = v,
             Self::Interpolation(v) => state.setup.change_look(|look| look.interpolation = v),
             Self::Range(v) => state.setup.change_look(|look| look.range = v),
             Self::Transfer(v) => state.setup.change_look(|look| look.transfer = v),

@@ -2,10 +2,12 @@
 
 use eframe::egui::{self, Color32, Context, Ui};
 
+use super::action::Action;
 use super::keys::{self, Command};
 use super::looking::Look;
 use super::panels::{self, Asked};
 use super::window::Window;
+use crate::scene::Mode;
 
 /// The menus and what is in them.
 const MENUS: [(&str, &[Command]); 5] = [
@@ -46,6 +48,7 @@ const MENUS: [(&str, &[Command]); 5] = [
     (
         "Picture",
         &[
+            Command::Mode,
             Command::NextStrategy,
             Command::Light,
             Command::Compare,
@@ -74,6 +77,7 @@ pub fn top(window: &mut Window, ui: &mut Ui, ctx: &Context) {
                     }
                 });
             }
+            modes(window, ui, ctx);
             // All of these are in the menus too.
             if ui.available_width() < WIDTH_OF_BUTTONS {
                 return;
@@ -97,6 +101,33 @@ pub fn top(window: &mut Window, ui: &mut Ui, ctx: &Context) {
     });
     if let Some(command) = asked {
         window.perform(ctx, command);
+    }
+}
+
+/// The two modes, the one in use marked.
+fn modes(window: &mut Window, ui: &mut Ui, ctx: &Context) {
+    let document = window.document().filter(|d| d.case.is_some());
+    let Some(mode) = document.map(|d| d.state.setup.scene.mode) else {
+        return;
+    };
+    ui.separator();
+    let key = hint(ctx, Command::Mode);
+    for (other, name, what) in [
+        (
+            Mode::Cells,
+            "Cells",
+            "Solid cells: their outer faces and sections",
+        ),
+        (
+            Mode::Volume,
+            "Volume",
+            "Looks into the reservoir: rich values solid, the rest a haze",
+        ),
+    ] {
+        let button = ui.selectable_label(mode == other, name);
+        if button.on_hover_text(format!("{what}\n{key}")).clicked() && mode != other {
+            window.apply(Action::Mode(other));
+        }
     }
 }
 

@@ -204,6 +204,10 @@ fn change(document: &mut Document, command: Command) -> Option<String> {
             document.apply(Action::Filter(filter));
             return Some(told);
         }
+        Command::Mode => {
+            let mode = document.state.setup.scene.mode;
+            document.apply(Action::Mode(mode.other()));
+        }
         Command::NextStrategy => {
             let next = next_strategy(&document.state.setup.scene.strategy);
             document.apply(Action::Strategy(next.name().into()));

@@ -41,6 +41,8 @@ pub enum Command {
     Settings,
     /// Curves of the selected cells.
     Curves,
+    /// Cells as solid bodies, or rays through the volume.
+    Mode,
     /// The next strategy.
     NextStrategy,
     /// Lighting off, or soft.
@@ -84,7 +86,7 @@ const fn from(view: usize) -> Command {
 }
 
 /// Every shortcut, with what it says in the sheet.
-pub const SHORTCUTS: [(Modifiers, Key, Command, &str); 57] = [
+pub const SHORTCUTS: [(Modifiers, Key, Command, &str); 58] = [
     (CTRL, Key::O, Command::Open, "Open a case"),
     (NONE, Key::F5, Command::Reload, "Read the case again"),
     (CTRL, Key::S, Command::SaveScene, "Save the scene"),
@@ -153,6 +155,7 @@ pub const SHORTCUTS: [(Modifiers, Key, Command, &str); 57] = [
         Command::Curves,
         "Curves of the selected cells",
     ),
+    (NONE, Key::V, Command::Mode, "Cells or volume"),
     (NONE, Key::S, Command::NextStrategy, "Next strategy"),
     (NONE, Key::Q, Command::Light, "Occlusion on or off"),
     (CTRL, Key::D, Command::Theme, "Dark or light"),

@@ -100,7 +100,9 @@ impl Window {
                 }
             }
             match document.watch.as_ref().and_then(Watch::poll) {
-                Some(Change::Written) => document.loading = Some(load(ctx, document.path.clone())),
+                Some(Change::Written) => {
+                    document.loading = Some(load(ctx, document.path.clone(), None))
+                }
                 Some(Change::Gone) => gone = Some(document.title()),
                 None => {}
             }

@@ -26,8 +26,13 @@ pub struct Loading {
 }
 
 impl Loading {
-    /// Begins to open; `wake` is called when that comes to another stage, and at the end.
-    pub fn begin(path: PathBuf, wake: impl Fn() + Send + 'static) -> Self {
+    /// Begins to open, with a property in front where the case has it; `wake` is called when that comes to
+    /// another stage, and at the end.
+    pub fn begin(
+        path: PathBuf,
+        property: Option<String>,
+        wake: impl Fn() + Send + 'static,
+    ) -> Self {
         let (send, answer) = channel();
         let stage = Arc::new(Mutex::new(String::new()));
         let cancel = Arc::new(AtomicBool::new(false));
@@ -42,7 +47,9 @@ impl Loading {
             let case = match load::open_reporting(&path, &[], &progress) {
                 Ok(Some(case)) => {
                     progress("values");
-                    let first = look::opening(&case, &serde_json::Value::default());
+                    let property = property.filter(|p| look::varies(&case, p));
+                    let written = property.map(|p| serde_json::json!({ "property": p }));
+                    let first = look::opening(&case, &written.unwrap_or_default());
                     first.map_err(|e| e.to_string()).map(|first| Opened {
                         case: Arc::new(case),
                         first: Box::new(first),

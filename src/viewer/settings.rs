@@ -28,6 +28,8 @@ pub struct Settings {
     pub pace: Pace,
     /// What the buttons of the mouse do.
     pub mouse: Mouse,
+    /// The property that cases open with, where they have it and it varies; else what the case is about.
+    pub first_property: Option<String>,
     /// How pictures and films are saved.
     pub export: Export,
     /// Where they are kept; `None` where they are not.
@@ -144,6 +146,7 @@ impl Default for Settings {
             zoom: 1.0,
             pace: Pace::default(),
             mouse: Mouse::default(),
+            first_property: None,
             export: Export::default(),
             file: None,
         }

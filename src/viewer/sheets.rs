@@ -81,6 +81,8 @@ impl Window {
 
     fn settings_sheet(&mut self, ctx: &Context) {
         let (mut is_open, mut chosen) = (self.sheets.settings, self.settings.clone());
+        let document = self.document();
+        let shown = document.and_then(|d| d.state.setup.scene.property.clone());
         egui::Window::new("Settings")
             .open(&mut is_open)
             .show(ctx, |ui| {
@@ -97,6 +99,7 @@ impl Window {
                         ui.end_row();
                     }
                 });
+                first_property(ui, &mut chosen.first_property, shown.as_deref());
                 let themes = [
                     (true, "Dark", "Light text on dark panels"),
                     (false, "Light", "Dark text on light panels"),
@@ -182,6 +185,21 @@ impl Window {
             self.ask_file(ctx, Purpose::Export(Box::new(spec)));
         }
     }
+}
+
+/// Which property cases open with.
+fn first_property(ui: &mut Ui, chosen: &mut Option<String>, shown: Option<&str>) {
+    let what = "The property that a case opens with. Automatic: oil, gas or water saturation, else pressure or porosity";
+    let current = chosen.clone().unwrap_or_else(|| "Automatic".into());
+    list(ui, "First property", what, &current, |ui| {
+        ui.selectable_value(chosen, None, "Automatic");
+        let before = chosen.clone();
+        let mut names: Vec<&str> = [before.as_deref(), shown].into_iter().flatten().collect();
+        names.dedup();
+        for name in names {
+            ui.selectable_value(chosen, Some(name.to_owned()), name);
+        }
+    });
 }
 
 fn kind(is_film: bool, film: &Film, pace: Pace) -> Kind {

@@ -102,15 +102,24 @@ impl Window {
             pace: self.settings.pace,
             ..State::default()
         };
-        let loading = load(ctx, path.clone());
+        let loading = self.load(ctx, path.clone());
         self.documents.push(Document::new(path, loading, state));
         self.current = self.documents.len() - 1;
     }
 
+    /// Begins to open a case.
+    fn load(&self, ctx: &Context, path: PathBuf) -> Loading {
+        load(ctx, path, self.settings.first_property.clone())
+    }
+
     /// Reads the case in front again; it stays as it is until then.
     pub fn reload(&mut self, ctx: &Context) {
+        let Some(path) = self.document().map(|d| d.path.clone()) else {
+            return;
+        };
+        let loading = self.load(ctx, path);
         if let Some(document) = self.document_mut() {
-            document.loading = Some(load(ctx, document.path.clone()));
+            document.loading = Some(loading);
         }
     }
 
@@ -273,10 +282,10 @@ impl Window {
     }
 }
 
-/// Begins to open a case.
-pub(super) fn load(ctx: &Context, path: PathBuf) -> Loading {
+/// Begins to open a case, with a property in front where the case has it.
+pub(super) fn load(ctx: &Context, path: PathBuf, property: Option<String>) -> Loading {
     let waker = ctx.clone();
-    Loading::begin(path, move || waker.request_repaint())
+    Loading::begin(path, property, move || waker.request_repaint())
 }
 
 impl eframe::App for Window {
