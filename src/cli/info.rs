@@ -81,7 +81,11 @@ fn facts(case: &Case, stats: &[String]) -> anyhow::Result<Value> {
     }
     let mut statistics = serde_json::Map::new();
     for asked in stats {
-        let (name, step) = match asked.rsplit_once('@').filter(|_| !asked.contains('-')) {
+        // A difference has a step of its own in its name.
+        let at_step = asked
+            .rsplit_once('@')
+            .filter(|(name, _)| !name.contains('-'));
+        let (name, step) = match at_step {
             Some((name, step)) => (name, case.step(step)?),
             None => (asked.as_str(), case.step("last")?),
         };

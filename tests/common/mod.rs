@@ -11,6 +11,7 @@
 pub mod cone;
 pub mod light;
 pub mod shape;
+pub mod tiny;
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
