@@ -13,25 +13,23 @@ pub struct Info {
     items: Vec<Item>,
 }
 
-/// A fact.
+/// A fact, in ways to say it, the longest first.
 #[derive(Debug, Clone, PartialEq)]
 struct Item {
-    /// Ways to say it, the longest first.
-    words: Vec<String>,
-    /// Where room is lacking, what counts least becomes shorter first, and then goes.
-    weight: Weight,
+    words: Vec<Words>,
+    is_about_selection: bool,
 }
 
-/// How much a fact counts, rising.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Weight {
-    When,
-    Exaggeration,
-    Strategy,
-    Filter,
-    Cells,
-    Values,
+/// A way to say a fact. Where room is lacking, what is worth least gives way to a shorter one, or to nothing.
+#[derive(Debug, Clone, PartialEq)]
+struct Words {
+    text: String,
+    worth: u8,
 }
+
+/// What the date is worth, and where no title has it.
+const WHEN: u8 = 1;
+const UNDATED: u8 = 20;
 
 /// Between two facts.
 const BETWEEN: &str = "  ·  ";
@@ -39,48 +37,42 @@ const BETWEEN: &str = "  ·  ";
 impl Info {
     /// Of a view of a case: `when` it was so, and its facts.
     pub fn of(case: &Case, view: &View, facts: &Facts, when: &str) -> Self {
-        let item = |weight, words: Vec<String>| Item { words, weight };
         let mut items = Vec::new();
         if !when.is_empty() {
-            items.push(item(Weight::When, vec![when.replace("   ", ", ")]));
+            items.push(Item::of([(WHEN, when.replace("   ", ", "))]));
         }
-        items.push(item(Weight::Cells, cells(facts)));
+        items.push(cells(facts));
         if let Some(values) = &facts.values {
             let unit = case.unit(&view.property);
-            items.push(item(Weight::Values, said(values, &view.property, unit)));
+            items.push(said(values, &view.property, unit));
         }
         let factor = format!("{:.2}", view.vertical_exaggeration);
-        let factor = format!("Z x {}", shortened(&factor));
-        items.push(item(Weight::Exaggeration, vec![factor]));
+        items.push(Item::of([(6, format!("Z x {}", shortened(&factor)))]));
+        let selection = |long: String, short: &str| Item {
+            is_about_selection: true,
+            ..Item::of([(5, long), (8, short.to_owned())])
+        };
         if !facts.filter.is_empty() {
-            let words = vec![format!("filter: {}", facts.filter), "filtered".into()];
-            items.push(item(Weight::Filter, words));
+            items.push(selection(format!("filter: {}", facts.filter), "filtered"));
         }
         match facts.planes {
             0 => {}
-            1 => items.push(item(
-                Weight::Filter,
-                vec!["cut by a plane".into(), "cut".into()],
-            )),
-            n => items.push(item(
-                Weight::Filter,
-                vec![format!("cut by {n} planes"), "cut".into()],
-            )),
+            1 => items.push(selection("cut by a plane".into(), "cut")),
+            n => items.push(selection(format!("cut by {n} planes"), "cut")),
         }
         if view.strategy == StrategyKind::Srg {
-            let words = vec!["SRG: resampled".into(), "SRG".into()];
-            items.push(item(Weight::Strategy, words));
+            let words = [(2, "SRG: resampled"), (7, "SRG")];
+            items.push(Item::of(
+                words.map(|(worth, text)| (worth, text.to_owned())),
+            ));
         }
         Self { items }
     }
 
-    /// Facts that are said in one way, the last one counting most; for tests.
+    /// Facts that are said in one way; for tests.
     #[cfg(test)]
     pub fn of_items(texts: &[&str]) -> Self {
-        let item = |text: &&str| Item {
-            words: vec![(*text).to_owned()],
-            weight: Weight::Values,
-        };
+        let item = |text: &&str| Item::of([(9, (*text).to_owned())]);
         Self {
             items: texts.iter().map(item).collect(),
         }
@@ -88,17 +80,18 @@ impl Info {
 
     /// True where there is more to say than of most pictures: about filters and cuts.
     pub fn is_long(&self) -> bool {
-        self.items.iter().any(|i| i.weight == Weight::Filter)
+        self.items.iter().any(|i| i.is_about_selection)
     }
 
     /// All of it in one line.
     pub fn whole(&self) -> String {
-        let items = self.items.iter().filter_map(|i| i.words.first());
-        items.map(String::as_str).collect::<Vec<_>>().join(BETWEEN)
+        let words = self.items.iter().filter_map(|i| i.words.first());
+        let texts: Vec<&str> = words.map(|w| w.text.as_str()).collect();
+        texts.join(BETWEEN)
     }
 
-    /// The lines that fit in a room, `most` at most: what counts least becomes shorter and then goes. Where the
-    /// date stands in a title, it counts least of all; else most.
+    /// The lines that fit in a room, `most` at most: what is worth least becomes shorter and then goes. Where the
+    /// date stands in a title too, it is worth the least; else the most.
     pub fn lines(
         &self,
         room: f64,
@@ -109,22 +102,32 @@ impl Info {
         let mut items = self.items.clone();
         loop {
             let words = items.iter().filter_map(|i| i.words.first());
-            let words: Vec<&str> = words.map(String::as_str).collect();
-            let lines = wrapped(&words, room, width);
+            let texts: Vec<&str> = words.map(|w| w.text.as_str()).collect();
+            let lines = wrapped(&texts, room, width);
             if lines.len() <= most && lines.iter().all(|l| width(l) <= room) {
                 return lines;
             }
-            let rank = |item: &&mut Item| match item.weight {
-                Weight::When if !is_dated => (1, item.weight),
-                weight => (0, weight),
+            let worth = |item: &&mut Item| match item.words[0].worth {
+                WHEN if !is_dated => UNDATED,
+                worth => worth,
             };
             let left = items.iter_mut().filter(|i| !i.words.is_empty());
-            match left.min_by_key(rank) {
+            match left.min_by_key(worth) {
                 Some(least) => {
                     least.words.remove(0);
                 }
                 None => return Vec::new(),
             }
+        }
+    }
+}
+
+impl Item {
+    fn of<const N: usize>(words: [(u8, String); N]) -> Self {
+        let words = words.map(|(worth, text)| Words { text, worth });
+        Self {
+            words: words.into(),
+            is_about_selection: false,
         }
     }
 }
@@ -144,16 +147,16 @@ fn wrapped(words: &[&str], room: f64, width: &dyn Fn(&str) -> f64) -> Vec<String
     lines
 }
 
-fn cells(facts: &Facts) -> Vec<String> {
+fn cells(facts: &Facts) -> Item {
     let [drawn, active] = [facts.drawn, facts.active].map(with_commas);
-    vec![
-        format!("{drawn} of {active} cells"),
-        format!("{drawn} cells"),
-    ]
+    Item::of([
+        (4, format!("{drawn} of {active} cells")),
+        (9, format!("{drawn} cells")),
+    ])
 }
 
 /// What the values are like.
-fn said(values: &Values, property: &str, unit: &str) -> Vec<String> {
+fn said(values: &Values, property: &str, unit: &str) -> Item {
     let Values { min, max, .. } = *values;
     let number = |v: f64| readable(v, min.abs().max(max.abs()), max - min);
     let unit = match unit.is_empty() {
@@ -165,22 +168,22 @@ fn said(values: &Values, property: &str, unit: &str) -> Vec<String> {
             true => "everywhere",
             false => "in all of them",
         };
-        return vec![format!("{property} is {}{unit} {place}", number(min))];
+        return Item::of([(11, format!("{property} is {}{unit} {place}", number(min)))]);
     }
     let range = format!("{} to {}{unit}", number(min), number(max));
     let Some((mean, weights)) = values.mean else {
-        return vec![format!("{property} {range}"), range];
+        return Item::of([(10, format!("{property} {range}")), (11, range)]);
     };
-    let weighted = match weights {
-        Weighting::PoreVolume | Weighting::PorosityVolume => "pore-volume-weighted",
-        Weighting::BulkVolume => "volume-weighted",
+    let (long, short) = match weights {
+        Weighting::PoreVolume | Weighting::PorosityVolume => ("pore-volume-weighted mean", "mean"),
+        Weighting::BulkVolume => ("volume-weighted mean", "mean by volume"),
     };
     let mean = number(mean);
-    vec![
-        format!("{property} {range}, {weighted} mean {mean}"),
-        format!("{property} {range}, mean {mean}"),
-        format!("{range}, mean {mean}"),
-    ]
+    Item::of([
+        (3, format!("{property} {range}, {long} {mean}")),
+        (10, format!("{property} {range}, {short} {mean}")),
+        (11, format!("{range}, {short} {mean}")),
+    ])
 }
 
 /// A number with the digits that a range of values needs: a few thousandths of the range show.
@@ -221,16 +224,22 @@ mod tests {
     }
 
     fn info() -> Info {
-        let item = |weight, words: &[&str]| Item {
-            words: words.iter().map(|w| (*w).to_owned()).collect(),
-            weight,
+        let item = |words: &[(u8, &str)]| Item {
+            words: words
+                .iter()
+                .map(|(worth, text)| Words {
+                    text: (*text).to_owned(),
+                    worth: *worth,
+                })
+                .collect(),
+            is_about_selection: false,
         };
         Info {
             items: vec![
-                item(Weight::When, &["2001-01-01, report 12"]),
-                item(Weight::Cells, &["12,204 of 35,817 cells", "12,204 cells"]),
-                item(Weight::Values, &["SOIL 0 to 0.8, mean 0.3", "0 to 0.8"]),
-                item(Weight::Exaggeration, &["Z x 5"]),
+                item(&[(WHEN, "2001-01-01, report 12")]),
+                item(&[(4, "12,204 of 35,817 cells"), (9, "12,204 cells")]),
+                item(&[(3, "SOIL 0 to 0.8, mean 0.3"), (11, "0 to 0.8")]),
+                item(&[(6, "Z x 5")]),
             ],
         }
     }
@@ -253,10 +262,13 @@ mod tests {
     fn what_counts_least_goes_first() {
         let in_one = |room, is_dated| info().lines(room, 1, is_dated, &width).join("");
         let text = in_one(600.0, true);
-        assert!(!text.contains("report") && text.contains("Z x 5"), "{text}");
+        let all = "12,204 of 35,817 cells  ·  SOIL 0 to 0.8, mean 0.3  ·  Z x 5";
+        assert_eq!(text, all);
+        let text = in_one(500.0, true);
+        assert_eq!(text, "12,204 of 35,817 cells  ·  0 to 0.8  ·  Z x 5");
         let text = in_one(400.0, true);
-        assert_eq!(text, "12,204 cells  ·  SOIL 0 to 0.8, mean 0.3");
-        assert_eq!(in_one(250.0, true), "SOIL 0 to 0.8, mean 0.3");
+        assert_eq!(text, "12,204 cells  ·  0 to 0.8  ·  Z x 5");
+        assert_eq!(in_one(250.0, true), "12,204 cells  ·  0 to 0.8");
         assert_eq!(in_one(100.0, true), "0 to 0.8");
         assert_eq!(in_one(20.0, true), "");
         // A picture without a title keeps its date.
@@ -273,27 +285,34 @@ mod tests {
         }
     }
 
+    fn first(item: &Item) -> String {
+        item.words[0].text.clone()
+    }
+
     #[test]
     fn values_are_said_plainly() {
         let pores = values(0.0231, 0.8497, Some((0.412_34, Weighting::PoreVolume)));
         assert_eq!(
-            said(&pores, "SOIL", "")[0],
+            first(&said(&pores, "SOIL", "")),
             "SOIL 0.023 to 0.85, pore-volume-weighted mean 0.412"
         );
         let bulk = values(200.0, 312.5, Some((250.0, Weighting::BulkVolume)));
         assert_eq!(
-            said(&bulk, "PRESSURE", "BARSA")[0],
+            first(&said(&bulk, "PRESSURE", "BARSA")),
             "PRESSURE 200 to 312.5 BARSA, volume-weighted mean 250"
         );
         let regions = values(1.0, 7.0, None);
-        assert_eq!(said(&regions, "FIPNUM", "")[0], "FIPNUM 1 to 7");
+        assert_eq!(first(&said(&regions, "FIPNUM", "")), "FIPNUM 1 to 7");
         let zero = values(0.0, 0.0, Some((0.0, Weighting::BulkVolume)));
-        assert_eq!(said(&zero, "SGAS", "")[0], "SGAS is 0 everywhere");
+        assert_eq!(first(&said(&zero, "SGAS", "")), "SGAS is 0 everywhere");
         let some = Values {
             are_all: false,
             ..values(0.3, 0.3, None)
         };
-        assert_eq!(said(&some, "PORO", "")[0], "PORO is 0.3 in all of them");
+        assert_eq!(
+            first(&said(&some, "PORO", "")),
+            "PORO is 0.3 in all of them"
+        );
     }
 
     #[test]

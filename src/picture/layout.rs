@@ -66,9 +66,9 @@ pub struct LegendWidths {
 const SMALLEST: DVec2 = DVec2::new(200.0, 150.0);
 /// Those lower or narrower than this have a narrow legend and one line of facts.
 const SMALL: DVec2 = DVec2::new(320.0, 240.0);
-/// Part of the picture's width that full legends may take, and that narrow ones may: where full ones would take
-/// more they are narrow, and where narrow ones would, there are none.
-const LEGENDS: [f64; 2] = [0.3, 0.35];
+/// Part of the picture's width that legends may take: where full ones would take more they are narrow, and where
+/// narrow ones would, there are none.
+const LEGENDS: f64 = 0.3;
 /// Heights of the title, and of facts beside their lines, in text heights.
 const TITLE: f64 = 2.2;
 const INFO: f64 = 0.8;
@@ -134,8 +134,8 @@ impl Layout {
         };
         let (full, narrow) = (width(|l| l.full), width(|l| l.narrow));
         let [left, right] = match () {
-            () if !is_small && full.0 <= LEGENDS[0] * size.x => full.1,
-            () if narrow.0 <= LEGENDS[1] * size.x => {
+            () if !is_small && full.0 <= LEGENDS * size.x => full.1,
+            () if narrow.0 <= LEGENDS * size.x => {
                 layout.is_narrow = true;
                 narrow.1
             }
@@ -258,7 +258,7 @@ mod tests {
                     extent(&Layout::of(whole, unit, &parts).volume) / whole.element_product();
                 let least = match (parts.left_legend, size) {
                     (Some(_), _) => 0.49,
-                    (_, [..320, _] | [_, ..240]) => 0.56,
+                    (_, [..=320, _] | [_, ..=240]) => 0.56,
                     _ => 0.65,
                 };
                 assert!(part >= least, "{size:?} {parts:?}: {part}");
@@ -275,7 +275,7 @@ mod tests {
         };
         for (size, is_narrow, lines) in [
             ([300, 200], true, 1),
-            ([320, 240], false, 2),
+            ([400, 300], false, 2),
             ([1000, 750], false, 2),
             ([1600, 600], false, 1),
         ] {

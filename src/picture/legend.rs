@@ -454,6 +454,167 @@ mod tests {
     }
 
     #[test]
+    fn ends_are_the_true_ones_in_plain_numbers() {
+        for (scale, range, expected) in [
+            (Scale::Linear, [0.0231, 0.8497], ["0.023", "0.85"]),
+            (Scale::Linear, [298.551, 364.902], ["298.6", "364.9"]),
+            (Scale::Linear, [-1e-9, 0.744], ["0", "0.744"]),
+            (Scale::Linear, [0.0, 1_234_000.0], ["0", "1.234e6"]),
+            (
+                Scale::Log,
+                [0.0316f64.log10(), 3162.0f64.log10()],
+                ["0.0316", "3162"],
+            ),
+        ] {
+            let marks = texts(scale, range, None);
+            let (first, last) = (&marks[0], &marks[marks.len() - 1]);
+            assert_eq!((first.0, last.0), (0.0, 1.0));
+            assert_eq!([&first.1, &last.1], expected);
+            // Others keep away from them and from each other.
+            assert!(
+                marks.windows(2).all(|pair| pair[1].0 - pair[0].0 > 0.09),
+                "{marks:?}"
+            );
+            assert!(marks.len() > 3);
+        }
+    }
+
+    fn function(scale: Scale, range: [f64; 2], opacity: Vec<(f64, f64)>) -> TransferFunction {
+        TransferFunction {
+            color: color_map("turbo").unwrap(),
+            opacity,
+            range,
+            scale,
+            bands: None,
+            reference_length: 1.0,
+        }
+    }
+
+    fn regions(count: usize) -> TransferFunction {
+        let values: Vec<f64> = (1..=count).map(|n| n as f64).collect();
+        let end = count as f64 - 0.5;
+        function(
+            Scale::Categories(values.into()),
+            [-0.5, end],
+            vec![(0.0, 0.1)],
+        )
+    }
+
+    fn width(text: &str) -> f64 {
+        6.0 * text.chars().count() as f64
+    }
+
+    /// A legend in a strip as wide as it asks for.
+    fn laid_out(transfer: &TransferFunction, height: f64, is_narrow: bool) -> (Area, Legend) {
+        let key = Key {
+            transfer,
+            heading: ["PRESSURE-PRESSURE@0", "BARSA"],
+            unit: 12.0,
+            width: &width,
+        };
+        let widths = key.widths(height);
+        assert!(widths.narrow <= widths.full);
+        let wide = if is_narrow {
+            widths.narrow
+        } else {
+            widths.full
+        };
+        let strip = [
+            DVec2::new(500.0, 20.0),
+            DVec2::new(500.0 + wide, 20.0 + height),
+        ];
+        (strip, key.laid_out(strip, is_narrow))
+    }
+
+    fn text_area(text: &Text) -> Area {
+        let half = 0.5 * DVec2::new(width(&text.text), text.height);
+        [text.middle - half, text.middle + half]
+    }
+
+    #[test]
+    fn everything_lies_on_the_ground_in_the_strip_and_texts_lie_apart() {
+        let ramp = || vec![(0.0, 0.0), (1.0, 0.6)];
+        for transfer in [
+            function(Scale::Linear, [0.0, 1.0], ramp()),
+            function(Scale::Linear, [-123.456, 98_765.4], ramp()),
+            function(Scale::Linear, [0.3, 0.3], ramp()),
+            function(Scale::Log, [-3.0, 4.0], vec![(0.0, 0.2)]),
+            regions(3),
+            regions(25),
+            regions(400),
+        ] {
+            for height in [60.0, 110.0, 180.0, 300.0, 900.0] {
+                for is_narrow in [false, true] {
+                    let (strip, legend) = laid_out(&transfer, height, is_narrow);
+                    let within = |[low, high]: Area, [a, b]: Area| {
+                        low.cmpge(a - 0.01).all() && high.cmple(b + 0.01).all()
+                    };
+                    assert!(within(legend.ground, strip), "{height} {is_narrow}");
+                    for (area, _) in &legend.blocks {
+                        assert!(within(*area, legend.ground), "{height} {is_narrow}");
+                    }
+                    for area in &legend.opacities {
+                        assert!(within(*area, legend.ground));
+                    }
+                    let areas: Vec<Area> = legend.texts.iter().map(text_area).collect();
+                    for (n, area) in areas.iter().enumerate() {
+                        assert!(
+                            within(*area, strip),
+                            "{height} {is_narrow} {:?}",
+                            legend.texts[n]
+                        );
+                        for (m, other) in areas.iter().enumerate().skip(n + 1) {
+                            let apart = area[1].cmple(other[0]) | other[1].cmple(area[0]);
+                            assert!(apart.any(), "{:?} {:?}", legend.texts[n], legend.texts[m]);
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn opacities_stand_beside_the_bar_and_constant_ones_are_left_out() {
+        let ramp = function(Scale::Linear, [0.0, 1.0], vec![(0.0, 0.0), (1.0, 0.6)]);
+        let (_, legend) = laid_out(&ramp, 400.0, false);
+        let lengths: Vec<f64> = legend.opacities.iter().map(|[a, b]| b.x - a.x).collect();
+        assert!(lengths.is_sorted_by(|a, b| a >= b) && lengths[0] > 10.0);
+        let bar = &legend.blocks[0].0;
+        assert!(legend.opacities.iter().all(|[_, high]| high.x < bar[0].x));
+        let flat = function(Scale::Linear, [0.0, 1.0], vec![(0.0, 0.6), (1.0, 0.6)]);
+        let (_, without) = laid_out(&flat, 400.0, false);
+        assert!(without.opacities.is_empty());
+        assert!(!without.texts.iter().any(|t| t.text == OPACITY));
+    }
+
+    #[test]
+    fn categories_have_two_columns_before_any_is_left_out() {
+        let numbers = |count: usize| {
+            let (_, legend) = laid_out(&regions(count), 300.0, false);
+            let columns: std::collections::BTreeSet<i64> = legend
+                .blocks
+                .iter()
+                .map(|(area, _)| area[0].x as i64)
+                .collect();
+            let texts = legend.texts.iter().map(|t| t.text.clone());
+            (
+                legend.blocks.len(),
+                columns.len(),
+                texts.collect::<Vec<_>>(),
+            )
+        };
+        let (shown, columns, texts) = numbers(6);
+        assert!(shown == 6 && columns == 1 && !texts.iter().any(|t| t.contains("shown")));
+        let (shown, columns, texts) = numbers(20);
+        assert!(shown == 20 && columns == 2 && !texts.iter().any(|t| t.contains("shown")));
+        assert!((1..=20).all(|n| texts.contains(&n.to_string())));
+        let (shown, columns, texts) = numbers(60);
+        assert!(shown < 30 && columns == 2, "{shown}");
+        let every = 60usize.div_ceil(shown);
+        assert!(texts.contains(&format!("1 of {every} shown")), "{texts:?}");
+    }
+
+    #[test]
     fn categories_are_named_in_the_middle_of_their_boxes() {
         let of = |values: &[f64]| {
             let end = values.len() as f64 - 0.5;

@@ -214,12 +214,9 @@ fn change(document: &mut Document, command: Command) -> Option<String> {
             return Some(next.describe().to_owned());
         }
         Command::Light => {
-            let off = LightingSpec::default();
-            let next = match document.state.setup.scene.lighting == off {
-                true => LightingSpec::preset("soft").unwrap_or_default(),
-                false => off,
-            };
-            document.apply(Action::Lighting(next));
+            let is_off = document.state.setup.scene.lighting == LightingSpec::default();
+            let soft = LightingSpec::preset("soft").filter(|_| is_off);
+            document.apply(Action::Lighting(soft.unwrap_or_default()));
         }
         Command::Compare => {
             let setup = &document.state.setup;

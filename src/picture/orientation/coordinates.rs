@@ -219,9 +219,12 @@ impl Scale {
         if self.outward.x.abs() < UPRIGHT {
             places.rotate_left(ends.len());
         }
-        let areas = places.into_iter().map(|at| layout.area(&name, at));
-        let free = areas.into_iter().find(|a| layout.is_free(a));
-        if let Some(area) = free {
+        // Where it would be moved into the picture it may come to lie on the model.
+        let moved = |(at, area): &(DVec2, Area)| at.distance(0.5 * (area[0] + area[1]));
+        let areas = places.into_iter().map(|at| (at, layout.area(&name, at)));
+        let free = areas.filter(|(_, area)| layout.is_free(area));
+        let least = free.min_by(|a, b| moved(a).round().total_cmp(&moved(b).round()));
+        if let Some((_, area)) = least {
             layout.write(&name, area);
         }
     }

@@ -218,6 +218,7 @@ mod tests {
         let mut view = view([800, 600], 1.0);
         let origin = DVec3::new(460_000.0, 5_930_000.0, -4000.0);
         view.box_corners = view.box_corners.map(|c| origin + 100.0 * c);
+        view.subject = crate::scene::Subject::of_box(view.box_corners).into();
         let [azimuth, elevation] = [azimuth, elevation].map(f64::to_radians);
         let aspect = view.aspect();
         view.camera = Camera::framing(
@@ -344,7 +345,9 @@ mod tests {
             Orientation::of(&seen(30.0, 40.0, 1.0, Projection::Parallel), "m", paper)
         };
         let [small, middle, large] = [200.0, 300.0, 500.0].map(count);
-        assert!(small.strokes.is_empty() && small.texts.len() == 4);
+        // The exaggeration alone.
+        assert!(small.strokes.is_empty() && small.arrows.is_empty() && small.texts.len() == 1);
+        assert_eq!(middle.arrows.len(), 3);
         assert!(middle.strokes.len() == 3 && large.strokes.len() > 10);
     }
 

@@ -40,7 +40,7 @@ const DIRECTIONS: [Direction; 3] = [
 const LENGTH: f64 = 3.0;
 const LONGEST: f64 = 0.09;
 /// Part of the smaller side that all of it may take.
-const WIDEST: f64 = 0.45;
+const WIDEST: f64 = 0.35;
 
 /// Adds arrows and names, bottom left, where there is room.
 pub fn add(layout: &mut Arrangement<'_>, camera: &Camera) {
