@@ -3,7 +3,7 @@
 use eframe::egui::{self, Align2, Color32, FontId, Painter, Pos2, Rect, Stroke, pos2, vec2};
 use glam::DVec2;
 
-use super::studio::DIFFERENCE_SCALE;
+use super::studio::difference_title;
 use super::worker::Picture;
 use crate::metrics::Comparison;
 use crate::picture::{Annotations, Arrow, CONNECTION, Orientation, Paper, legend_marks, on_screen};
@@ -261,10 +261,7 @@ pub fn refusal(painter: &Painter, rect: Rect, why: &str) {
 
 /// What a map of differences means.
 pub fn difference(painter: &Painter, rect: Rect, figures: &Comparison) {
-    let text = format!(
-        "CIEDE2000: mean {:.2}, 99 % below {:.2}; brightest at {DIFFERENCE_SCALE} or more",
-        figures.ciede2000_mean, figures.ciede2000_p99
-    );
+    let text = difference_title(figures);
     let at = rect.left_top() + vec2(12.0, 10.0);
     write(painter, at, Align2::LEFT_TOP, &text, Color32::WHITE, 15.0);
 }
