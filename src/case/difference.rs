@@ -74,6 +74,16 @@ impl Case {
         }
     }
 
+    /// The property from which a difference is taken; a property itself.
+    pub fn now_of<'a>(&'a self, name: &'a str) -> &'a str {
+        let own = self.minus.as_ref().filter(|m| m.name == name);
+        match (self.difference(name), own) {
+            (Some(difference), _) => difference.now,
+            (None, Some(minus)) => &minus.now,
+            (None, None) => name,
+        }
+    }
+
     /// Why two properties have no difference, in one sentence; `None` where they have one.
     pub fn refuses_difference(&self, now: &str, base: &str, other: &Self) -> Option<String> {
         let units = [self.property(now), other.property(base)];

@@ -46,6 +46,16 @@ impl Info {
             let unit = case.unit(&view.property);
             items.push(said(values, &view.property, unit));
         }
+        let doubt = case
+            .property(&view.property)
+            .ok()
+            .and_then(|p| p.doubt.as_ref());
+        if let Some(doubt) = doubt {
+            items.push(Item::of([
+                (12, doubt.clone()),
+                (13, "not as in the deck".into()),
+            ]));
+        }
         let factor = format!("{:.2}", view.vertical_exaggeration);
         items.push(Item::of([(6, format!("Z x {}", shortened(&factor)))]));
         let selection = |long: String, short: &str| Item {

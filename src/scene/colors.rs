@@ -298,7 +298,7 @@ fn automatic(
 }
 
 /// What a filter leaves of a model is at least this opaque, seen through its thinnest part.
-const FILTERED: f64 = 0.5;
+const FILTERED: f64 = 0.9;
 
 /// An opacity that was not chosen by hand, made solid where a filter hides cells.
 fn filtered(asked: &Asked<'_>, found: Opacity) -> Opacity {
@@ -314,7 +314,7 @@ fn filtered(asked: &Asked<'_>, found: Opacity) -> Opacity {
     }
 }
 
-/// An opacity that was not chosen by hand, where a filter hides cells: at least 0.5 for every value over the
+/// An opacity that was not chosen by hand, where a filter hides cells: at least 0.9 for every value over the
 /// thinnest part that is left, which is one cell of a filter by value and the kept rows, columns or layers of
 /// one by I, J or K. What passes a filter is what one wants to see.
 ///

@@ -11,7 +11,7 @@ use super::subject::same_date;
 use super::window::Window;
 use super::worker::Wanted;
 use crate::case::Case;
-use crate::scene::{Scene, model_corners};
+use crate::scene::{Scene, ShownFaults, model_corners};
 
 /// What the reader was asked for last.
 #[derive(Default, PartialEq)]
@@ -72,6 +72,9 @@ impl Window {
         if comparison.case.is_some() {
             let case = self.document()?.case.as_ref()?;
             scene.step = same_date(case, &scene.step, &other);
+            if let ShownFaults::Named(names) = &mut scene.show.faults {
+                names.retain(|name| other.about.named_faults.iter().any(|f| f.name == *name));
+            }
             let link = self.link()?;
             let (picture, _) = self.picture(0)?;
             let view = &picture.view;

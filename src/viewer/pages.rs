@@ -7,9 +7,7 @@ use eframe::egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Stroke, pos2};
 use glam::DVec2;
 
 use super::overlay::{TEXT, ink, place, size, width, write};
-use super::studio::DIFFERENCE_SCALE;
 use crate::case::Case;
-use crate::metrics::Comparison;
 use crate::picture::{
     Annotations, Area, GROUND, Info, LINE, Layout, Legend, LegendWidths, Length, Parts, cut,
 };
@@ -140,14 +138,6 @@ pub fn draw_shared(painter: &Painter, page: &Page, shown: [&Shown; 2], own: &[St
             }
         }
     }
-}
-
-/// What a map of differences means.
-pub fn figures(figures: &Comparison) -> String {
-    format!(
-        "CIEDE2000: mean {:.2}, 99 % below {:.2}; brightest at {DIFFERENCE_SCALE} or more",
-        figures.ciede2000_mean, figures.ciede2000_p99
-    )
 }
 
 /// The background of the volume goes on around it.

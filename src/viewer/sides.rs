@@ -9,6 +9,7 @@ use super::action::Action;
 use super::pages::{self, Page};
 use super::panels;
 use super::state::{Comparison, Layout};
+use super::studio::difference_title;
 use super::viewport::{self, Touched, Viewport};
 use super::welcome::{self, Answer, Asked};
 use super::window::Window;
@@ -291,7 +292,7 @@ impl Window {
             Some(Layout::ColorDifference) => self.pictures.difference(),
             _ => None,
         };
-        let figures = figures.map(|d| pages::figures(&d.difference.figures));
+        let figures = figures.map(|d| difference_title(&d.difference.figures));
         let is_shared = matches!(layout, Some(Layout::Wipe(_)));
         if is_shared && let ([Some(page), _], [Some(first), Some(second)]) = (pages, &shown) {
             pages::draw_shared(ui.painter(), page, [first, second], &own);

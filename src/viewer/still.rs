@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::export::{Compared, ExportSpec, Fallible};
 use super::state::Layout;
-use super::studio::DIFFERENCE_SCALE;
+use super::studio::{DIFFERENCE_SCALE, difference_title};
 use crate::case::Case;
 use crate::gpu::Gpu;
 use crate::metrics::{Comparison, ciede2000_map};
@@ -194,13 +194,7 @@ fn color_difference(a: &Rgb8, b: &Rgb8) -> Fallible<Rgb8> {
     let figures = Comparison::of(a, b)?;
     let differences = ciede2000_map(&a.pixels, &b.pixels).unwrap_or_default();
     let mut map = difference_colors(&differences, a.size, DIFFERENCE_SCALE);
-    write_title(
-        &mut map,
-        &format!(
-            "Color difference (CIEDE2000): mean {:.2}, 99 % below {:.2}; brightest at {DIFFERENCE_SCALE} or more",
-            figures.ciede2000_mean, figures.ciede2000_p99
-        ),
-    );
+    write_title(&mut map, &difference_title(&figures));
     Ok(map)
 }
 

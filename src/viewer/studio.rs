@@ -20,6 +20,14 @@ use crate::scene::{self, CameraSpec, Scene, View};
 /// CIEDE2000 that has the last color of a difference map.
 pub const DIFFERENCE_SCALE: f64 = 20.0;
 
+/// What a map of color differences says above it.
+pub fn difference_title(figures: &Comparison) -> String {
+    format!(
+        "Color difference (CIEDE2000): mean {:.2}, 99 % below {:.2}; brightest at {DIFFERENCE_SCALE} or more",
+        figures.ciede2000_mean, figures.ciede2000_p99
+    )
+}
+
 type Say<'a> = &'a dyn Fn(Answer);
 
 /// The device and two sides of it.

@@ -24,7 +24,7 @@ fn f11_faces_of_named_faults_are_found_whatever_their_throw() {
         assert_eq!(case.grid.fault_faces(), [0, 0]);
         let scene = Scene {
             show: Show {
-                faults: true,
+                faults: true.into(),
                 ..Show::default()
             },
             ..Scene::default()

@@ -24,6 +24,7 @@ pub fn show(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
             refusal(ui, id, filter.along(axis), count);
         });
     }
+    ui.weak(format!("Lists such as {FORM}: 10 to 30 by twos"));
     slices(ui, about, &mut filter, actions);
     clear(ui, &mut filter);
     if filter != about.scene.filter {
@@ -99,7 +100,7 @@ fn field(ui: &mut Ui, id: Id, name: &str, kept: &mut Option<Indices>, count: usi
     let label = format!("List of {name}");
     response.widget_info(|| WidgetInfo::labeled(Role::TextInput, true, &label));
     let response = response.on_hover_text(format!(
-        "{name} drawn, 1 to {count}: a number, a range or a list such as {FORM}, where :2 takes every second"
+        "{name} drawn, 1 to {count}: a number, a range or a list such as {FORM}"
     ));
     if response.lost_focus()
         && let Ok(indices) = Indices::typed(&text, count)

@@ -1,8 +1,9 @@
 //! What is compared, and how both are shown.
 
-use eframe::egui::{self, Ui};
+use eframe::egui::Ui;
 
 use super::About;
+use super::controls::list;
 use crate::scene::StepSpec;
 use crate::strategies::StrategyKind;
 use crate::viewer::action::Action;
@@ -108,8 +109,8 @@ fn values(ui: &mut Ui, about: &About<'_>, comparison: &mut Comparison) {
         .collect();
     let what = "Time step of the second image";
     choice(ui, "Step", what, &mut comparison.step, &steps);
-    let properties = about.case.properties.iter();
-    let properties: Vec<_> = properties
+    let properties: Vec<_> = about
+        .properties()
         .map(|p| (p.name.clone(), p.name.clone()))
         .collect();
     let what = "Property of the second image";
@@ -130,14 +131,10 @@ fn choice<T: Clone + PartialEq>(
 ) {
     let named = all.iter().find(|(v, _)| Some(v) == value.as_ref());
     let text = named.map_or("the same", |(_, text)| text.as_str());
-    egui::ComboBox::from_label(name)
-        .selected_text(text)
-        .show_ui(ui, |ui| {
-            ui.selectable_value(value, None, "the same");
-            for (v, text) in all {
-                ui.selectable_value(value, Some(v.clone()), text);
-            }
-        })
-        .response
-        .on_hover_text(what);
+    list(ui, name, what, text, |ui| {
+        ui.selectable_value(value, None, "the same");
+        for (v, text) in all {
+            ui.selectable_value(value, Some(v.clone()), text);
+        }
+    });
 }

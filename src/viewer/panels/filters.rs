@@ -13,6 +13,8 @@ use crate::viewer::spread::{Counts, part, value};
 
 /// Height of a histogram, in points.
 const HISTOGRAM: f32 = 46.0;
+/// Room for what stands beside a property's name, in points.
+const BESIDE: f32 = 142.0;
 /// Height of a list of categories, in points.
 const LIST: f32 = 150.0;
 
@@ -37,9 +39,10 @@ pub fn show(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
         if add.on_hover_text(what).clicked()
             && let Some(name) = about.property()
         {
-            // A difference to a step filters as the property does.
-            let name = about.case.difference(name).map_or(name, |d| d.now);
-            filter.properties.push(PropertyFilter::open(name));
+            // What a difference is taken from filters for it.
+            filter
+                .properties
+                .push(PropertyFilter::open(about.case.now_of(name)));
         }
         clear(ui, &mut filter);
     });
@@ -74,11 +77,11 @@ fn heading(ui: &mut Ui, about: &About<'_>, row: &mut PropertyFilter) -> bool {
 
 fn property(ui: &mut Ui, about: &About<'_>, name: &mut String) {
     egui::ComboBox::from_id_salt("property")
-        .width(100.0)
+        .width((ui.available_width() - BESIDE).max(60.0))
         .truncate()
         .selected_text(name.clone())
         .show_ui(ui, |ui| {
-            for property in &about.case.properties {
+            for property in about.properties() {
                 ui.selectable_value(name, property.name.clone(), &property.name);
             }
         })

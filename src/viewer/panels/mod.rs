@@ -33,7 +33,7 @@ use super::reader::{Curves, Table};
 use super::spread::Spread;
 use super::state::State;
 use super::worker::Picture;
-use crate::case::Case;
+use crate::case::{Case, Property};
 use crate::picking::Pick;
 use crate::scene::Scene;
 
@@ -70,6 +70,13 @@ pub struct About<'a> {
 }
 
 impl About<'_> {
+    /// The properties of the case in front; one that is a difference to another case is none of these.
+    pub fn properties(&self) -> impl Iterator<Item = &Property> {
+        let minus = self.case.minus.as_ref();
+        let all = self.case.properties.iter();
+        all.filter(move |p| minus.is_none_or(|m| m.name != p.name))
+    }
+
     /// The property shown.
     pub fn property(&self) -> Option<&str> {
         let shown = self.picture.map(|p| p.view.property.as_str());

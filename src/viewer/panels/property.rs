@@ -39,7 +39,7 @@ fn properties(ui: &mut Ui, about: &About<'_>, current: &str, actions: &mut Vec<A
     ui.add(edit.desired_width(f32::INFINITY))
         .on_hover_text(what);
     ui.data_mut(|d| d.insert_temp(id, search.clone()));
-    let now = about.case.difference(current).map_or(current, |d| d.now);
+    let now = about.case.now_of(current);
     let search = search.to_lowercase();
     // As high with few names as with many, so that what is below stays in its place.
     egui::ScrollArea::vertical()
@@ -48,7 +48,7 @@ fn properties(ui: &mut Ui, about: &About<'_>, current: &str, actions: &mut Vec<A
         .auto_shrink([false, false])
         .show(ui, |ui| {
             for (kind, group) in GROUPS {
-                let all = about.case.properties.iter();
+                let all = about.properties();
                 // What is derived from values that change with time changes too.
                 let kind_of = |p: &Property| match p.steps {
                     0 => p.kind,
