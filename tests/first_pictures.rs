@@ -185,3 +185,38 @@ fn a_case_opens_in_the_mode_that_shows_it() {
         }
     }
 }
+
+/// How far pictures with occlusion are from those without, where the volume covers most of a pixel.
+#[test]
+fn occlusion_is_seen() {
+    let Some(gpu) = gpu() else { return };
+    let mut paths = vec![sample()];
+    let more = ["spe1/SPE1CASE1.EGRID", "editnnc/9_EDITNNC.EGRID"];
+    paths.extend(FIELDS.iter().chain(&more).filter_map(|f| data(f)));
+    for path in paths {
+        let case = load::open(&path).unwrap();
+        let mut renderer = Renderer::new(gpu.clone(), &case.grid).unwrap();
+        let mut picture = |light: &str| {
+            let written = json!({
+                "size": [240, 170], "mode": "volume",
+                "lighting": strataray::scene::LightingSpec::preset(light).unwrap(),
+            });
+            let (_, view) = opened(&case, &written);
+            let frame = renderer.render(&case.grid, &view, &|_| true);
+            let image = frame.unwrap().unwrap().image;
+            let rgb = image.over_background_8bit(view.background);
+            (rgb, image.pixels)
+        };
+        let (off, pixels) = picture("off");
+        let mut apart = |light: &str| {
+            let all = ciede2000_map(&off, &picture(light).0).unwrap();
+            let covered = all.iter().zip(&pixels).filter(|(_, p)| p[3] > 0.5);
+            let covered: Vec<f64> = covered.map(|(d, _)| *d).collect();
+            covered.iter().sum::<f64>() / covered.len() as f64
+        };
+        let [none, soft, strong] = ["off", "soft", "strong"].map(&mut apart);
+        eprintln!("{}: soft {soft:.2}, strong {strong:.2}", case.about.name);
+        assert_eq!(none, 0.0);
+        assert!(soft >= 3.0 && strong > 1.3 * soft, "{soft} {strong}");
+    }
+}

@@ -151,9 +151,10 @@ fn fact_of_cell(cell: &CellOnRay) -> Value {
     })
 }
 
-/// Values have the precision of the files: written with its digits, not with those of an f64.
-fn single(value: f64) -> f32 {
-    value as f32
+/// A value with the digits of the files, which are those of an f32.
+fn single(value: f64) -> f64 {
+    let short = (value as f32).to_string();
+    short.parse().unwrap_or(value)
 }
 
 fn text(case: &Case, [x, y]: [i64; 2], pick: &Pick) -> String {
@@ -168,7 +169,7 @@ fn text(case: &Case, [x, y]: [i64; 2], pick: &Pick) -> String {
     let unit = case.unit(&pick.property);
     let value = |value: f64| format!("{} {} {unit}", pick.property, single(value));
     let mut lines = vec![format!("{}   {}", named(hit), value(hit.value).trim_end())];
-    if hit.shown != hit.value {
+    if hit.is_between {
         let shown = value(hit.shown);
         lines.push(format!("{} at this point (interpolated)", shown.trim_end()));
     }
@@ -202,8 +203,8 @@ fn table(pick: &Pick, taken: usize) -> Vec<String> {
     let first = taken.saturating_sub(LISTED);
     let last = (taken + LISTED + 1).min(pick.cells.len());
     let heading = format!(
-        "  {:>5} {:>5} {:>5} {:>14} {:>10} {:>12} {:>12}",
-        "I", "J", "K", pick.property, "% of color", "from", "to"
+        "  {:>5} {:>5} {:>5} {:>14} {:>11}",
+        "I", "J", "K", pick.property, "% of pixel"
     );
     let mut lines = vec![heading];
     let more = |n: usize| (n > 0).then(|| format!("  ... {n} more"));
@@ -212,11 +213,9 @@ fn table(pick: &Pick, taken: usize) -> Vec<String> {
         let [i, j, k] = cell.ijk.one_based();
         let mark = if n == taken { '>' } else { ' ' };
         lines.push(format!(
-            "{mark} {i:>5} {j:>5} {k:>5} {:>14} {:>10.1} {:>12.1} {:>12.1}",
+            "{mark} {i:>5} {j:>5} {k:>5} {:>14} {:>11.1}",
             single(cell.value),
-            100.0 * cell.contribution,
-            cell.from,
-            cell.to
+            100.0 * cell.contribution
         ));
     }
     lines.extend(more(pick.cells.len() - last));

@@ -90,6 +90,8 @@ pub struct Hit {
     pub value: f64,
     /// The value at the place, which is interpolated where the view's values vary inside a cell.
     pub shown: f64,
+    /// That is another one than the cell's by as much as the legend tells apart.
+    pub is_between: bool,
     /// How much of the pixel it is, 0..1.
     pub contribution: f64,
 }
@@ -237,21 +239,28 @@ fn hit(
     }
     let seen = choice::seen(gathered, |ijk| sight.own_color(ijk))?;
     let (piece, of_piece) = &gathered.pieces[seen];
-    let (ijk, shown, part) = match &piece.of {
-        Source::Cell { ijk, value, part } => (*ijk, Some(view.true_value(*value)), part.clone()),
-        Source::Sheet(met) => (met.cell, None, Part::Fault(fault_of(case, *met)?)),
+    let on_ray = |ijk: Ijk| cells.iter().find(|c| c.ijk == ijk);
+    let (cell, part, shown, contribution) = match &piece.of {
+        Source::Cell { ijk, value, part } => {
+            let cell = on_ray(*ijk)?;
+            (cell, part.clone(), Some(*value), cell.contribution)
+        }
+        Source::Sheet(met) => {
+            let part = Part::Fault(fault_of(case, *met)?);
+            (on_ray(met.cell)?, part, None, *of_piece)
+        }
         Source::Ghost => return None,
     };
-    let cell = cells.iter().find(|c| c.ijk == ijk)?;
     let world = sight.at(piece.at);
     Some(Hit {
-        ijk,
+        ijk: cell.ijk,
         world,
         map: DVec3::new(world.x, world.y, -world.z / view.vertical_exaggeration),
         part,
         value: cell.value,
-        shown: shown.unwrap_or(cell.value),
-        contribution: shown.map_or(*of_piece, |_| cell.contribution),
+        shown: shown.map_or(cell.value, |value| view.true_value(value)),
+        is_between: shown.is_some_and(|value| sight.is_apart(cell.ijk, value)),
+        contribution,
     })
 }
 

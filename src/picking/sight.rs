@@ -15,6 +15,8 @@ use crate::scene::{Hull, View};
 
 /// How far beside a surface its cell is located, as a part of the sampling step.
 const BESIDE: f64 = 1e-3;
+/// Part of a legend within which two values are the same to the eye.
+const TOLD_APART: f64 = 0.01;
 
 /// A ray of a view, and the surfaces on it.
 pub(super) struct Sight<'a> {
@@ -101,6 +103,14 @@ impl<'a> Sight<'a> {
     /// The color of a cell's own value.
     pub fn own_color(&self, ijk: Ijk) -> Option<[f64; 3]> {
         self.own_value(ijk).map(|value| self.color(value))
+    }
+
+    /// True where a value in the scale of the view is another one than a cell's own by what a legend tells
+    /// apart.
+    pub fn is_apart(&self, ijk: Ijk, value: f64) -> bool {
+        let position = |value| self.view.transfer.position(value);
+        let own = self.own_value(ijk);
+        own.is_some_and(|own| (position(own) - position(value)).abs() >= TOLD_APART)
     }
 
     /// The color of a value in the scale of the view.

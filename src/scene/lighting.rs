@@ -238,11 +238,11 @@ impl LightingSpec {
         Some(match name {
             "off" => none,
             "soft" => Self {
-                occlusion: occlusion(25.0, 0.4, 0.7),
+                occlusion: occlusion(15.0, 0.8, 0.5),
                 ..none
             },
             "strong" => Self {
-                occlusion: occlusion(20.0, 0.8, 1.0),
+                occlusion: occlusion(20.0, 1.2, 0.9),
                 ..none
             },
             "key" => Self {
@@ -403,6 +403,16 @@ impl Lighting {
     /// True where nothing is shaded.
     pub fn is_off(&self) -> bool {
         self.occlusion.is_none() && self.lights.is_empty()
+    }
+
+    /// The light on solid cells. Near a face that is seen at an angle a cone passes the body that the face bounds,
+    /// so that faces would come out darker than what lies before them accounts for: half of it is applied.
+    #[must_use]
+    pub(crate) fn on_solid_cells(mut self) -> Self {
+        if let Some(occlusion) = &mut self.occlusion {
+            occlusion.strength *= 0.5;
+        }
+        self
     }
 
     /// Voxels of the extinction volume along the grid's x, y and depth: cubes in world space, unless the

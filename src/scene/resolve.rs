@@ -275,16 +275,21 @@ pub(super) fn resolve_over(
         connections,
         named_faults: case.fault_faces.clone(),
         chosen_faults: surfaces::chosen(&scene.show.faults, case)?,
-        lighting: lighting::resolve(
-            &scene.lighting,
-            box_edges(&box_corners),
-            case.grid.dims().cells(),
-        )?,
+        lighting: lighting(scene, case, &box_corners)?,
         libc: scene.libc,
         srg: srg(scene, case.grid.dims())?,
         show_box: scene.show.r#box,
         show_legend: scene.show.legend,
         facts,
+    })
+}
+
+fn lighting(scene: &Scene, case: &Case, corners: &[DVec3; 8]) -> Result<Lighting, SceneError> {
+    let cells = case.grid.dims().cells();
+    let lighting = lighting::resolve(&scene.lighting, box_edges(corners), cells)?;
+    Ok(match scene.mode {
+        Mode::Cells => lighting.on_solid_cells(),
+        Mode::Volume => lighting,
     })
 }
 

@@ -5,7 +5,7 @@ use egui_kittest::kittest::Queryable;
 use strataray::model::Ijk;
 use strataray::picking::Part;
 use strataray::scene::{Hull, Show};
-use strataray::viewer::{Action, Beside, CurvePlots};
+use strataray::viewer::{Action, Beside, Comparison, CurvePlots, Layout};
 
 use super::common::{gpu, sample};
 use super::driven::{Driven, covered};
@@ -158,6 +158,34 @@ fn a_pointer_that_rests_reads_the_cell_and_disturbs_no_picture() {
 }
 
 #[test]
+fn right_of_a_wipe_the_second_picture_is_read() {
+    let Some(_) = gpu() else { return };
+    let mut driven = Driven::showing(sample());
+    driven
+        .harness
+        .state_mut()
+        .apply(Action::Compare(Some(Comparison {
+            property: Some("PORO".into()),
+            layout: Layout::Wipe(0.5),
+            ..Comparison::default()
+        })));
+    driven.wait_final();
+    let place = driven.place("volume");
+    for (x, property) in [(0.45, "SOIL"), (0.55, "PORO")] {
+        let at = place.min + vec2(x, 0.5) * place.size();
+        driven.click_at(at, Modifiers::NONE);
+        driven.wait("the pick", |w| {
+            let pick = w.document().and_then(|d| d.pick.as_ref());
+            pick.is_some_and(|p| p.property == property)
+        });
+        driven.harness.hover_at(at + vec2(0.0, 3.0));
+        driven.wait("the reading", |w| {
+            w.hovered().is_some_and(|p| p.property == property)
+        });
+    }
+}
+
+#[test]
 fn keys_and_buttons_step_along_the_line_of_sight() {
     let Some(_) = gpu() else { return };
     let mut driven = Driven::showing(sample());
@@ -177,8 +205,7 @@ fn keys_and_buttons_step_along_the_line_of_sight() {
     });
     let pick = driven.document().pick.clone().unwrap();
     let cells: Vec<[usize; 3]> = pick.cells.iter().map(|c| c.ijk.one_based()).collect();
-    let hit = pick.hit.as_ref().unwrap().ijk;
-    let [before, behind] = pick.around(hit).unwrap();
+    let [before, behind] = pick.around(pick.hit.as_ref().unwrap().ijk).unwrap();
     driven.wait_settled();
     driven.harness.get_by_label(&told(before, behind));
     assert!(before + behind > 1);

@@ -62,13 +62,17 @@ fn seen(pick: &Pick, hit: &Hit, case: &Case) -> String {
         Part::Face(_) => lines.push("Outer face".into()),
         Part::Fault(fault) => lines.push(of_fault(fault, case)),
     }
-    if hit.shown != hit.value {
-        let shown = value(&pick.property, hit.shown, case);
-        lines.push(format!("{shown} at this point (interpolated)"));
-    }
+    lines.extend(between_cells(pick, hit, case));
     let share = 100.0 * hit.contribution;
-    lines.push(format!("{share:.0} % of the color seen here"));
+    lines.push(format!("{share:.0} % of this pixel"));
     lines.join("\n")
+}
+
+/// The value at the place, where it is another one than the cell's: interpolated between cells.
+fn between_cells(pick: &Pick, hit: &Hit, case: &Case) -> Option<String> {
+    let shown = value(&pick.property, hit.shown, case);
+    let is_between = hit.is_between;
+    is_between.then(|| format!("{shown} at this point (interpolated)"))
 }
 
 /// A value with its property's name and unit.
@@ -91,6 +95,7 @@ pub fn hover_text(pick: &Pick, case: &Case) -> Option<String> {
         let cell = named(hit.ijk.one_based());
         let value = value(&pick.property, hit.value, case);
         lines.push(format!("{cell}   {value}"));
+        lines.extend(between_cells(pick, hit, case));
     }
     lines.extend(pick.fault.as_ref().map(|fault| of_fault(fault, case)));
     (!lines.is_empty()).then(|| lines.join("\n"))
