@@ -155,7 +155,7 @@ fn section(view: &View, ray: &Ray) -> Option<f64> {
 fn surface(case: &Case, view: &View, surfaces: Surfaces, ray: &Ray) -> Option<(f64, Ijk, Part)> {
     let grid = &case.grid;
     let mut faces = Vec::new();
-    if surfaces.has_hull() {
+    if surfaces.hull == Hull::Opaque {
         faces.extend(view.hull_faces(grid));
     }
     if surfaces.faults {
