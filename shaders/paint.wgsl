@@ -1,6 +1,6 @@
 // Colors of a layer of surface points: one thread = one pixel of some rows of a part of the picture. Reads the
-// points that were rasterized, the grid, transfer function and light; writes
-// distance and color, and counts the work.
+// points that were rasterized, the grid, transfer function and light; puts
+// distance, color and opacity among the layers of the pixel that are there, and counts the work.
 #import edges
 #import facing
 #import projection
@@ -29,23 +29,36 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         return;
     }
     let in_part = vec2u(id.x, paint.first_row + id.y);
-    let place = first_layer(in_part) + paint.layer;
+    let first = first_layer(in_part);
     let point = textureLoad(points, vec2i(in_part), 0).xy;
     if point.x == 0u {
-        ray_states[place] = vec4u(bitcast<u32>(NO_LAYER), 0u, 0u, 0u);
+        store_layer(first + paint.layer, Layer(NO_LAYER, vec3f(0.0), 0.0));
         return;
     }
-    let color = color_of(point.x - 1u, bitcast<f32>(point.y), pixel_ray(tile.origin + in_part));
-    ray_states[place] = vec4u(point.y, bitcast<vec3u>(color));
-    count(COUNT_WORK, PAINT_WORK + lighting.work);
+    insert(first, layer_at(point.x - 1u, bitcast<f32>(point.y), pixel_ray(tile.origin + in_part)));
+    count(COUNT_WORK, PAINT_WORK + select(lighting.work, 0u, paint.look == LOOK_FAINT));
 }
 
-fn color_of(face: u32, distance: f32, ray: PixelRay) -> vec3f {
+// Puts a layer among those that are there, behind all that are not farther.
+fn insert(first: u32, layer: Layer) {
+    var at = first + paint.layer;
+    while at > first && bitcast<f32>(ray_states[at - 1u].x) > layer.distance {
+        ray_states[at] = ray_states[at - 1u];
+        at -= 1u;
+    }
+    store_layer(at, layer);
+}
+
+fn layer_at(face: u32, distance: f32, ray: PixelRay) -> Layer {
     let column = face / 6u / grid.nk;
     let layer = face / 6u % grid.nk;
     let direction = ray.direction;
     let place = ray.origin + distance * direction;
     let spot = spot_on(column, layer, face % 6u, frame_at(place, direction, distance), pixel_steps(direction, distance));
+    if !HULL && paint.look == LOOK_FAINT {
+        let away = 1.0 - turned_to_ray(spot.normal, direction);
+        return Layer(distance, paint.faint.rgb, mix(paint.facing, paint.edge_on, away * away));
+    }
     var color = fault_color(face);
     if HULL {
         let own = transfer(value_on(column, layer, face % 6u, spot.at)).rgb;
@@ -56,10 +69,12 @@ fn color_of(face: u32, distance: f32, ray: PixelRay) -> vec3f {
     }
     // A sheet carries no number, as ghosts do.
     let lit = shade(color.rgb, place, !HULL);
+    let opacity = select(SHEET_OPACITY, 1.0, HULL);
     if !CELL_EDGES {
-        return lit;
+        return Layer(distance, lit, opacity);
     }
-    return with_edges(lit, vec3f(spot.at, 0.5), vec3f(spot.right, 0.0), vec3f(spot.down, 0.0));
+    let lined = with_edges(lit, vec3f(spot.at, 0.5), vec3f(spot.right, 0.0), vec3f(spot.down, 0.0));
+    return Layer(distance, lined, opacity);
 }
 
 // Color of the fault that a face lies on, and 1; zero where it lies on none.

@@ -1,16 +1,18 @@
 // Surface points of a part of the picture, rasterized layer by layer: one vertex = one corner of one of a
 // face's two triangles, one fragment = where the ray of a pixel meets a face, from either side. Reads the
-// grid, the list of faces and the layer before; the nearest point behind that is the next layer.
+// grid, the list of faces and the layer before; the nearest point behind that is the next layer. Or the last point
+// of all.
 #import raster
 
 struct PeelInfo {
-    // Number of the layer.
+    // Number of the layer among those of the same faces.
     layer: u32,
     // Faces on both sides of a fault lie within this distance.
     gap: f32,
     // How far behind its place a face that is turned away counts as.
     behind: f32,
-    reserved: u32,
+    // 1 where the last point is looked for.
+    is_last: u32,
 }
 
 @group(3) @binding(0) var<uniform> peel: PeelInfo;
@@ -42,7 +44,8 @@ fn fragment(in: Corner, @builtin(front_facing) is_front: bool) -> Met {
     let counts_as = distance + select(peel.behind, 0.0, is_front);
     var out: Met;
     out.met = vec2u(in.face + 1u, bitcast<u32>(distance));
-    out.depth = clamp(counts_as / (1.0001 * frame.farthest + peel.behind), 0.0, 1.0);
+    let depth = clamp(counts_as / (1.0001 * frame.farthest + peel.behind), 0.0, 1.0);
+    out.depth = select(depth, 1.0 - depth, peel.is_last == 1u);
     return out;
 }
 

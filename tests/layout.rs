@@ -223,6 +223,8 @@ fn constants_agree() {
         ("EMITTER_DIRECTIONAL", layout::EMITTER_DIRECTIONAL),
         ("EMITTER_POINT", layout::EMITTER_POINT),
         ("EMITTER_SPOT", layout::EMITTER_SPOT),
+        ("LOOK_COLORED", layout::LOOK_COLORED),
+        ("LOOK_FAINT", layout::LOOK_FAINT),
         ("PACKED_SHIFT", layout::PACKED_SHIFT),
         ("PACKED_COVERAGE", layout::PACKED_COVERAGE),
         ("PACKED_VALUES", layout::PACKED_VALUES),

@@ -76,7 +76,10 @@ fn a_hidden_cell_takes_no_point_from_one_that_is_drawn() {
         let view = view_of(&case, k);
         let (truth, all) = mean_alphas(&mut renderer, &case, &view);
         println!("layers {k:?}: reference {truth:.4}, strategies {all:.4?}");
-        assert!(all.iter().all(|a| (a - truth).abs() < 1e-3), "{k:?}");
+        assert!(
+            all.iter().all(|a| (a - truth).abs() < 8e-3 * truth),
+            "{k:?}"
+        );
         means.push(truth);
     }
     // Each layer alone is as thick as the other, and both together are less than twice that.

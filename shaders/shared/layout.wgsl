@@ -214,12 +214,21 @@ struct Emitter {
 struct PaintInfo {
     // Colors of faults.
     palette: array<vec4f, FAULT_COLORS>,
+    // Color of a faint hull.
+    faint: vec4f,
     // Faces that lie on faults.
     faults: u32,
+    // How many are painted already.
     layer: u32,
     // Rows of the part that are painted.
     first_row: u32,
     rows: u32,
+    // One of the LOOK constants.
+    look: u32,
+    // Opacity of a faint hull that is turned to the viewer, and where it is seen edge-on.
+    facing: f32,
+    edge_on: f32,
+    reserved: u32,
 }
 
 // One found point for the probe: cell column and layer, or NOT_FOUND, and (s, t, r) and value.
@@ -272,6 +281,9 @@ const PACKED_SHIFT: u32 = 11u;
 const PACKED_COVERAGE: u32 = 31u;
 const PACKED_VALUES: u32 = 2046u;
 const PACKED_GHOST: u32 = 2047u;
+// What a layer shows: values or faults; or that there is something.
+const LOOK_COLORED: u32 = 0u;
+const LOOK_FAINT: u32 = 1u;
 // Points of sheets that a ray meets, at most.
 const SHEET_LAYERS: u32 = 4u;
 // Loop iterations that a point of a surface costs beside its light, about.

@@ -63,6 +63,11 @@ fn headlight(normal: vec3f, direction: vec3f) -> f32 {
     return mix(HEADLIGHT_AMBIENT, 1.0, clamp(lit / max(length(normal * to_grid()), 1e-30), 0.0, 1.0));
 }
 
+// Cosine between a surface's normal of any length and sense and a ray: both of grid space.
+fn turned_to_ray(normal: vec3f, direction: vec3f) -> f32 {
+    return min(abs(dot(normal, direction)) / max(length(normal * to_grid()), 1e-30), 1.0);
+}
+
 // Unit gradient of the field, and how much it counts.
 fn surface_at(p: vec3f, is_ghost: bool) -> vec4f {
     if !BLINN_PHONG {

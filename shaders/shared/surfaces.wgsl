@@ -1,17 +1,45 @@
 // Layers of surface points that rays meet, blended between the samples. They lie behind the states of the
-// rays, nearest first: the bits of distance and of red, green and blue, for each pixel of the part of
-// the picture that the tile lies in (`Surfaces` in scene/surfaces.rs says what is seen).
+// rays, nearest first, for each pixel of the part of the picture that the tile lies in (`Surfaces` in
+// scene/surfaces.rs says what is seen).
 #import frame
 #import grid
 #import transfer
 
 override SURFACES: bool = false;
-// One opaque layer, the hull; else sheets.
+// The hull is opaque: it ends rays, and is the only layer.
 override HULL: bool = false;
+// How many layers a ray has.
+override LAYERS: u32 = 1u;
 
 // Distance where there is no layer, and one that is nearer than that and beyond all layers.
 const NO_LAYER: f32 = 1e30;
 const BEYOND_LAYERS: f32 = 1e29;
+
+// What colors of layers may reach: they are kept in 24 bits a channel, opacity in the other eight of each.
+const BRIGHTEST: f32 = 16.0;
+const LAYER_STEPS: f32 = 16777215.0;
+
+// A point of a surface.
+struct Layer {
+    // Along the ray.
+    distance: f32,
+    color: vec3f,
+    opacity: f32,
+}
+
+fn load_layer(place: u32) -> Layer {
+    let words = ray_states[place];
+    let opacity = words.y >> 24u | (words.z >> 24u) << 8u | (words.w >> 24u) << 16u;
+    let color = vec3f(words.yzw & vec3u(0xffffffu)) * (BRIGHTEST / LAYER_STEPS);
+    return Layer(bitcast<f32>(words.x), color, f32(opacity) / LAYER_STEPS);
+}
+
+fn store_layer(place: u32, layer: Layer) {
+    let color = vec3u(round(clamp(layer.color / BRIGHTEST, vec3f(0.0), vec3f(1.0)) * LAYER_STEPS));
+    let opacity = u32(round(clamp(layer.opacity, 0.0, 1.0) * LAYER_STEPS));
+    let high = (vec3u(opacity) >> vec3u(0u, 8u, 16u)) & vec3u(0xffu);
+    ray_states[place] = vec4u(bitcast<u32>(layer.distance), color | high << vec3u(24u));
+}
 
 // The layers of a ray.
 struct Layers {
@@ -23,17 +51,13 @@ struct Layers {
     distance: f32,
 }
 
-fn layers_a_ray() -> u32 {
-    return select(SHEET_LAYERS, 1u, HULL);
-}
-
 // Position of a pixel's first layer, by its place in the part.
 fn first_layer(in_part: vec2u) -> u32 {
-    return tile.layers + layers_a_ray() * (in_part.y * tile.part_width + in_part.x);
+    return tile.layers + LAYERS * (in_part.y * tile.part_width + in_part.x);
 }
 
 fn layer_distance(first: u32, number: u32) -> f32 {
-    if number >= layers_a_ray() {
+    if number >= LAYERS {
         return NO_LAYER;
     }
     return bitcast<f32>(ray_states[first + number].x);
@@ -53,10 +77,10 @@ fn blend_layer(layers: ptr<function, Layers>, sum: ptr<function, Accumulated>, d
     if !SURFACES || (*layers).distance > distance {
         return false;
     }
-    let color = bitcast<vec3f>(ray_states[(*layers).first + (*layers).passed].yzw);
-    let opacity = select(SHEET_OPACITY, 1.0, HULL);
+    let layer = load_layer((*layers).first + (*layers).passed);
     let transmittance = (*sum).transmittance;
-    *sum = Accumulated((*sum).color + transmittance * opacity * color, transmittance * (1.0 - opacity));
+    *sum = Accumulated((*sum).color + transmittance * layer.opacity * layer.color,
+        transmittance * (1.0 - layer.opacity));
     (*layers).passed += 1u;
     (*layers).distance = layer_distance((*layers).first, (*layers).passed);
     return true;

@@ -124,11 +124,9 @@ impl FrameRenderer {
         let target = target::create(gpu, view.size);
         let counters = gpu.scratch("counters", COUNTERS);
         let pixels = u64::from(view.size[0]) * u64::from(view.size[1]);
-        let most = pixels.min(tiles::MAX_AREA);
-        let state_bytes = strategy.ray_state_bytes() * most;
         let layers = surfaces.as_ref().map_or(0, |s| s.layers());
-        let layer_bytes = LAYER_BYTES * u64::from(layers) * most;
-        let states = gpu.scratch("ray states", state_bytes + layer_bytes);
+        let room = Room::of(gpu, pixels, strategy.ray_state_bytes(), layers);
+        let states = gpu.scratch("ray states", room.rays + room.layers);
         let frame = gpu.uniform("frame", &frame_uniform(grid, view));
         let tile = gpu.uniform("tile", &Tile::zeroed());
         let texture = target.create_view(&wgpu::TextureViewDescriptor::default());
@@ -157,10 +155,11 @@ impl FrameRenderer {
         };
         let least_work = strategy.least_work();
         let mut done = 0;
-        for part in bound.parts(view.size, surfaces.is_some(), &self.painting) {
+        let most = self.painting.area(PART_WORK).min(room.pixels);
+        for part in bound.parts(view.size, surfaces.is_some(), most) {
             let part = Part {
                 rect: part,
-                layers: (state_bytes / LAYER_BYTES) as u32,
+                layers: (room.rays / LAYER_BYTES) as u32,
             };
             if let Some(surfaces) = &mut surfaces {
                 bound.find_surfaces(surfaces, part, &mut self.painting, &mut stats)?;
@@ -189,6 +188,31 @@ impl FrameRenderer {
     }
 }
 
+/// What is kept on the device of the rays of a part of the picture.
+struct Room {
+    /// Pixels of the part at most.
+    pixels: u64,
+    /// Bytes of the rays' states.
+    rays: u64,
+    /// Bytes of their layers of surfaces.
+    layers: u64,
+}
+
+impl Room {
+    /// Room for rays with a state of `state` bytes and so many layers, in one binding.
+    fn of(gpu: &Gpu, pixels: u64, state: u64, layers: u32) -> Self {
+        let layers = LAYER_BYTES * u64::from(layers);
+        let limit = gpu.device.limits().max_storage_buffer_binding_size;
+        let most = tiles::MAX_AREA.min(limit / (state + layers).max(1));
+        let pixels = pixels.min(most);
+        Self {
+            pixels,
+            rays: state * pixels,
+            layers: layers * pixels,
+        }
+    }
+}
+
 /// A part of the picture whose surfaces are found at once.
 #[derive(Clone, Copy)]
 struct Part {
@@ -212,14 +236,14 @@ impl Part {
 }
 
 impl Bound<'_> {
-    /// The parts of a picture: all of it at once where no surfaces are to be found.
-    fn parts(&self, size: [u32; 2], has_surfaces: bool, pace: &Pace) -> Vec<Rect> {
+    /// The parts of a picture, of at most so many pixels: all of it at once where no surfaces are to be found.
+    fn parts(&self, size: [u32; 2], has_surfaces: bool, most: u64) -> Vec<Rect> {
         let whole = Rect {
             origin: [0, 0],
             size,
         };
         match has_surfaces {
-            true => tiles::parts(whole, pace.area(PART_WORK)),
+            true => tiles::parts(whole, most),
             false => vec![whole],
         }
     }

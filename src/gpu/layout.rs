@@ -190,10 +190,15 @@ pub struct Emitter {
 #[allow(missing_docs, reason = "described where the shader reads them")]
 pub struct PaintInfo {
     pub palette: [[f32; 4]; FAULT_COLORS],
+    pub faint: [f32; 4],
     pub faults: u32,
     pub layer: u32,
     pub first_row: u32,
     pub rows: u32,
+    pub look: u32,
+    pub facing: f32,
+    pub edge_on: f32,
+    pub reserved: u32,
 }
 
 /// One answer of the probe.
@@ -267,6 +272,10 @@ pub const PACKED_COVERAGE: u32 = 31;
 pub const PACKED_VALUES: u32 = 2046;
 /// Value of a packed voxel in an inactive cell.
 pub const PACKED_GHOST: u32 = 2047;
+/// A layer in the colors of values or faults.
+pub const LOOK_COLORED: u32 = 0;
+/// A layer of a faint hull.
+pub const LOOK_FAINT: u32 = 1;
 /// Points of sheets that a ray meets, at most.
 pub const SHEET_LAYERS: u32 = 4;
 /// Loop iterations that a point of a surface costs beside its light, about.

@@ -1,8 +1,9 @@
 //! Surfaces as parts of the picture: before the rays of a part of it begin, the points at which they meet
 //! surfaces are rasterized, layer by layer, and get their colors. The strategies blend them between samples.
 //!
-//! The hull is one layer, for nothing is seen behind it. Of faults each ray has the nearest
-//! [`layout::SHEET_LAYERS`] sheets; farther ones are left out.
+//! An opaque hull is one layer, for nothing is seen behind it; a faint one is two. Of faults each ray has the
+//! nearest [`layout::SHEET_LAYERS`] sheets; farther ones are left out. Each layer that gets its colors takes its
+//! place among those of the pixel by its distance.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -15,17 +16,48 @@ use super::layout::{self, PaintInfo};
 use super::pipeline::{Pipeline, RasterPipeline, flag};
 use super::round::{Place, Round};
 use crate::model::Grid;
-use crate::scene::surfaces::{PALETTE, UNNAMED};
+use crate::scene::surfaces::{FAINT_BEHIND, FAINT_FRONT, PALETTE, UNNAMED, faint_color};
 use crate::scene::{Blending, Hull, Surfaces, View};
 
 /// Names and values of the `override` constants of shaders that blend surfaces.
-pub fn constants(surfaces: Surfaces) -> [(&'static str, f64); 4] {
+pub fn constants(surfaces: Surfaces) -> [(&'static str, f64); 5] {
     [
         ("SURFACES", flag(surfaces.are_shown())),
         ("HULL", flag(surfaces.hull == Hull::Opaque)),
+        ("LAYERS", f64::from(layers(surfaces).len().max(1) as u32)),
         ("CELL_EDGES", flag(surfaces.cell_edges)),
         ("SOLID", flag(surfaces.solid)),
     ]
+}
+
+/// Which points of which faces make a layer.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Layer {
+    /// The nearest of an opaque hull.
+    Hull,
+    /// The nearest of a faint hull.
+    Front,
+    /// The last of a faint hull.
+    Ground,
+    /// Those of a sheet that lies behind so many others.
+    Sheet(u32),
+}
+
+/// The layers that a ray can have.
+fn layers(surfaces: Surfaces) -> Vec<Layer> {
+    let sheets = match surfaces.faults {
+        true => 0..layout::SHEET_LAYERS,
+        false => 0..0,
+    };
+    let hull: &[Layer] = match surfaces.hull {
+        Hull::Hidden => &[],
+        Hull::Faint => &[Layer::Front, Layer::Ground],
+        Hull::Opaque => return vec![Layer::Hull],
+    };
+    hull.iter()
+        .copied()
+        .chain(sheets.map(Layer::Sheet))
+        .collect()
 }
 
 /// Finds surface points and gives them colors.
@@ -37,6 +69,8 @@ pub struct SurfacePainter {
     shown: Option<Shown>,
     gap: f32,
     blending: Blending,
+    /// Color of a faint hull.
+    faint: [f32; 4],
     work: u64,
     targets: Vec<Option<FaceTarget>>,
     /// What is bound in place of a layer before the first one.
@@ -48,7 +82,11 @@ struct Shown {
     surfaces: Surfaces,
     /// See [`View::chosen_faults`].
     chosen: Option<Arc<[bool]>>,
-    faces: FaceList,
+    /// Version of the drawn cells.
+    drawn: u64,
+    hull: Option<FaceList>,
+    /// Faces that are sheets by themselves.
+    sheets: Option<FaceList>,
     fault_faces: wgpu::Buffer,
     fault_colors: wgpu::Buffer,
     faults: u32,
@@ -67,6 +105,7 @@ impl SurfacePainter {
             shown: None,
             gap: 0.0,
             blending: Blending::default(),
+            faint: [0.0; 4],
             work: 0,
             targets: Vec::new(),
             nothing: faces::texture(gpu, [1; 2], FORMAT),
@@ -102,7 +141,7 @@ impl SurfacePainter {
         }
         let is_known = |s: &Shown| {
             let kinds = |s: Surfaces| (s.hull, s.faults);
-            s.faces.drawn == grid.versions.drawn
+            s.drawn == grid.versions.drawn
                 && kinds(s.surfaces) == kinds(view.surfaces)
                 && s.chosen == view.chosen_faults
         };
@@ -113,17 +152,15 @@ impl SurfacePainter {
         self.shown = Some(shown);
         self.gap = view.fault_gap() as f32;
         self.blending = view.blending;
+        let [r, g, b] = view.blending.of_srgb(faint_color(view.background));
+        self.faint = [r, g, b, 1.0].map(|v| v as f32);
         self.work = u64::from(layout::PAINT_WORK + work);
         Ok(())
     }
 
     /// Layers that a ray can have.
     pub fn layers(&self) -> u32 {
-        match self.look.0 {
-            surfaces if surfaces.has_hull() => 1,
-            Surfaces { faults: true, .. } => layout::SHEET_LAYERS,
-            _ => 0,
-        }
+        layers(self.look.0).len() as u32
     }
 
     /// Loop iterations that a pixel of a layer costs, about.
@@ -136,30 +173,32 @@ impl SurfacePainter {
         let Some(shown) = &self.shown else {
             return;
         };
-        let layers = self.layers() as usize;
-        self.targets.resize_with(layers, || None);
+        let layers = layers(self.look.0);
+        self.targets.resize_with(layers.len(), || None);
         let mut before = self.nothing.clone();
-        for (n, slot) in self.targets.iter_mut().enumerate() {
+        for (n, (layer, slot)) in layers.iter().zip(&mut self.targets).enumerate() {
             let target = FaceTarget::fitting(slot.take(), round.gpu, round.size);
             // Only of the hull both sides of a fault are there to choose from.
-            let behind = if shown.surfaces.has_hull() {
-                self.gap
-            } else {
-                0.0
+            let (faces, number, behind) = match layer {
+                Layer::Sheet(number) => (&shown.sheets, *number, 0.0),
+                _ => (&shown.hull, 0, self.gap),
             };
-            let info = [n as u32, self.gap.to_bits(), behind.to_bits(), 0];
+            let is_last = u32::from(*layer == Layer::Ground);
+            let info = [number, self.gap.to_bits(), behind.to_bits(), is_last];
             let info = round.gpu.uniform("peel info", &info);
-            let own = [
-                info.as_entire_binding(),
-                shown.faces.numbers.as_entire_binding(),
-                wgpu::BindingResource::TextureView(&before),
-            ];
-            let own = round.gpu.bind(&self.peel.own, &own);
-            let place = Place::of(n, layers);
+            let place = Place::of(n, layers.len());
             let mut pass = round.raster(encoder, &target.met, &target.depth, place);
-            pass.set_pipeline(&self.peel.pipeline);
-            pass.set_bind_group(3, &own, &[]);
-            pass.draw(0..6 * shown.faces.count, 0..1);
+            if let Some(faces) = faces {
+                let own = [
+                    info.as_entire_binding(),
+                    faces.numbers.as_entire_binding(),
+                    wgpu::BindingResource::TextureView(&before),
+                ];
+                let own = round.gpu.bind(&self.peel.own, &own);
+                pass.set_pipeline(&self.peel.pipeline);
+                pass.set_bind_group(3, &own, &[]);
+                pass.draw(0..6 * faces.count, 0..1);
+            }
             drop(pass);
             before = target.met.clone();
             *slot = Some(target);
@@ -178,12 +217,23 @@ impl SurfacePainter {
         let (Some(shown), Some(target)) = (&self.shown, target) else {
             return;
         };
+        let kinds = layers(self.look.0);
+        let (look, [facing, edge_on]) = match kinds.get(layer as usize) {
+            Some(Layer::Front) => (layout::LOOK_FAINT, FAINT_FRONT),
+            Some(Layer::Ground) => (layout::LOOK_FAINT, FAINT_BEHIND),
+            _ => (layout::LOOK_COLORED, [1.0; 2]),
+        };
         let info = PaintInfo {
             palette: palette(self.blending),
+            faint: self.faint,
             faults: shown.faults,
             layer,
             first_row: rows.start,
             rows: rows.len() as u32,
+            look,
+            facing: facing as f32,
+            edge_on: edge_on as f32,
+            reserved: 0,
         };
         let info = round.gpu.uniform("paint info", &info);
         let own = [
@@ -201,8 +251,8 @@ impl SurfacePainter {
     pub fn bytes(&self, view: &View) -> u64 {
         self.shown.as_ref().map_or(0, |shown| {
             let faults = shown.fault_faces.size() + shown.fault_colors.size();
-            let own = !Self::shares_faces(view) && shown.surfaces.has_hull();
-            faults + if own { shown.faces.bytes() } else { 0 }
+            let hull = shown.hull.iter().filter(|_| !Self::shares_faces(view));
+            faults + hull.chain(&shown.sheets).map(FaceList::bytes).sum::<u64>()
         })
     }
 }
@@ -221,17 +271,24 @@ impl Shown {
             false => Vec::new(),
         };
         let (numbers, colors): (Vec<u32>, Vec<u32>) = faults.into_iter().unzip();
-        let faces = match (surfaces.has_hull(), boundary) {
-            (true, Some(boundary)) if SurfacePainter::shares_faces(view) => boundary.clone(),
+        let hull = match (surfaces.has_hull(), boundary) {
+            (false, _) => None,
+            (true, Some(boundary)) if SurfacePainter::shares_faces(view) => Some(boundary.clone()),
             (true, _) => {
-                FaceList::new(gpu, grid, &faces::numbers(model, &view.hull_faces(model))?)?
+                let faces = faces::numbers(model, &view.hull_faces(model))?;
+                Some(FaceList::new(gpu, grid, &faces)?)
             }
-            (false, _) => FaceList::new(gpu, grid, &numbers)?,
+        };
+        let sheets = match surfaces.hull {
+            Hull::Opaque => None,
+            _ => Some(FaceList::new(gpu, grid, &numbers)?),
         };
         Ok(Self {
             surfaces,
             chosen: view.chosen_faults.clone(),
-            faces,
+            drawn: grid.versions.drawn,
+            hull,
+            sheets,
             fault_faces: gpu.storage("fault faces", &numbers)?,
             fault_colors: gpu.storage("fault colors", &colors)?,
             faults: numbers.len() as u32,

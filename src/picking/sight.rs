@@ -52,7 +52,7 @@ impl<'a> Sight<'a> {
     pub fn new(case: &'a Case, view: &'a View, ray: Ray, span: Span, met: Vec<Met>) -> Self {
         let surface = match view.surfaces.hull {
             Hull::Opaque => Surface::Hull,
-            Hull::Hidden => Surface::Sheet,
+            Hull::Hidden | Hull::Faint => Surface::Sheet,
         };
         let section = span.section.map(Surface::Section);
         let surfaces = section.into_iter().chain(met.into_iter().map(surface));

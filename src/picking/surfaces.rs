@@ -64,7 +64,8 @@ impl SurfaceFaces {
     /// The points of the surfaces that a ray sees, as [`crate::scene::Surfaces`] defines them: the nearest one
     /// of the hull, or the nearest fault sheets.
     pub fn seen(&mut self, case: &Case, view: &View, ray: &Ray) -> Vec<Met> {
-        if !view.surfaces.are_shown() {
+        // A faint hull is there for orientation, and is never what one clicks on.
+        if view.surfaces.hull != Hull::Opaque && !view.surfaces.faults {
             return Vec::new();
         }
         self.update(case, view);
@@ -107,7 +108,7 @@ impl SurfaceFaces {
         let dims = grid.dims();
         let mut faces: Vec<(Ijk, Face)> = match view.surfaces.hull {
             Hull::Opaque => view.hull_faces(grid),
-            Hull::Hidden => {
+            Hull::Hidden | Hull::Faint => {
                 let faults = view.fault_faces(grid).into_iter();
                 faults.map(|(cell, face, _)| (cell, face)).collect()
             }

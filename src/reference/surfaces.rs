@@ -2,14 +2,18 @@
 
 use glam::{DMat3, DVec2, DVec3};
 use rayon::prelude::*;
+use std::collections::HashMap;
 
 use super::integrate::{Integrator, Ray, Sample};
 use super::locate::Located;
 use super::tree::Tree;
 use crate::model::topology::Face;
 use crate::model::{Grid, Ijk};
-use crate::scene::surfaces::{EDGE_DARKNESS, EDGE_FADE, EDGE_WIDTH, SHEET_OPACITY, fault_color};
-use crate::scene::{ClipPlane, View};
+use crate::scene::surfaces::{
+    EDGE_DARKNESS, EDGE_FADE, EDGE_WIDTH, FAINT_BEHIND, FAINT_FRONT, SHEET_OPACITY, faint_color,
+    fault_color,
+};
+use crate::scene::{ClipPlane, Hull, View};
 
 /// Barycentric coordinates below zero by less than this still count as inside.
 const ON_EDGE: f64 = 1e-12;
@@ -21,6 +25,14 @@ const PARAMETERS: [DVec2; 4] = [DVec2::ZERO, DVec2::X, DVec2::Y, DVec2::ONE];
 /// The faces of a view's surfaces in world space.
 #[derive(Debug, Default)]
 pub(super) struct SurfaceFaces {
+    /// Those of the hull.
+    hull: Faces,
+    /// Those that lie on faults, where they are sheets by themselves.
+    sheets: Faces,
+}
+
+#[derive(Debug, Default)]
+struct Faces {
     faces: Vec<SurfaceFace>,
     tree: Option<Tree>,
 }
@@ -69,32 +81,35 @@ impl SurfaceFaces {
             false => Vec::new(),
         };
         let color = |fault| DVec3::from_array(view.blending.of_srgb(fault_color(fault)));
-        let faces: Vec<SurfaceFace> = match surfaces.has_hull() {
-            false => faults
-                .into_par_iter()
-                .map(|(cell, face, fault)| {
-                    SurfaceFace::new(grid, view, cell, face, Some(color(fault)))
-                })
-                .collect(),
-            true => {
-                let key = |cell: Ijk, face: Face| (cell.i, cell.j, cell.k, face as usize);
-                let colors: std::collections::HashMap<_, _> = faults
-                    .into_iter()
-                    .map(|(cell, face, fault)| (key(cell, face), color(fault)))
-                    .collect();
-                let hull = view.hull_faces(grid).into_par_iter();
-                hull.map(|(cell, face)| {
-                    let fault = colors.get(&key(cell, face)).copied();
-                    SurfaceFace::new(grid, view, cell, face, fault)
-                })
-                .collect()
-            }
+        let key = |cell: Ijk, face: Face| (cell.i, cell.j, cell.k, face as usize);
+        let colors: HashMap<_, _> = faults
+            .iter()
+            .map(|&(cell, face, fault)| (key(cell, face), color(fault)))
+            .collect();
+        let of = |(cell, face): (Ijk, Face)| {
+            let fault = colors.get(&key(cell, face)).copied();
+            SurfaceFace::new(grid, view, cell, face, fault)
         };
-        let boxes: Vec<_> = faces.iter().map(|f| bounds(&f.corners)).collect();
+        let hull = match surfaces.has_hull() {
+            true => view.hull_faces(grid),
+            false => Vec::new(),
+        };
+        let sheets = match surfaces.hull {
+            Hull::Opaque => Vec::new(),
+            _ => faults.iter().map(|&(cell, face, _)| (cell, face)).collect(),
+        };
         Self {
-            tree: Some(Tree::new(&boxes)),
-            faces,
+            hull: Faces::new(hull.into_par_iter().map(of).collect()),
+            sheets: Faces::new(sheets.into_par_iter().map(of).collect()),
         }
+    }
+}
+
+impl Faces {
+    fn new(faces: Vec<SurfaceFace>) -> Self {
+        let boxes: Vec<_> = faces.iter().map(|f| bounds(&f.corners)).collect();
+        let tree = (!boxes.is_empty()).then(|| Tree::new(&boxes));
+        Self { faces, tree }
     }
 
     /// Everything that a ray meets, in no order.
@@ -199,16 +214,65 @@ impl Hit<'_> {
 impl Integrator<'_> {
     /// The surface points that a ray sees, nearest first.
     pub(super) fn layers(&self, ray: Ray) -> Vec<Layer> {
-        let mut hits = self.surfaces.hits(ray);
+        let mut layers = match self.view.surfaces.hull {
+            Hull::Hidden => Vec::new(),
+            Hull::Faint => self.faint_hull(ray),
+            Hull::Opaque => self.opaque_hull(ray),
+        };
+        layers.extend(self.sheets(ray));
+        // Of equal distances what is drawn first stays in front.
+        layers.sort_by(|a, b| a.distance.total_cmp(&b.distance));
+        layers
+    }
+
+    /// What a ray meets of some faces in what clip planes keep.
+    fn kept<'f>(&self, faces: &'f Faces, ray: Ray) -> Vec<Hit<'f>> {
+        let mut hits = faces.hits(ray);
         hits.retain(|hit| self.is_kept(ray.origin + hit.distance * ray.direction));
+        hits
+    }
+
+    /// Distance by which hits on the hull are put in order.
+    fn counts_as(&self, hit: &Hit<'_>) -> f64 {
+        let behind = if hit.is_back {
+            self.view.fault_gap()
+        } else {
+            0.0
+        };
+        hit.distance + behind
+    }
+
+    fn opaque_hull(&self, ray: Ray) -> Vec<Layer> {
+        let hits = self.kept(&self.surfaces.hull, ray).into_iter();
+        let nearest = hits.min_by(|a, b| self.counts_as(a).total_cmp(&self.counts_as(b)));
+        nearest.iter().map(|hit| self.hull(ray, hit)).collect()
+    }
+
+    /// Its front and its ground.
+    fn faint_hull(&self, ray: Ray) -> Vec<Layer> {
+        let mut hits = self.kept(&self.surfaces.hull, ray);
+        hits.sort_by(|a, b| self.counts_as(a).total_cmp(&self.counts_as(b)));
+        let (Some(front), Some(behind)) = (hits.first(), hits.last()) else {
+            return Vec::new();
+        };
+        let color = self
+            .view
+            .blending
+            .of_srgb(faint_color(self.view.background));
+        let layer = |hit: &Hit<'_>, [facing, edge_on]: [f64; 2]| {
+            let cosine = hit.face.normal().dot(ray.direction).abs();
+            Layer {
+                distance: hit.distance,
+                color: color.into(),
+                alpha: facing + (edge_on - facing) * (1.0 - cosine).powi(2),
+            }
+        };
+        vec![layer(front, FAINT_FRONT), layer(behind, FAINT_BEHIND)]
+    }
+
+    fn sheets(&self, ray: Ray) -> Vec<Layer> {
         let gap = self.view.fault_gap();
-        if self.view.surfaces.has_hull() {
-            let counts_as = |h: &Hit<'_>| h.distance + if h.is_back { gap } else { 0.0 };
-            let nearest = hits
-                .into_iter()
-                .min_by(|a, b| counts_as(a).total_cmp(&counts_as(b)));
-            return nearest.iter().map(|hit| self.hull(ray, hit)).collect();
-        }
+        let mut hits = self.kept(&self.surfaces.sheets, ray);
         hits.sort_by(|a, b| a.distance.total_cmp(&b.distance));
         let mut sheets: Vec<Hit<'_>> = Vec::new();
         for hit in hits {

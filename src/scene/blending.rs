@@ -63,6 +63,11 @@ mod tests {
             Blending::Linear.of_srgb(color)
         );
         let clamped = Blending::Linear.to_srgb([-0.5, 7.0, 1.0]);
-        assert!(clamped.iter().zip([0.0, 1.0, 1.0]).all(|(a, b)| (a - b).abs() < 1e-12));
+        assert!(
+            clamped
+                .iter()
+                .zip([0.0, 1.0, 1.0])
+                .all(|(a, b)| (a - b).abs() < 1e-12)
+        );
     }
 }

@@ -6,8 +6,8 @@ use serde_json::Value;
 
 use super::resolve::SceneError;
 use super::{
-    ColorSpec, Coloring, Integration, Interpolation, LibcSettings, LightingSpec, Mode, OpacitySpec,
-    RangeSpec, ScaleSpec, Scene, TransferSpec,
+    ColorSpec, Coloring, Hull, Integration, Interpolation, LibcSettings, LightingSpec, Mode,
+    OpacitySpec, RangeSpec, ScaleSpec, Scene, Show, TransferSpec,
 };
 use crate::case::{Case, Categories, Kind, ValueRange};
 use crate::strategies::StrategyKind;
@@ -240,6 +240,10 @@ pub fn opening(case: &Case, written: &Value) -> Result<Scene, SceneError> {
         },
         lighting: LightingSpec::preset("soft").unwrap_or_default(),
         background: GROUND.into(),
+        show: Show {
+            hull: Hull::Faint,
+            ..Show::default()
+        },
         mode: match written.get("mode") {
             // Laid over below.
             Some(_) => Mode::default(),

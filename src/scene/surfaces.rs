@@ -17,6 +17,8 @@ pub enum Hull {
     /// Not at all: one looks into the volume.
     #[default]
     Hidden,
+    /// A faint gray: the outline of what is drawn, with its steps and holes, around the volume.
+    Faint,
     /// Opaque and colored by the field.
     Opaque,
 }
@@ -98,9 +100,15 @@ pub(super) fn chosen(shown: &ShownFaults, case: &Case) -> Result<Option<Arc<[boo
 /// `a + (1 - a) max(0, n (v + b)) / sqrt(1 + b b)`, `a` being [`HEADLIGHT_AMBIENT`]: what is turned to the
 /// viewer has the legend's color all but exactly. Exact colors of [`super::Lighting`] turn the lamp off.
 ///
+/// A faint hull is two layers of a gray ([`faint_color`]) that no light changes: in front the nearest point of
+/// the hull, and as a ground behind the volume the last one, of two faces within a gap the one that is turned
+/// away. Their opacities rise from where a face is turned to the viewer to where it is seen edge-on, `c` being
+/// the cosine between its normal and the ray: from the first number of [`FAINT_FRONT`] or [`FAINT_BEHIND`] to
+/// the second by `(1 - c)^2`. It has no edges of cells and hides no fault.
+///
 /// Solid cells have no inside: nothing but ghosts is seen between their faces.
 ///
-/// Faults are sheets of [`SHEET_OPACITY`], or where the hull is shown that part of its color. Of a fault
+/// Faults are sheets of [`SHEET_OPACITY`], or where the hull is opaque that part of its color. Of a fault
 /// the faces of both sides are drawn, but what lies between the same two columns as the surface before it
 /// on a ray, or behind that by less than [`View::fault_gap`], is the same sheet and is left out.
 ///
@@ -141,6 +149,25 @@ impl Surfaces {
     pub fn has_hull(self) -> bool {
         self.hull != Hull::Hidden
     }
+}
+
+/// Opacity of the front of a faint hull, where it is turned to the viewer and where it is seen edge-on.
+pub const FAINT_FRONT: [f64; 2] = [0.05, 0.6];
+/// Opacity of its ground.
+pub const FAINT_BEHIND: [f64; 2] = [0.38, 0.75];
+/// How much darker than a light background the gray of a faint hull is, or lighter than a dark one.
+const FAINT_CONTRAST: f64 = 0.65;
+
+/// Gray (sRGB, 0..1) of a faint hull before a background (sRGB, 0..1).
+pub fn faint_color(background: [f64; 3]) -> [f64; 3] {
+    let [r, g, b] = background;
+    let brightness = 0.299 * r + 0.587 * g + 0.114 * b;
+    let away = if brightness > 0.5 {
+        -FAINT_CONTRAST
+    } else {
+        FAINT_CONTRAST
+    };
+    [(brightness + away).clamp(0.0, 1.0); 3]
 }
 
 /// Part of the headlight that comes from everywhere.

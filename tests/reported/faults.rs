@@ -43,7 +43,7 @@ fn f11_faces_of_named_faults_are_found_whatever_their_throw() {
 /// Share of the pixels of a picture that are of the first color of faults rather than of the sand around it.
 fn sheet(folder: &std::path::Path, path: &std::path::Path, faults: bool, by: &str) -> f64 {
     let scene = serde_json::json!({
-        "size": [160, 120], "property": "PORO", "vertical_exaggeration": 5.0,
+        "size": [160, 120], "property": "PORO", "mode": "volume", "vertical_exaggeration": 5.0,
         "camera": {"azimuth_degrees": 250.0, "elevation_degrees": 25.0},
         "transfer": {"color": [[0.0, "#ffffff"], [1.0, "#ffffff"]], "opacity": [[0.0, 0.0], [1.0, 0.0]]},
         "show": {"faults": faults, "legend": false, "box": false},
