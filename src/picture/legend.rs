@@ -73,7 +73,11 @@ impl Key<'_> {
                 } else {
                     1.0
                 };
-                columns * self.column_width(values)
+                let all = columns * self.column_width(values);
+                match values.len() > rows * columns as usize && !is_narrow {
+                    true => all.max(self.text_width(&format!("1 of {} shown", values.len()))),
+                    false => all,
+                }
             }
             _ => {
                 let count = if is_narrow {
@@ -164,8 +168,16 @@ impl Key<'_> {
         legend.frame([DVec2::new(left, top), DVec2::new(right, bottom)]);
         let most = if is_narrow { 2 } else { self.most(height) };
         let wanted = ((height / (2.4 * unit)) as usize).clamp(2, WANTED);
-        for (position, text) in marks(self.transfer, wanted, most) {
+        let mut taken: Vec<f64> = Vec::new();
+        let mut labels = marks(self.transfer, wanted, most);
+        // Where there is no room for all, the ends of the range go first.
+        labels.sort_by(|a, b| (b.0 - 0.5).abs().total_cmp(&(a.0 - 0.5).abs()));
+        for (position, text) in labels {
             let y = bottom - height * position;
+            if taken.iter().any(|other| (y - other).abs() < unit) {
+                continue;
+            }
+            taken.push(y);
             let tick = right + TICK * unit;
             legend
                 .strokes

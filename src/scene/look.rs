@@ -224,7 +224,8 @@ pub fn opening_mode(case: &Case, property: &str) -> Mode {
 /// Ground of a picture that is not taken for a hole, nor for a color of the values.
 const GROUND: &str = "#e9ebee";
 
-/// The scene in which a case opens, `written` over it: the keys that a user gave, as in a scene file.
+/// The scene in which a case opens, `written` over it: the keys that a user gave, as in a scene file; null for
+/// none.
 ///
 /// # Errors
 /// When a key is unknown or its value is not allowed.
@@ -255,7 +256,9 @@ pub fn opening(case: &Case, written: &Value) -> Result<Scene, SceneError> {
     scene.property = Some(property);
     let wrong = |e: serde_json::Error| SceneError::Text(e.to_string());
     let mut whole = serde_json::to_value(&scene).map_err(wrong)?;
-    lay_over(&mut whole, written);
+    if !written.is_null() {
+        lay_over(&mut whole, written);
+    }
     serde_json::from_value(whole).map_err(wrong)
 }
 

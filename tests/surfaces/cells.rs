@@ -92,14 +92,15 @@ fn values_are_read_off_faces_and_shapes_off_their_light() {
         assert!(off < 3.0, "{value}: {off}");
         // From the side, where a lamp at the viewer would make both walls and the roof all but alike.
         let (view, pixels) = colors(&side);
-        let mut faces = [None; 3];
+        let mut faces: [Vec<[u8; 3]>; 3] = Default::default();
         for (n, pixel) in (0..).zip(&pixels) {
             let ray = reference::Ray::through_pixel(&view, n % 80, n / 80);
             if *pixel != [255; 3] {
-                faces[entered(view.world_bounds, &ray)].get_or_insert(*pixel);
+                faces[entered(view.world_bounds, &ray)].push(*pixel);
             }
         }
-        let faces = faces.map(Option::unwrap);
+        // The first and last pixels of a face may lie on its edges.
+        let faces = faces.map(|pixels| pixels[pixels.len() / 2]);
         for (a, b) in [(0, 1), (1, 2), (2, 0)] {
             let apart = ciede2000_map(&[faces[a]], &[faces[b]]).unwrap()[0];
             println!("{value}: faces {a} and {b} are {apart:.1} apart");
@@ -123,7 +124,7 @@ fn cells_agree_with_the_reference() {
         ] {
             let mut scene = Scene {
                 size: [100, 75],
-                camera: camera(150.0, 30.0, 8.0),
+                camera: camera(150.0, 30.0, 4.0),
                 mode: Mode::Cells,
                 ..Scene::default()
             };

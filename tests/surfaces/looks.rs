@@ -46,7 +46,7 @@ const LOOKS: [Look; 11] = [
         name: "hull and edges, cut open",
         shown: edges(HULL),
         other: HULL,
-        camera: [190.0, 30.0, 4.0],
+        camera: [190.0, 30.0, 2.5],
         interpolation: Interpolation::Vertex,
         cut: Some(CutFace::Open),
         change: |_| (),
@@ -55,7 +55,7 @@ const LOOKS: [Look; 11] = [
         name: "faults and edges, a section",
         shown: edges(FAULTS),
         other: NONE,
-        camera: [240.0, 25.0, 4.0],
+        camera: [240.0, 25.0, 2.5],
         interpolation: Interpolation::Cell,
         cut: Some(CutFace::Opaque),
         change: |_| (),
@@ -206,6 +206,8 @@ fn light_falls_on_surfaces_as_on_samples() {
         };
         let dark = with(&scene::resolve(&scene, &case).unwrap(), surfaces);
         scene.lighting = LightingSpec::preset("strong").unwrap();
+        let occlusion = scene.lighting.occlusion.as_mut().unwrap();
+        (occlusion.attenuation, occlusion.strength) = (0.8, 1.0);
         scene.lighting.occlusion.as_mut().unwrap().mode = mode;
         scene.lighting.shadows.mode = mode;
         scene.lighting.rays = 14;

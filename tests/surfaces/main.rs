@@ -194,9 +194,9 @@ fn edges_are_as_wide_at_any_distance() {
         face: CutFace::Opaque,
     };
     for (zoom, clip, depth) in [
-        (1.0, None, 1000.0),
-        (0.55, None, 1000.0),
-        (0.8, Some(section), 1010.0),
+        (0.7, None, 1000.0),
+        (0.4, None, 1000.0),
+        (0.6, Some(section), 1010.0),
     ] {
         let is_section = clip.is_some();
         // Straight down: rows of pixels run along x.

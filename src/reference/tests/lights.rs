@@ -5,6 +5,7 @@ use glam::DVec3;
 use super::{Shape, central_ray, constant, directional, light, view};
 use crate::model::Grid;
 use crate::scene::lighting::{LightSpec, SPOT_EDGE, ShadowSpec};
+use crate::scene::surfaces::{HEADLIGHT_AMBIENT, HEADLIGHT_ASIDE};
 use crate::scene::{ClipPlane, LightMode, LightingSpec, View};
 
 /// What the central ray meets in [`stage`].
@@ -146,6 +147,9 @@ fn opaque_sections_are_shaded_as_samples_are() {
         normal: DVec3::X,
         opaque: true,
     };
+    // The section is turned to the viewer, beside whom the lamp is.
+    let aside = HEADLIGHT_ASIDE.map(|v| v * v).iter().sum::<f64>();
+    let lamp = HEADLIGHT_AMBIENT + (1.0 - HEADLIGHT_AMBIENT) / (1.0 + aside).sqrt();
     // The plane takes half of the cell away, and the one aside; from behind the other half is dark.
     for (direction, brightness) in [([1.0, -1.0, 0.0], 1.0), ([-1.0, 0.0, 0.0], 0.0)] {
         let (grid, mut view) = stage(vec![directional(direction)]);
@@ -153,7 +157,7 @@ fn opaque_sections_are_shaded_as_samples_are() {
         let [red, green, blue, alpha] = central_ray(&grid, &view);
         assert_eq!(alpha, 1.0);
         for (channel, own) in [(red, 0.25), (green, 0.5), (blue, 1.0)] {
-            assert!((channel - own * brightness).abs() < 1e-3);
+            assert!((channel - own * brightness * lamp).abs() < 1e-3);
         }
     }
 }
