@@ -104,9 +104,9 @@ fn segments_are_the_limit_of_fine_steps() {
                 ..view.libc
             };
             let (by_segment, segments) = render(&mut renderer, &case, &with(&view, segments));
-            // Samples so coarse that they are an eighth of as many as by default.
+            // Samples so coarse that they are a sixteenth of as many as by default.
             let coarse = View {
-                sampling_step: 8.0 * view.sampling_step,
+                sampling_step: 16.0 * view.sampling_step,
                 ..view.clone()
             };
             let (by_coarse, coarse) = render(&mut renderer, &case, &coarse);

@@ -27,10 +27,12 @@ const ALIKE: f64 = 15.0;
 
 /// The first picture of a case, without light: a shaded color is darker than its value's.
 fn opening(case: &Case) -> Scene {
+    // The faint hull is there for orientation, and adds gray to each color.
+    let without_hull = serde_json::json!({"show": {"hull": "hidden"}});
     Scene {
         size: [480, 360],
         lighting: LightingSpec::default(),
-        ..look::opening(case, &Value::default()).unwrap()
+        ..look::opening(case, &without_hull).unwrap()
     }
 }
 
@@ -108,10 +110,10 @@ fn what_is_picked_has_the_color_that_is_seen() {
             shown += usize::from(is_alike(hit.shown));
             own += usize::from(is_alike(hit.value));
             first += usize::from(is_alike(first_met(&pick)));
-            // All contributions are the pixel's opacity.
+            // All contributions are the pixel's opacity, but for whole segments against samples.
             let sum: f64 = pick.cells.iter().map(|c| c.contribution).sum();
             let opacity = f64::from(image.pixels[pixel][3]);
-            assert!((sum - opacity).abs() < 5e-3, "{sum} {opacity}");
+            assert!((sum - opacity).abs() < 1e-2, "{sum} {opacity}");
             // A value of the file, and one between it and those around it.
             let field = case.field(&view.property, view.step).unwrap();
             let cell = case.grid.dims().cell(hit.ijk);
@@ -508,7 +510,7 @@ fn the_command_gives_the_same_answer() {
         .unwrap();
     let hit = pick.hit.as_ref().unwrap();
     let scene = file.to_str().unwrap();
-    let output = run(&["--scene", scene, "--at", "230,190", "--json"]);
+    let output = run(&["--scene", scene, "--at", "230,190", "--json", "--plain"]);
     assert!(output.status.success(), "{output:?}");
     let told: Value = serde_json::from_slice(&output.stdout).unwrap();
     let [before, behind] = pick.around(hit.ijk).unwrap();
@@ -549,7 +551,7 @@ fn the_command_gives_the_same_answer() {
         );
         assert_eq!(told["k"], cell.ijk.k + 1);
     }
-    let text = run(&["--scene", scene, "--at", "230,190"]);
+    let text = run(&["--scene", scene, "--at", "230,190", "--plain"]);
     let text = String::from_utf8(text.stdout).unwrap();
     assert!(
         text.starts_with(&format!("I {i}  J {j}  K {k}   SOIL ")),
@@ -561,7 +563,7 @@ fn the_command_gives_the_same_answer() {
     );
     assert_eq!(text.lines().filter(|l| l.starts_with('>')).count(), 1);
     // Where there is only background.
-    let nothing = run(&["--scene", scene, "--at", "0,0", "--json"]);
+    let nothing = run(&["--scene", scene, "--at", "0,0", "--json", "--plain"]);
     let nothing: Value = serde_json::from_slice(&nothing.stdout).unwrap();
     assert!(nothing["hit"].is_null() && nothing["ray"] == serde_json::json!([]));
 }

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use super::{Case, Kind};
 use crate::model::Ijk;
-use crate::model::derived::Derived;
+use crate::model::derived::{Derived, thickness};
 
 /// What cells are weighted by.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -84,7 +84,7 @@ impl Case {
                 let edges = grid.hexahedron(ijk).mean_edges();
                 Extent {
                     lateral: edges.x.min(edges.y) as f32,
-                    vertical: edges.z.abs() as f32,
+                    vertical: thickness(grid, ijk) as f32,
                 }
             };
             let cells = grid.active_cells().par_iter();

@@ -88,7 +88,8 @@ pub fn rest_of_saturations(phases: i32, has: impl Fn(&str) -> bool) -> Option<Sa
     Some(SaturationRest { name, of, lacks })
 }
 
-fn thickness(grid: &Grid, ijk: Ijk) -> f64 {
+/// Mean length of a cell's four edges along the pillars, measured vertically, in the grid's length unit.
+pub fn thickness(grid: &Grid, ijk: Ijk) -> f64 {
     let edge = |c: usize| grid.corner_depth(ijk, c + 4) - grid.corner_depth(ijk, c);
     (0..4).map(edge).sum::<f64>() / 4.0
 }

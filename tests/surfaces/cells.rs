@@ -70,7 +70,7 @@ fn the_hull_of_a_box_has_the_color_of_its_values_in_the_headlight() {
 #[test]
 fn values_are_read_off_faces_and_shapes_off_their_light() {
     let Some(gpu) = common::gpu() else { return };
-    let [up, side] = [camera(0.0, 90.0, 1.0), camera(225.0, 35.0, 1.0)];
+    let [up, side] = [camera(0.0, 90.0, 1.0), camera(225.0, 35.0, 0.3)];
     for value in [0.05, 0.3, 0.5, 0.7, 0.95] {
         let case = boxes(&[0.0, 100.0], &[0.0, 100.0], &[1000.0, 1080.0], &|_| value);
         let mut renderer = Renderer::new(gpu.clone(), &case.grid).unwrap();
@@ -124,7 +124,7 @@ fn cells_agree_with_the_reference() {
         ] {
             let mut scene = Scene {
                 size: [100, 75],
-                camera: camera(150.0, 30.0, 4.0),
+                camera: camera(150.0, 30.0, 1.5),
                 mode: Mode::Cells,
                 ..Scene::default()
             };

@@ -13,7 +13,11 @@ pub fn show(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
         let mut hull = show.hull == Hull::Opaque;
         ui.checkbox(&mut hull, "Opaque hull")
             .on_hover_text("The outer faces of the drawn cells, in the property's colors");
-        show.hull = if hull { Hull::Opaque } else { Hull::Hidden };
+        show.hull = match (hull, show.hull) {
+            (true, _) => Hull::Opaque,
+            (false, Hull::Opaque) => Hull::Faint,
+            (false, other) => other,
+        };
         let is_cut = about.scene.clip.iter().any(|c| c.face == CutFace::Opaque);
         let has_faces = Surfaces::of(about.scene).has_hull() || show.faults.are_shown() || is_cut;
         let mut has_edges = Surfaces::of(about.scene).cell_edges;
