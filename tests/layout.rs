@@ -77,6 +77,8 @@ fn structs_agree() {
         is_parallel,
         origin_up,
         reserved,
+        headlight,
+        headlight_scale,
         ghost,
         clip_planes
     );
@@ -92,7 +94,10 @@ fn structs_agree() {
         part_origin,
         reserved
     );
-    agrees!(m, PaintInfo, palette, faults, layer, first_row, rows);
+    agrees!(
+        m, PaintInfo, palette, faint, faults, layer, first_row, rows, look, facing, edge_on,
+        reserved
+    );
     agrees!(
         m,
         GridInfo,
