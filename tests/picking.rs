@@ -32,6 +32,8 @@ fn opening(case: &Case) -> Scene {
     Scene {
         size: [480, 360],
         lighting: LightingSpec::default(),
+        // Samples, as a pick takes them, instead of whole segments.
+        strategy: "plts".into(),
         ..look::opening(case, &without_hull).unwrap()
     }
 }
