@@ -62,7 +62,7 @@ const CONSTANT: f64 = 0.95;
 ///
 /// Cells are weighted by pore volume times how far their value lies toward the interesting end: for a
 /// saturation that is the volume of the phase. The curve rises at fixed shares of that weight, and the
-/// reference length is so chosen that cells with [`SHOWN`] of it have an opacity of [`SHOWS`] or more each,
+/// reference length is so chosen that cells with 96.5 % of it have an opacity of [`SHOWS`] or more each,
 /// through their own thinnest extent.
 pub fn find(interest: Interest, cells: &[Cell], model_extent: f64) -> Option<Opacity> {
     let valid = |c: &&Cell| c.position.is_finite() && c.volume > 0.0 && c.extent > 0.0;
