@@ -80,6 +80,11 @@ pub fn group(paths: &[PathBuf]) -> Vec<CasePaths> {
     cases.into_iter().map(|(case, _)| case).collect()
 }
 
+/// True where `path` alone names a case; a file of properties or fault names only belongs to one.
+pub fn is_case(path: &Path) -> bool {
+    own_grid(path).is_some()
+}
+
 /// The grid of the case that `path` names; `None` for a file that only belongs to one.
 fn own_grid(path: &Path) -> Option<GridSource> {
     let grid = find(path).ok()?.grid;

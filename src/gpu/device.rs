@@ -56,7 +56,7 @@ pub enum GpuError {
     #[error("the GPU reported an error: {0}")]
     Device(String),
     /// The device is gone: the driver was reset or updated, or the card was taken away.
-    #[error("the GPU was lost{0}; what is done next opens it anew")]
+    #[error("the GPU device was lost{0}; it is reopened on the next action")]
     Lost(String),
     /// A shader of this program is broken.
     #[error("shader {name}: {message}")]

@@ -27,6 +27,8 @@ pub struct Annotations {
     pub unit: String,
     /// Unit of lengths; may be empty.
     pub length_unit: String,
+    /// The legend has a curve of the opacity.
+    pub has_opacity: bool,
     /// Draw title and legend.
     pub show_legend: bool,
     /// Draw the box with coordinates, the directions and a scale bar.
@@ -50,6 +52,7 @@ impl Annotations {
             property: case.heading_of(&view.property),
             unit: case.unit(&view.property).to_owned(),
             length_unit: short_unit(&case.about.length_unit),
+            has_opacity: !view.surfaces.solid,
             show_legend: view.show_legend,
             show_box: view.show_box,
         }
@@ -65,6 +68,7 @@ impl Annotations {
         Key {
             transfer,
             heading: [&self.property, &self.unit],
+            has_opacity: self.has_opacity,
             unit,
             width,
         }

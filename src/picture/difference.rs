@@ -41,6 +41,7 @@ pub fn difference_picture(differences: &[f64], size: [u32; 2], scale: f64, title
     let legend = Key {
         transfer: &colors(scale),
         heading: ["CIEDE2000", &largest],
+        has_opacity: false,
         unit,
         width: &|text| pen.canvas.text_width(text, unit),
     }
@@ -52,7 +53,6 @@ pub fn difference_picture(differences: &[f64], size: [u32; 2], scale: f64, title
 fn colors(scale: f64) -> TransferFunction {
     TransferFunction {
         color: presets::inferno(),
-        // No opacity curve in the legend.
         opacity: vec![(0.0, 0.0)],
         range: [0.0, scale],
         scale: crate::transfer::Scale::Linear,

@@ -34,6 +34,8 @@ pub struct Key<'a> {
     pub transfer: &'a TransferFunction,
     /// Name of the property, and its unit, which may be empty.
     pub heading: [&'a str; 2],
+    /// The opacity counts in the picture: a curve of it stands beside the bar.
+    pub has_opacity: bool,
     /// Text height; the unit of every size here.
     pub unit: f64,
     /// Width of a text of this height.
@@ -279,12 +281,12 @@ impl Key<'_> {
         opacity.fold(0.0, |most: f64, o| most.max(o.1))
     }
 
-    /// Width of the opacities; 0 where they are the same everywhere, which a curve would not show.
+    /// Width of the opacities; 0 where they do not count or are the same everywhere, which a curve would not show.
     fn opacity_width(&self) -> f64 {
         let opacities = self.transfer.opacity.iter().map(|o| o.1);
         let least = opacities.fold(f64::INFINITY, f64::min);
         let largest = self.largest_opacity();
-        match largest > least && largest.is_finite() {
+        match self.has_opacity && largest > least && largest.is_finite() {
             true => OPACITIES * self.unit,
             false => 0.0,
         }
@@ -521,6 +523,7 @@ mod tests {
         let key = Key {
             transfer,
             heading: ["PRESSURE-PRESSURE@0", "BARSA"],
+            has_opacity: true,
             unit: 12.0,
             width: &width,
         };

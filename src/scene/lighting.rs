@@ -247,12 +247,7 @@ impl LightingSpec {
             },
             "key" => Self {
                 occlusion: occlusion(20.0, 0.6, 1.0),
-                lights: vec![LightSpec::Directional {
-                    direction: [1.0, -0.6, -1.6],
-                    half_angle_degrees: 2.0,
-                    intensity: None,
-                    color: white(),
-                }],
+                lights: vec![LightSpec::key()],
                 blinn_phong: true,
                 ..none
             },
@@ -263,6 +258,30 @@ impl LightingSpec {
             },
             _ => return None,
         })
+    }
+
+    /// Part of the light that comes from everywhere.
+    pub fn ambient(&self) -> f64 {
+        let least = if self.lights.is_empty() { 1.0 } else { 0.4 };
+        self.ambient.unwrap_or(least)
+    }
+
+    /// Intensity of a light that names none: together with ambient light no brighter than without lights, so
+    /// that colors stay within the legend.
+    pub fn share_of_lights(&self) -> f64 {
+        (1.0 - self.ambient()) / self.lights.len().max(1) as f64
+    }
+}
+
+impl LightSpec {
+    /// The key light of the preset of that name: from the upper left of a view to the north.
+    pub fn key() -> Self {
+        Self::Directional {
+            direction: [1.0, -0.6, -1.6],
+            half_angle_degrees: 2.0,
+            intensity: None,
+            color: white(),
+        }
     }
 }
 
@@ -477,12 +496,8 @@ pub(crate) fn resolve(
     };
     // Checked even where no light has one.
     cone(shadow_half_angle())?;
-    let ambient = spec
-        .ambient
-        .unwrap_or(if spec.lights.is_empty() { 1.0 } else { 0.4 });
-    let ambient = within("lighting.ambient", ambient, [0.0, 1.0])?;
-    // Together with ambient light no brighter than without lights, so that colors stay within the legend.
-    let share = (1.0 - ambient) / spec.lights.len().max(1) as f64;
+    let ambient = within("lighting.ambient", spec.ambient(), [0.0, 1.0])?;
+    let share = spec.share_of_lights();
     let checked = |light| -> Result<Light, SceneError> {
         let (source, half_angle, intensity, color) = source(light)?;
         let intensity = intensity.unwrap_or(share);

@@ -15,6 +15,7 @@ const MENUS: [(&str, &[Command]); 5] = [
         "File",
         &[
             Command::Open,
+            Command::AddFiles,
             Command::Reload,
             Command::SaveScene,
             Command::LoadScene,
@@ -28,7 +29,7 @@ const MENUS: [(&str, &[Command]); 5] = [
     ),
     ("Edit", &[Command::Undo, Command::Redo, Command::Settings]),
     (
-        "Look",
+        "View",
         &[
             Command::Look(Look::FrameAll),
             Command::Look(Look::FrameSelection),
@@ -46,7 +47,7 @@ const MENUS: [(&str, &[Command]); 5] = [
         ],
     ),
     (
-        "Picture",
+        "Image",
         &[
             Command::Mode,
             Command::NextStrategy,
@@ -116,12 +117,12 @@ fn modes(window: &mut Window, ui: &mut Ui, ctx: &Context) {
         (
             Mode::Cells,
             "Cells",
-            "Solid cells: their outer faces and sections",
+            "Opaque cells: outer faces and sections",
         ),
         (
             Mode::Volume,
             "Volume",
-            "Looks into the reservoir: rich values solid, the rest a haze",
+            "Rays through the inside: the values looked for are solid, the rest is a haze",
         ),
     ] {
         let button = ui.selectable_label(mode == other, name);

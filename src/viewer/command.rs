@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use crate::load::CasePaths;
 use crate::scene::Scene;
 
 /// Writes a scene as JSON.
@@ -18,19 +19,26 @@ pub fn scene_text(scene: &Scene) -> Result<String, String> {
 ///
 /// # Errors
 /// As [`scene_text`].
-pub fn command(program: &Path, case: &Path, scene: &Scene) -> Result<String, String> {
+pub fn command(program: &Path, paths: &CasePaths, scene: &Scene) -> Result<String, String> {
     let json =
         serde_json::to_string(scene).map_err(|e| format!("the scene cannot be written: {e}"))?;
-    let name = case.file_stem().unwrap_or_default().to_string_lossy();
+    let name = paths.path.file_stem().unwrap_or_default().to_string_lossy();
     let absolute = |path: &Path| {
         let path = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
         quoted(&path.display().to_string())
     };
+    let with = match paths.with.as_slice() {
+        [] => String::new(),
+        files => {
+            let files: Vec<_> = files.iter().map(|f| absolute(f)).collect();
+            format!(" --with {}", files.join(" "))
+        }
+    };
     Ok(format!(
-        "printf '%s' {} | {} render {} --scene - -o {}-$(date +%Y%m%d-%H%M%S).png",
+        "printf '%s' {} | {} render {}{with} --scene - -o {}-$(date +%Y%m%d-%H%M%S).png",
         quoted(&json),
         absolute(program),
-        absolute(case),
+        absolute(&paths.path),
         // A name that begins with a dash would be an option.
         quoted(&format!("./{name}")),
     ))
@@ -67,15 +75,21 @@ mod tests {
             size: [123, 45],
             ..Scene::default()
         };
-        let line = command(&program, &case, &scene).unwrap();
+        let paths = CasePaths {
+            path: case.clone(),
+            with: vec![folder.path().join("its faults.inc")],
+        };
+        let line = command(&program, &paths, &scene).unwrap();
         let run = std::process::Command::new("sh")
             .args(["-c", &line])
             .output();
         let said = String::from_utf8(run.unwrap().stdout).unwrap();
-        let mut lines = said.splitn(7, '\n');
+        let mut lines = said.splitn(9, '\n');
         let mut next = || lines.next().unwrap().to_owned();
         assert_eq!(next(), "render");
         assert_eq!(next(), case.display().to_string());
+        let with = paths.with[0].display().to_string();
+        assert_eq!([next(), next()], ["--with".to_owned(), with]);
         assert_eq!([next(), next(), next()], ["--scene", "-", "-o"]);
         let name = next();
         assert!(

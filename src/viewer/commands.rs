@@ -27,6 +27,8 @@ impl Window {
     pub(super) fn perform(&mut self, ctx: &Context, command: Command) {
         match command {
             Command::Open => self.ask_file(ctx, Purpose::Case),
+            Command::AddFiles if self.document().is_none() => self.fail("open a case first"),
+            Command::AddFiles => self.ask_file(ctx, Purpose::Add),
             Command::Close => self.close(self.current),
             Command::Reopen => self.reopen(ctx),
             Command::Reload => self.reload(ctx),
@@ -84,7 +86,7 @@ impl Window {
                 document.title()
             ));
         }
-        self.closed.push((document.path, document.state));
+        self.closed.push((document.paths(), document.state));
         if self.closed.len() > MOST_CLOSED {
             self.closed.remove(0);
         }
@@ -92,12 +94,12 @@ impl Window {
 
     /// Opens the case that was closed last, as it was.
     fn reopen(&mut self, ctx: &Context) {
-        let Some((path, state)) = self.closed.pop() else {
+        let Some((paths, state)) = self.closed.pop() else {
             self.tell("no case was closed");
             return;
         };
-        let is_open = self.documents.iter().any(|d| d.path == path);
-        self.show_case(ctx, path);
+        let is_open = self.documents.iter().any(|d| d.path == paths.path);
+        self.show_case(ctx, paths);
         if let Some(document) = self.document_mut().filter(|_| !is_open) {
             document.state = state;
         }
@@ -115,14 +117,23 @@ impl Window {
             return;
         };
         let sizes = self.sides.sizes(ctx.pixels_per_point());
-        let scene = &document.state.setup.scene;
+        let setup = &document.state.setup;
+        // A difference within the case is a property of it; one of two cases has no name on the command line.
+        let difference = match &document.case {
+            Some(case) => self
+                .difference_of_values()
+                .and_then(Result::ok)
+                .filter(|(of, _)| Arc::ptr_eq(of, case)),
+            None => None,
+        };
+        let is_first = setup.comparison.is_some() && difference.is_none();
+        let scene = difference.map_or_else(|| setup.scene.clone(), |d| d.1);
         let scene = Scene {
             size: sizes[0].unwrap_or(scene.size),
-            ..scene.clone()
+            ..scene
         };
         let program = std::env::current_exe().unwrap_or_else(|_| "strataray".into());
-        let line = command::command(&program, &document.path, &scene);
-        let is_first = document.state.setup.comparison.is_some();
+        let line = command::command(&program, &document.paths(), &scene);
         let told = line.map(|line| {
             ctx.copy_text(line);
             match is_first {
@@ -142,15 +153,16 @@ impl Window {
 
     /// Does what a file was asked for.
     pub(super) fn choose(&mut self, ctx: &Context, purpose: Purpose, mut paths: Vec<PathBuf>) {
-        if matches!(purpose, Purpose::Case) {
-            self.open(ctx, paths);
-            return;
+        match purpose {
+            Purpose::Case => return self.open(ctx, paths),
+            Purpose::Add => return self.add(ctx, paths),
+            _ => {}
         }
         let Some(path) = paths.pop().map(|path| purpose.file(path)) else {
             return;
         };
         let told = match purpose {
-            Purpose::Case => return,
+            Purpose::Case | Purpose::Add => return,
             Purpose::Export(spec) => {
                 let waker = ctx.clone();
                 self.export = Some(Export::begin(*spec, path, move || waker.request_repaint()));

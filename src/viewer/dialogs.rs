@@ -14,6 +14,8 @@ use super::export::{ExportSpec, Kind};
 pub enum Purpose {
     /// A case to open.
     Case,
+    /// Files to add to the case in front.
+    Add,
     /// A scene to load.
     LoadScene,
     /// Where to save the scene.
@@ -28,6 +30,7 @@ impl Purpose {
     fn title(&self) -> &'static str {
         match self {
             Self::Case => "Open a case",
+            Self::Add => "Add files to the case",
             Self::LoadScene => "Load a scene",
             Self::SaveScene => "Save the scene",
             Self::SaveTable => "Save the values of the selected cells",
@@ -39,7 +42,7 @@ impl Purpose {
     /// Name of a file to be written; `None` for one that exists.
     fn new_name(&self) -> Option<String> {
         match self {
-            Self::Case | Self::LoadScene => None,
+            Self::Case | Self::Add | Self::LoadScene => None,
             Self::SaveScene => Some("scene.json".into()),
             Self::SaveTable => Some("cells.csv".into()),
             Self::Export(spec) => Some(match spec.ending() {
@@ -100,7 +103,7 @@ impl Dialog {
         let (send, answer) = channel();
         let ctx = ctx.clone();
         let (title, name) = (purpose.title(), purpose.new_name());
-        let has_many = matches!(purpose, Purpose::Case);
+        let has_many = matches!(purpose, Purpose::Case | Purpose::Add);
         std::thread::spawn(move || {
             let dialog = rfd::FileDialog::new().set_title(title);
             let one = |chosen: Option<PathBuf>| chosen.map(|path| vec![path]);
@@ -208,7 +211,7 @@ impl PathSheet {
         let path = cases::expanded(&self.path);
         let wanted = match self.purpose {
             Purpose::Case => of_case(&path),
-            Purpose::LoadScene => of_old(&path),
+            Purpose::Add | Purpose::LoadScene => of_old(&path),
             _ if self.purpose.is_folder() && path.is_dir() => {
                 (Some(vec![path.clone()]), String::new())
             }

@@ -12,6 +12,7 @@ use super::spread::Spread;
 use super::state::State;
 use super::watch::Watch;
 use crate::case::Case;
+use crate::load::CasePaths;
 use crate::picking::Pick;
 use crate::scene::{CameraSpec, StepSpec};
 
@@ -19,6 +20,8 @@ use crate::scene::{CameraSpec, StepSpec};
 pub struct Document {
     /// As the user gave it.
     pub path: PathBuf,
+    /// Files that were added to the case.
+    pub with: Vec<PathBuf>,
     /// The case, once it is there. It stays while it is read again.
     pub case: Option<Arc<Case>>,
     /// It is being read.
@@ -45,9 +48,10 @@ pub struct Document {
 
 impl Document {
     /// A tab for a case that is being opened.
-    pub fn new(path: PathBuf, loading: Loading, state: State) -> Self {
+    pub fn new(paths: CasePaths, loading: Loading, state: State) -> Self {
         Self {
-            path,
+            path: paths.path,
+            with: paths.with,
             case: None,
             loading: Some(loading),
             error: None,
@@ -59,6 +63,14 @@ impl Document {
             table: None,
             curves: None,
             spreads: Vec::new(),
+        }
+    }
+
+    /// The files that the case is read from.
+    pub fn paths(&self) -> CasePaths {
+        CasePaths {
+            path: self.path.clone(),
+            with: self.with.clone(),
         }
     }
 

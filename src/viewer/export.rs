@@ -107,7 +107,7 @@ impl Export {
                 !shared_cancel.load(Ordering::Relaxed)
             };
             let made = match make(&spec, &path, &progress) {
-                Ok(true) => Ok(format!("{} is written", path.display())),
+                Ok(true) => Ok(format!("saved {}", path.display())),
                 Ok(false) => Err(format!(
                     "{} was cancelled; nothing was written",
                     path.display()

@@ -9,6 +9,8 @@ use super::looking::Look;
 pub enum Command {
     /// Opens a case.
     Open,
+    /// Adds files to the case: properties, names of faults, an INIT or restart of another name.
+    AddFiles,
     /// Reads the case again.
     Reload,
     /// Saves the scene.
@@ -86,9 +88,15 @@ const fn from(view: usize) -> Command {
 }
 
 /// Every shortcut, with what it says in the sheet.
-pub const SHORTCUTS: [(Modifiers, Key, Command, &str); 58] = [
+pub const SHORTCUTS: [(Modifiers, Key, Command, &str); 59] = [
     (CTRL, Key::O, Command::Open, "Open a case"),
-    (NONE, Key::F5, Command::Reload, "Read the case again"),
+    (
+        CTRL_SHIFT,
+        Key::O,
+        Command::AddFiles,
+        "Add files to the case",
+    ),
+    (NONE, Key::F5, Command::Reload, "Reload the case"),
     (CTRL, Key::S, Command::SaveScene, "Save the scene"),
     (CTRL, Key::L, Command::LoadScene, "Load a scene"),
     (NONE, Key::F12, Command::Screenshot, "Save an image"),
@@ -98,10 +106,10 @@ pub const SHORTCUTS: [(Modifiers, Key, Command, &str); 58] = [
     (CTRL, Key::Y, Command::Redo, "Redo"),
     (NONE, Key::Space, Command::Play, "Play or pause"),
     // Keys with Shift first: without it they would fit too.
-    (SHIFT, Key::ArrowRight, turn(1, 0), "Turn right"),
-    (SHIFT, Key::ArrowLeft, turn(-1, 0), "Turn left"),
-    (SHIFT, Key::ArrowUp, turn(0, 1), "Turn up"),
-    (SHIFT, Key::ArrowDown, turn(0, -1), "Turn down"),
+    (SHIFT, Key::ArrowRight, turn(1, 0), "Rotate right"),
+    (SHIFT, Key::ArrowLeft, turn(-1, 0), "Rotate left"),
+    (SHIFT, Key::ArrowUp, turn(0, 1), "Rotate up"),
+    (SHIFT, Key::ArrowDown, turn(0, -1), "Rotate down"),
     (NONE, Key::ArrowRight, Command::Step(1), "Step forward"),
     (NONE, Key::ArrowLeft, Command::Step(-1), "Step back"),
     (NONE, Key::Home, Command::End(false), "First step"),
@@ -124,13 +132,13 @@ pub const SHORTCUTS: [(Modifiers, Key, Command, &str); 58] = [
     (CTRL_ALT, Key::S, from(1), "Look south"),
     (CTRL_ALT, Key::E, from(2), "Look east"),
     (CTRL_ALT, Key::W, from(3), "Look west"),
-    (CTRL_ALT, Key::T, from(4), "Look down"),
-    (CTRL_ALT, Key::I, from(5), "Look from a corner"),
-    (CTRL_ALT, Key::B, from(6), "Look up"),
+    (CTRL_ALT, Key::T, from(4), "View from above"),
+    (CTRL_ALT, Key::I, from(5), "Isometric view"),
+    (CTRL_ALT, Key::B, from(6), "View from below"),
     (NONE, Key::Num1, from(0), "Look north"),
     (NONE, Key::Num3, from(3), "Look west"),
-    (NONE, Key::Num7, from(4), "Look down"),
-    (NONE, Key::Num9, from(5), "Look from a corner"),
+    (NONE, Key::Num7, from(4), "View from above"),
+    (NONE, Key::Num9, from(5), "Isometric view"),
     (
         NONE,
         Key::Num5,
@@ -142,11 +150,21 @@ pub const SHORTCUTS: [(Modifiers, Key, Command, &str); 58] = [
         NONE,
         Key::Z,
         Command::Look(Look::FrameSelection),
-        "Frame what is selected or drawn",
+        "Frame the selection, or all drawn cells",
     ),
-    (NONE, Key::Plus, Command::Look(Look::Zoom(true)), "Closer"),
-    (NONE, Key::Equals, Command::Look(Look::Zoom(true)), "Closer"),
-    (NONE, Key::Minus, Command::Look(Look::Zoom(false)), "Away"),
+    (NONE, Key::Plus, Command::Look(Look::Zoom(true)), "Zoom in"),
+    (
+        NONE,
+        Key::Equals,
+        Command::Look(Look::Zoom(true)),
+        "Zoom in",
+    ),
+    (
+        NONE,
+        Key::Minus,
+        Command::Look(Look::Zoom(false)),
+        "Zoom out",
+    ),
     (CTRL, Key::M, Command::Mouse, "Next mouse preset"),
     (CTRL, Key::Comma, Command::Settings, "Settings"),
     (
@@ -158,7 +176,7 @@ pub const SHORTCUTS: [(Modifiers, Key, Command, &str); 58] = [
     (NONE, Key::V, Command::Mode, "Cells or volume"),
     (NONE, Key::S, Command::NextStrategy, "Next strategy"),
     (NONE, Key::Q, Command::Light, "Occlusion on or off"),
-    (CTRL, Key::D, Command::Theme, "Dark or light"),
+    (CTRL, Key::D, Command::Theme, "Dark or light theme"),
     (CTRL, Key::W, Command::Close, "Close the case"),
     (
         CTRL_SHIFT,
@@ -178,7 +196,7 @@ pub const SHORTCUTS: [(Modifiers, Key, Command, &str); 58] = [
         NONE,
         Key::Escape,
         Command::Deselect,
-        "Close what is open, or select no cell",
+        "Close the dialog, or deselect all cells",
     ),
     (
         NONE,
@@ -192,14 +210,14 @@ pub const SHORTCUTS: [(Modifiers, Key, Command, &str); 58] = [
         Command::AlongRay(1),
         "Select the cell behind, along the line of sight",
     ),
-    (CTRL, Key::B, Command::Panels, "Panels or the picture alone"),
-    (CTRL, Key::N, Command::Notes, "What was not loaded"),
-    (NONE, Key::F1, Command::Help, "This sheet"),
+    (CTRL, Key::B, Command::Panels, "Show or hide the panels"),
+    (CTRL, Key::N, Command::Notes, "Notes on what was not loaded"),
+    (NONE, Key::F1, Command::Help, "Keyboard shortcuts"),
     (
         Modifiers::SHIFT,
         Key::Questionmark,
         Command::Help,
-        "This sheet",
+        "Keyboard shortcuts",
     ),
 ];
 

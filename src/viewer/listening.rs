@@ -8,7 +8,7 @@ use super::export::Export;
 use super::pictures::Event;
 use super::reader::Read;
 use super::watch::{Change, Watch};
-use super::window::{Window, load};
+use super::window::{Window, begin_loading};
 use super::worker::Why;
 use crate::picking::Pick;
 
@@ -101,7 +101,7 @@ impl Window {
             }
             match document.watch.as_ref().and_then(Watch::poll) {
                 Some(Change::Written) => {
-                    document.loading = Some(load(ctx, document.path.clone(), None))
+                    document.loading = Some(begin_loading(ctx, document.paths(), None))
                 }
                 Some(Change::Gone) => gone = Some(document.title()),
                 None => {}
@@ -109,7 +109,7 @@ impl Window {
         }
         if let Some(name) = gone {
             self.fail(format!(
-                "a file of {name} is gone; what was read of it stays, and F5 reads it again"
+                "a file of {name} was removed; what was read stays, and F5 reloads the case"
             ));
         }
         for case in replaced {
@@ -131,7 +131,7 @@ impl Window {
             return;
         }
         let Some(hit) = &pick.hit else {
-            self.tell("no cell is seen there");
+            self.tell("no cell under the pointer");
             return;
         };
         let cell = hit.ijk.one_based();

@@ -1,12 +1,11 @@
 //! Cases are opened in the background.
 
-use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::case::Case;
-use crate::load;
+use crate::load::{self, CasePaths};
 use crate::scene::Scene;
 use crate::scene::look;
 
@@ -29,7 +28,7 @@ impl Loading {
     /// Begins to open, with a property in front where the case has it; `wake` is called when that comes to
     /// another stage, and at the end.
     pub fn begin(
-        path: PathBuf,
+        paths: CasePaths,
         property: Option<String>,
         wake: impl Fn() + Send + 'static,
     ) -> Self {
@@ -44,7 +43,7 @@ impl Loading {
                 wake();
                 !shared_cancel.load(Ordering::Relaxed)
             };
-            let case = match load::open_reporting(&path, &[], &progress) {
+            let case = match load::open_reporting(&paths.path, &paths.with, &progress) {
                 Ok(Some(case)) => {
                     progress("values");
                     let property = property.filter(|p| look::varies(&case, p));

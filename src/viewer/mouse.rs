@@ -82,14 +82,14 @@ impl Mouse {
                 _ => "",
             };
             let does = match motion {
-                Motion::Rotate => "Turns around what is under the pointer",
-                Motion::Pan => "Moves the picture",
-                Motion::Zoom => "Comes closer or goes away",
+                Motion::Rotate => "Rotates about the point under the pointer",
+                Motion::Pan => "Pans",
+                Motion::Zoom => "Zooms",
             };
             (format!("{keys}{button}"), does)
         });
         let wheel = "Wheel, two fingers or pinch".to_owned();
-        drags.chain([(wheel, "Comes closer to the pointer or goes away")])
+        drags.chain([(wheel, "Zooms toward the pointer")])
     }
 }
 

@@ -87,11 +87,17 @@ impl Window {
             .open(&mut is_open)
             .show(ctx, |ui| {
                 let current = chosen.mouse.name();
-                list(ui, "Mouse", "As in which program", current, |ui| {
-                    for mouse in Mouse::ALL {
-                        ui.selectable_value(&mut chosen.mouse, mouse, mouse.name());
-                    }
-                });
+                list(
+                    ui,
+                    "Mouse",
+                    "Which program the mouse buttons follow",
+                    current,
+                    |ui| {
+                        for mouse in Mouse::ALL {
+                            ui.selectable_value(&mut chosen.mouse, mouse, mouse.name());
+                        }
+                    },
+                );
                 egui::Grid::new("drags").num_columns(2).show(ui, |ui| {
                     for (what, does) in chosen.mouse.describe() {
                         ui.weak(what);
@@ -232,12 +238,9 @@ fn shortcuts(ui: &mut Ui, ctx: &Context, mouse: Mouse) {
             }
             for (what, does) in [
                 ("Click", "Selects the cell under the pointer"),
-                ("Ctrl + click", "Selects it beside others, or lets it go"),
-                ("Tab, Shift + Tab", "To the next control, or the one before"),
-                (
-                    "Ctrl + plus, minus, 0",
-                    "Larger, smaller or standard letters",
-                ),
+                ("Ctrl + click", "Adds it to the selection, or removes it"),
+                ("Tab, Shift + Tab", "Next or previous control"),
+                ("Ctrl + plus, minus, 0", "UI scale: larger, smaller, reset"),
             ] {
                 ui.label(what);
                 ui.label(does);
@@ -265,7 +268,7 @@ fn size(ui: &mut Ui, size: &mut [u32; 2], window: Option<[u32; 2]>) {
 fn film(ui: &mut Ui, film: &mut Film, pace: Pace) {
     let kinds = [
         (false, "Time steps", "One image per time step"),
-        (true, "Turn", "Once around the model"),
+        (true, "Rotation", "One full rotation about the model"),
     ];
     if let Some(turns) = one_of(ui, "Shows", film.turns, &kinds) {
         film.turns = turns;
@@ -283,7 +286,8 @@ fn film(ui: &mut Ui, film: &mut Film, pace: Pace) {
             let views = egui::DragValue::new(&mut film.views)
                 .range(2..=1000)
                 .suffix(" images");
-            ui.add(views).on_hover_text("Images of the whole turn");
+            ui.add(views)
+                .on_hover_text("Number of images in the full rotation");
         }
         false => {
             let mut follows = film.steps_per_second.is_none();

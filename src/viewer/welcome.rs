@@ -17,11 +17,11 @@ pub enum Asked {
 
 /// What a hand new to the window needs to know.
 const FIRST_STEPS: [(&str, &str); 5] = [
-    ("Left drag", "turns around what is under the pointer"),
-    ("Wheel, two fingers", "comes closer"),
-    ("Click", "tells all values of the cell that is seen there"),
+    ("Left drag", "rotates about the point under the pointer"),
+    ("Wheel, two fingers", "zooms"),
+    ("Click", "shows all values of the cell under the pointer"),
     ("Space", "plays the time steps"),
-    ("F1", "lists all keys"),
+    ("F1", "lists all keyboard shortcuts"),
 ];
 
 /// Draws the page.

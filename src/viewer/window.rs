@@ -22,6 +22,7 @@ use super::state::State;
 use super::subject::CaseDifference;
 use super::worker::{Difference, Picture};
 use super::{bar, keys};
+use crate::load::{self, CasePaths};
 use crate::picking::Pick;
 
 /// The window's state.
@@ -29,7 +30,7 @@ pub struct Window {
     pub(super) documents: Vec<Document>,
     pub(super) current: usize,
     /// Cases that were closed, and how they looked; the last one is at the end.
-    pub(super) closed: Vec<(PathBuf, State)>,
+    pub(super) closed: Vec<(CasePaths, State)>,
     pub(super) pictures: Pictures,
     pub(super) reader: Reader,
     pub(super) sides: Sides,
@@ -79,45 +80,76 @@ impl Window {
         window
     }
 
-    /// Opens what was named, dropped or chosen together. Each path is a case of its own; of a folder with
-    /// several cases the user chooses.
+    /// Opens what was named, dropped or chosen together. Of a folder with several cases the user chooses. Files
+    /// without a grid are added to the case that they were named with, or to the one in front.
     pub fn open(&mut self, ctx: &Context, paths: Vec<PathBuf>) {
+        let mut files = Vec::new();
         for path in paths {
             match cases::meaning(&path) {
-                Meaning::Case(case) if path.is_dir() => self.show_case(ctx, case),
+                Meaning::Case(case) if path.is_dir() => files.push(case),
                 Meaning::Several(cases) => self.sheets.cases = Some(CasesSheet::new(cases)),
                 // What is no case says why when it is read.
-                Meaning::Case(_) | Meaning::Nothing(_) => self.show_case(ctx, path),
+                Meaning::Case(_) | Meaning::Nothing(_) => files.push(path),
             }
+        }
+        let are_added = |file: &PathBuf| file.is_file() && !load::is_case(file);
+        let has_case = self.document().is_some_and(|d| d.case.is_some());
+        if has_case && !files.is_empty() && files.iter().all(are_added) {
+            self.add(ctx, files);
+            return;
+        }
+        for paths in load::group(&files) {
+            self.show_case(ctx, paths);
         }
     }
 
+    /// Adds files to the case in front, which is read again with them.
+    pub(super) fn add(&mut self, ctx: &Context, files: Vec<PathBuf>) {
+        let Some(document) = self.document_mut() else {
+            return;
+        };
+        let names: Vec<_> = files.iter().filter_map(|f| f.file_name()).collect();
+        let names: Vec<_> = names.iter().map(|n| n.to_string_lossy()).collect();
+        let told = format!("{} is added to {}", names.join(", "), document.title());
+        document.with.retain(|known| !files.contains(known));
+        document.with.extend(files);
+        self.tell(told);
+        self.reload(ctx);
+    }
+
     /// Opens a case in a tab of its own, or brings the tab to the front that has it.
-    pub(super) fn show_case(&mut self, ctx: &Context, path: PathBuf) {
-        if let Some(tab) = self.documents.iter().position(|d| d.path == path) {
+    pub(super) fn show_case(&mut self, ctx: &Context, paths: CasePaths) {
+        let tab = self.documents.iter().position(|d| d.path == paths.path);
+        if let Some(tab) = tab {
             self.current = tab;
+            // The same case with other files is read again with all of them.
+            let new = |file: &&PathBuf| !self.documents[tab].with.contains(file);
+            let added: Vec<PathBuf> = paths.with.iter().filter(new).cloned().collect();
+            if !added.is_empty() {
+                self.add(ctx, added);
+            }
             return;
         }
         let state = State {
             pace: self.settings.pace,
             ..State::default()
         };
-        let loading = self.load(ctx, path.clone());
-        self.documents.push(Document::new(path, loading, state));
+        let loading = self.load(ctx, paths.clone());
+        self.documents.push(Document::new(paths, loading, state));
         self.current = self.documents.len() - 1;
     }
 
     /// Begins to open a case.
-    fn load(&self, ctx: &Context, path: PathBuf) -> Loading {
-        load(ctx, path, self.settings.first_property.clone())
+    fn load(&self, ctx: &Context, paths: CasePaths) -> Loading {
+        begin_loading(ctx, paths, self.settings.first_property.clone())
     }
 
     /// Reads the case in front again; it stays as it is until then.
     pub fn reload(&mut self, ctx: &Context) {
-        let Some(path) = self.document().map(|d| d.path.clone()) else {
+        let Some(paths) = self.document().map(Document::paths) else {
             return;
         };
-        let loading = self.load(ctx, path);
+        let loading = self.load(ctx, paths);
         if let Some(document) = self.document_mut() {
             document.loading = Some(loading);
         }
@@ -283,9 +315,9 @@ impl Window {
 }
 
 /// Begins to open a case, with a property in front where the case has it.
-pub(super) fn load(ctx: &Context, path: PathBuf, property: Option<String>) -> Loading {
+pub(super) fn begin_loading(ctx: &Context, paths: CasePaths, property: Option<String>) -> Loading {
     let waker = ctx.clone();
-    Loading::begin(path, property, move || waker.request_repaint())
+    Loading::begin(paths, property, move || waker.request_repaint())
 }
 
 impl eframe::App for Window {

@@ -179,7 +179,7 @@ impl Worker {
                 say(catch_unwind(answer).unwrap_or_else(|_| {
                     // A driver or library gave up; what it left behind is not to be trusted.
                     studio = Studio::default();
-                    let sentence = "the graphics driver failed; change something to try again";
+                    let sentence = "the graphics driver crashed; change any setting to retry";
                     match is_picture {
                         true => Answer::Failed(sentence.into()),
                         false => Answer::Refused(sentence.into()),

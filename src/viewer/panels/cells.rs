@@ -187,7 +187,7 @@ fn exaggeration(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
         }
         let own = ui.add_enabled(wanted.is_some(), egui::Button::new("Auto"));
         if own
-            .on_hover_text("One that suits the model's shape")
+            .on_hover_text("Chosen from the shape of the model")
             .clicked()
         {
             actions.push(Action::Exaggeration(None));

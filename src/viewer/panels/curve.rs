@@ -20,7 +20,7 @@ const NUDGE: f64 = 0.01;
 const HEIGHTS: [f32; 2] = [120.0, 10.0];
 /// Room left of the curve and right of it.
 const ENDS: egui::Vec2 = vec2(5.0, 0.0);
-const HELP: &str = "Drag points, double-click for a new one, right-click to remove one. With the keyboard: arrows choose a point, Shift and arrows move it, Insert adds one, Delete removes it";
+const HELP: &str = "Drag points, double-click to add one, right-click to remove one. With the keyboard: arrows choose a point, Shift and arrows move it, Insert adds one, Delete removes it";
 
 /// Draws the curve and lets it be changed; true where it was.
 pub fn show(ui: &mut Ui, view: &View, unit: &str, points: &mut Vec<[f64; 2]>) -> bool {

@@ -15,7 +15,7 @@ const LIST: f32 = 180.0;
 pub fn show(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
     let named = &about.case.about.named_faults;
     if named.is_empty() {
-        ui.weak("This case names no faults. Names come from FAULTS in a deck beside the grid.");
+        ui.weak("This case names no faults. Names come from FAULTS in a deck: use File > Add files to the case (Ctrl + Shift + O).");
         return;
     }
     let mut shown = about.scene.show.faults.clone();

@@ -1,11 +1,12 @@
-//! Occlusion and lights.
+//! Occlusion and the key light.
 
 use eframe::egui::{self, Ui};
+use glam::DVec3;
 
 use super::About;
-use crate::scene::LightMode;
-use crate::scene::LightingSpec;
-use crate::scene::lighting::PRESETS;
+use super::controls::one_of;
+use crate::scene::lighting::{LightSpec, OcclusionSpec, PRESETS};
+use crate::scene::{LightMode, LightingSpec};
 use crate::viewer::action::Action;
 
 pub fn show(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
@@ -23,45 +24,144 @@ pub fn show(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
     });
     let mut lighting = current.clone();
     if let Some(occlusion) = &mut lighting.occlusion {
-        ui.horizontal(|ui| {
-            for (mode, name, what) in [
-                (
-                    LightMode::Preilluminated,
-                    "Before rays",
-                    "In a light volume, made anew as the camera moves",
-                ),
-                (
-                    LightMode::Image,
-                    "At samples",
-                    "Exact to the method, several times slower",
-                ),
-            ] {
-                if ui
-                    .selectable_label(occlusion.mode == mode, name)
-                    .on_hover_text(what)
-                    .clicked()
-                {
-                    occlusion.mode = mode;
-                }
-            }
-        });
-        let angle = egui::Slider::new(&mut occlusion.half_angle_degrees, 1.0..=45.0);
-        ui.add(angle.text("Half angle °"));
-        let strength = egui::Slider::new(&mut occlusion.attenuation, 0.0..=2.0);
-        ui.add(strength.text("Attenuation"));
-        ui.horizontal(|ui| {
-            ui.label("Parts");
-            for splits in [1, 3, 7] {
-                if ui
-                    .selectable_label(occlusion.splits == splits, splits.to_string())
-                    .clicked()
-                {
-                    occlusion.splits = splits;
-                }
-            }
-        });
+        let strength = egui::Slider::new(&mut occlusion.strength, 0.0..=1.0);
+        ui.add(strength.text("Occlusion strength"))
+            .on_hover_text("How much of the darkening is applied");
+    }
+    key_light(ui, &mut lighting);
+    if let Some(occlusion) = &mut lighting.occlusion {
+        egui::CollapsingHeader::new("Occlusion settings")
+            .show(ui, |ui| cone(ui, occlusion))
+            .header_response
+            .on_hover_text("How occlusion is found: cones from each point toward the viewer");
     }
     if lighting != *current {
         actions.push(Action::Lighting(lighting));
+    }
+}
+
+/// The first light from far away: on or off, where it comes from, how bright it is.
+fn key_light(ui: &mut Ui, lighting: &mut LightingSpec) {
+    let is_key = |light: &LightSpec| matches!(light, LightSpec::Directional { .. });
+    let mut is_on = lighting.lights.iter().any(is_key);
+    let switch = ui.checkbox(&mut is_on, "Key light");
+    let switch = switch.on_hover_text("A light from one side, with shadows and highlights");
+    if switch.changed() {
+        match is_on {
+            true => {
+                lighting.lights.insert(0, LightSpec::key());
+                lighting.blinn_phong = true;
+            }
+            false => {
+                lighting.lights.retain(|light| !is_key(light));
+                lighting.blinn_phong &= !lighting.lights.is_empty();
+            }
+        }
+        return;
+    }
+    let share = lighting.share_of_lights();
+    let key = lighting.lights.iter_mut().find(|light| is_key(light));
+    let Some(LightSpec::Directional {
+        direction,
+        intensity,
+        ..
+    }) = key
+    else {
+        return;
+    };
+    let [mut azimuth, mut elevation] = angles(*direction);
+    let slider = egui::Slider::new(&mut azimuth, 0.0..=360.0).fixed_decimals(0);
+    let mut moved = ui
+        .add(slider.suffix("°").text("From azimuth"))
+        .on_hover_text("Compass direction that the light comes from: 0 north, 90 east")
+        .changed();
+    let slider = egui::Slider::new(&mut elevation, -90.0..=90.0).fixed_decimals(0);
+    moved |= ui
+        .add(slider.suffix("°").text("From elevation"))
+        .on_hover_text("Height of the light above the horizon; 90 is straight above")
+        .changed();
+    if moved {
+        *direction = direction_of([azimuth, elevation]);
+    }
+    let mut strength = intensity.unwrap_or(share);
+    let slider = egui::Slider::new(&mut strength, 0.0..=2.0);
+    if ui
+        .add(slider.text("Light strength"))
+        .on_hover_text("Brightness of the light; occlusion shades the ambient light beside it")
+        .changed()
+    {
+        *intensity = Some(strength);
+    }
+}
+
+/// Azimuth (degrees clockwise from north) and elevation that light comes from.
+fn angles(direction: [f64; 3]) -> [f64; 2] {
+    let toward = -DVec3::from_array(direction).normalize_or_zero();
+    let azimuth = toward.x.atan2(toward.y).to_degrees().rem_euclid(360.0);
+    [azimuth, toward.z.clamp(-1.0, 1.0).asin().to_degrees()]
+}
+
+/// Where light goes that comes from there.
+fn direction_of([azimuth, elevation]: [f64; 2]) -> [f64; 3] {
+    let [azimuth, elevation] = [azimuth, elevation].map(f64::to_radians);
+    let level = elevation.cos();
+    let toward = [
+        level * azimuth.sin(),
+        level * azimuth.cos(),
+        elevation.sin(),
+    ];
+    // Six digits: a scene file is read by people.
+    toward.map(|v| -(1e6 * v).round() / 1e6)
+}
+
+/// How occlusion is found.
+fn cone(ui: &mut Ui, occlusion: &mut OcclusionSpec) {
+    let modes = [
+        (
+            LightMode::Preilluminated,
+            "Light volume",
+            "Precomputed; recomputed when the camera moves",
+        ),
+        (
+            LightMode::Image,
+            "Every sample",
+            "A cone at every sample: more exact, several times slower",
+        ),
+    ];
+    if let Some(mode) = one_of(ui, "Found in", occlusion.mode, &modes) {
+        occlusion.mode = mode;
+    }
+    let angle = egui::Slider::new(&mut occlusion.half_angle_degrees, 1.0..=45.0);
+    ui.add(angle.suffix("°").text("Cone half angle"))
+        .on_hover_text("Wider cones look at more of the surroundings");
+    let attenuation = egui::Slider::new(&mut occlusion.attenuation, 0.0..=2.0);
+    ui.add(attenuation.text("Attenuation"))
+        .on_hover_text("Factor on the extinction that occludes");
+    let splits = [
+        (1, "1", "Fastest"),
+        (3, "3", "Between"),
+        (7, "7", "Closest to the truth"),
+    ];
+    if let Some(splits) = one_of(ui, "Cones per direction", occlusion.splits, &splits) {
+        occlusion.splits = splits;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{angles, direction_of};
+
+    #[test]
+    fn light_comes_from_where_the_sliders_say() {
+        // From the north, from the east, from above.
+        for (from, direction) in [
+            ([0.0, 0.0], [0.0, -1.0, 0.0]),
+            ([90.0, 0.0], [-1.0, 0.0, 0.0]),
+            ([0.0, 90.0], [0.0, 0.0, -1.0]),
+        ] {
+            assert_eq!(direction_of(from).map(|v| v + 0.0), direction);
+        }
+        let [azimuth, elevation] = angles(direction_of([301.0, 53.0]));
+        assert!((azimuth - 301.0).abs() < 1e-3 && (elevation - 53.0).abs() < 1e-3);
     }
 }

@@ -111,8 +111,8 @@ const fn panel(title: &'static str, is_open: bool, show: Show) -> Panel {
 /// Panels at the left, from top to bottom.
 pub const LEFT: [Panel; 6] = [
     panel("Property", true, property::show),
-    panel("Cells", true, cells::show),
-    panel("Shown", true, surfaces::show),
+    panel("Cell filter", true, cells::show),
+    panel("Display", true, surfaces::show),
     Panel {
         count: |about| about.case.about.named_faults.len(),
         ..panel("Faults", false, faults::show)

@@ -2,7 +2,7 @@
 
 use eframe::egui::{self, Ui};
 
-use super::controls::show_chosen;
+use super::controls::{show_chosen, significant};
 use crate::viewer::action::Action;
 use crate::viewer::document::Document;
 use crate::viewer::keys::Command;
@@ -39,14 +39,14 @@ pub fn player(ui: &mut Ui, document: &Document) -> Option<Asked> {
         }
         let mut pace = document.state.pace;
         ui.checkbox(&mut pace.repeats, "Repeat")
-            .on_hover_text("After the last step comes the first");
+            .on_hover_text("Starts over after the last step");
         let speed = egui::DragValue::new(&mut pace.steps_a_second)
             .range(0.1..=30.0)
             .speed(0.05)
             .max_decimals(1)
             .suffix(" steps/s");
         ui.add(speed)
-            .on_hover_text("Steps a second, at most: each stays until its picture is there");
+            .on_hover_text("Steps per second at most; each stays until its image is drawn");
         if pace != document.state.pace {
             asked = Some(Asked::Change(Action::Pace(pace)));
         }
@@ -54,24 +54,30 @@ pub fn player(ui: &mut Ui, document: &Document) -> Option<Asked> {
         let slider = egui::Slider::new(&mut wanted, 0..=count - 1).show_value(false);
         let slider = ui.add(slider).on_hover_text("Time step");
         slider.widget_info(|| egui::WidgetInfo::slider(true, wanted as f64, "Time step"));
-        let at = |n: usize| {
+        // The date alone names a step; its numbers are told on request.
+        let told = |n: usize| {
             let at = &case.steps[n];
-            format!("{}   report {}   day {:.0}", at.date, at.report, at.days)
+            let days = significant(at.days);
+            format!(
+                "Step {} of {count}, report {}, day {days}",
+                n + 1,
+                at.report
+            )
         };
         egui::ComboBox::from_id_salt("step")
-            .width(230.0)
-            .selected_text(at(step))
+            .width(150.0)
+            .selected_text(&case.steps[step].date)
             .show_ui(ui, |ui| {
                 for n in 0..count {
-                    let entry = ui.selectable_value(&mut wanted, n, at(n));
+                    let entry = ui.selectable_value(&mut wanted, n, &case.steps[n].date);
+                    let entry = entry.on_hover_text(told(n));
                     if n == step {
                         show_chosen(ui, &entry);
                     }
                 }
             })
             .response
-            .on_hover_text("Date, report number and days since the start");
-        ui.weak(format!("{} of {count}", step + 1));
+            .on_hover_text(told(step));
         if wanted != step {
             asked = Some(Asked::Change(Action::Step(wanted)));
         }

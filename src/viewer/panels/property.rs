@@ -90,7 +90,7 @@ fn differences(ui: &mut Ui, about: &About<'_>, current: &str, actions: &mut Vec<
     let text = base
         .and_then(|n| named.get(n))
         .map_or("none", String::as_str);
-    let what = "Shows how much the values differ from those of a step";
+    let what = "Shows the values minus those of another step";
     list(ui, "Difference to", what, text, |ui| {
         if ui.selectable_label(base.is_none(), "none").clicked() {
             actions.push(Action::Property(now.to_owned()));
@@ -112,7 +112,7 @@ fn interpolation(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
         (
             Interpolation::Cell,
             "Cells",
-            "One value a cell, as the simulator gives it",
+            "One value per cell, as the simulator writes it",
         ),
         (
             Interpolation::Vertex,

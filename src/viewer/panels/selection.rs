@@ -144,7 +144,7 @@ fn go_to(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
         }
         let select = ui
             .button("Select")
-            .on_hover_text("Selects this cell beside the others");
+            .on_hover_text("Adds this cell to the selection");
         if select.clicked() {
             actions.push(Action::Select(cell, Beside::Others));
         }
@@ -156,7 +156,7 @@ fn buttons(ui: &mut Ui, about: &About<'_>, table: &Table, actions: &mut Vec<Acti
     ui.horizontal_wrapped(|ui| {
         let curves = ui
             .button("Curves ...")
-            .on_hover_text("Properties of these cells over time, in a window of their own");
+            .on_hover_text("Properties of these cells over time, in a separate window");
         if curves.clicked() {
             actions.push(Action::Curves(CurvePlots {
                 is_open: true,
@@ -173,16 +173,23 @@ fn buttons(ui: &mut Ui, about: &About<'_>, table: &Table, actions: &mut Vec<Acti
         if clear.clicked() {
             actions.push(Action::Deselect);
         }
-        let alike = ui.button("Only alike");
-        let what = "Draws only cells whose value of the property shown is like that of the cell selected last";
-        if alike.on_hover_text(what).clicked()
+        // A difference of two cases is a property of neither, so that neither can be filtered by it.
+        let minus = about.case.minus.as_ref();
+        let can = minus.is_none_or(|m| Some(m.name.as_str()) != about.property());
+        let alike = ui.add_enabled(can, egui::Button::new("Filter to similar values"));
+        let what = "Draws only cells whose value of the property shown is close to that of the last selected cell";
+        let refusal = "Not for a difference of two cases; filter by a property of one of them";
+        if alike
+            .on_hover_text(what)
+            .on_disabled_hover_text(refusal)
+            .clicked()
             && let Some(filter) = like(about)
         {
             actions.push(Action::Filter(filter));
         }
     });
     ui.horizontal(|ui| {
-        ui.label("Only its");
+        ui.label("Isolate");
         let Some([i, j, k]) = about.state.selected.last().copied() else {
             return;
         };
@@ -210,14 +217,15 @@ fn buttons(ui: &mut Ui, about: &About<'_>, table: &Table, actions: &mut Vec<Acti
                 },
             ),
         ] {
-            let what = format!("Draws only cells of the same {name}");
+            let what =
+                format!("Draws only the cells with the same {name} as the last selected one");
             if ui.button(name).on_hover_text(what).clicked() {
                 actions.push(Action::Filter(wanted));
             }
         }
         let all = ui
-            .button("All cells")
-            .on_hover_text("Takes all filters away");
+            .button("Clear filters")
+            .on_hover_text("Clears all filters");
         if all.clicked() {
             actions.push(Action::Filter(Filter::default()));
         }

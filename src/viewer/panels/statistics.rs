@@ -20,7 +20,7 @@ pub fn show(ui: &mut Ui, about: &About<'_>, _actions: &mut Vec<Action>) {
     let light = picture.light;
     let rows = [
         (
-            "Picture",
+            "Image",
             format!("{} x {}", picture.rgb.size[0], picture.rgb.size[1]),
         ),
         ("Rays", ms(picture.stats.frame)),
@@ -72,13 +72,15 @@ fn values(ui: &mut Ui, about: &About<'_>, picture: &Picture) {
         }
     ));
     let [low, middle, high] = summary.percentiles;
-    let weighted = summary.weighted.map(|v| ("Mean by pore volume", v));
+    let weighted = summary
+        .weighted
+        .map(|v| ("Mean, weighted by pore volume", v));
     let rows = [("Smallest", summary.min), ("Mean", summary.mean)];
     let rows = rows.into_iter().chain(weighted).chain([
         ("Largest", summary.max),
-        ("A tenth is below", low),
-        ("Half is below", middle),
-        ("Nine tenths are below", high),
+        ("P10 (10 % of cells are below)", low),
+        ("P50 (median)", middle),
+        ("P90 (90 % of cells are below)", high),
     ]);
     egui::Grid::new("values").striped(true).show(ui, |ui| {
         for (name, value) in rows {

@@ -17,11 +17,24 @@ pub fn show(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
             }
         }
     });
-    match StrategyKind::from_name(&about.scene.strategy) {
-        Some(StrategyKind::Libc) => libc(ui, about, actions),
-        Some(StrategyKind::Srg) => srg(ui, about, actions),
-        _ => {}
+    let kind = StrategyKind::from_name(&about.scene.strategy);
+    if let Some(kind) = kind {
+        ui.weak(kind.describe());
     }
+    egui::CollapsingHeader::new("Sampling settings")
+        .show(ui, |ui| {
+            match kind {
+                Some(StrategyKind::Libc) => libc(ui, about, actions),
+                Some(StrategyKind::Srg) => srg(ui, about, actions),
+                _ => {}
+            }
+            sampling_step(ui, about, actions);
+        })
+        .header_response
+        .on_hover_text("How rays are sampled; the defaults suit most models");
+}
+
+fn sampling_step(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
     if let Some(picture) = about.picture {
         let mut step = picture.view.sampling_step;
         let speed = 0.01 * step;
@@ -32,7 +45,7 @@ pub fn show(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
                 .range(0.001..=1e6);
             if ui
                 .add(drag)
-                .on_hover_text("In the grid's length unit")
+                .on_hover_text("Distance between samples along a ray, in the grid's length unit")
                 .changed()
             {
                 actions.push(Action::SamplingStep(Some(step)));
@@ -47,13 +60,14 @@ pub fn show(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
 fn libc(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
     let mut settings = about.scene.libc;
     let mut segments = settings.integration == Integration::Segments;
-    ui.checkbox(&mut segments, "Whole segments")
-        .on_hover_text("Integrates each segment in a cell as a whole instead of samples");
+    ui.checkbox(&mut segments, "Integrate whole segments")
+        .on_hover_text("Integrates the part of a ray in each cell at once instead of by samples: faster, close to exact");
     settings.integration = match segments {
         true => Integration::Segments,
         false => Integration::Samples,
     };
-    ui.checkbox(&mut settings.cross_faults, "Walk across faults");
+    ui.checkbox(&mut settings.cross_faults, "Cross faults cell to cell")
+        .on_hover_text("Rays step into the cell across a fault instead of searching for it");
     if settings != about.scene.libc {
         actions.push(Action::Libc(settings));
     }
@@ -63,10 +77,11 @@ fn srg(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
     let mut settings = about.scene.srg;
     let mut budget = settings.budget_mb.unwrap_or(32);
     let slider = egui::Slider::new(&mut budget, 1..=4096).logarithmic(true);
-    if ui.add(slider.text("Budget MB")).changed() {
+    if ui.add(slider.text("Grid budget, MB")).changed() {
         settings.budget_mb = Some(budget);
     }
-    ui.checkbox(&mut settings.skip_empty, "Skip what is empty");
+    ui.checkbox(&mut settings.skip_empty, "Skip empty space")
+        .on_hover_text("Rays skip blocks of the resampled grid without visible values");
     if settings != about.scene.srg {
         actions.push(Action::Srg(settings));
     }

@@ -3,21 +3,15 @@
 use eframe::egui::{self, Ui};
 
 use super::About;
-use crate::scene::{CutFace, Hull, Inactive, Show, ShownFaults, Surfaces};
+use super::controls::one_of;
+use crate::scene::{CutFace, Hull, Inactive, Mode, Show, ShownFaults, Surfaces};
 use crate::transfer::presets::parse_color;
 use crate::viewer::action::Action;
 
 pub fn show(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
     let mut show = about.scene.show.clone();
+    hull(ui, about, &mut show);
     egui::Grid::new("what is shown").num_columns(2).show(ui, |ui| {
-        let mut hull = show.hull == Hull::Opaque;
-        ui.checkbox(&mut hull, "Opaque hull")
-            .on_hover_text("The outer faces of the drawn cells, in the property's colors");
-        show.hull = match (hull, show.hull) {
-            (true, _) => Hull::Opaque,
-            (false, Hull::Opaque) => Hull::Faint,
-            (false, other) => other,
-        };
         let is_cut = about.scene.clip.iter().any(|c| c.face == CutFace::Opaque);
         let has_faces = Surfaces::of(about.scene).has_hull() || show.faults.are_shown() || is_cut;
         let mut has_edges = Surfaces::of(about.scene).cell_edges;
@@ -32,7 +26,7 @@ pub fn show(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
         ui.end_row();
         let mut faults = show.faults.are_shown();
         let switch = ui.checkbox(&mut faults, "Fault surfaces");
-        if switch.on_hover_text("Half-transparent sheets, a color for each name in FAULTS; rest the pointer on one to read its throw").changed() {
+        if switch.on_hover_text("Half-transparent surfaces, one color per name in FAULTS; rest the pointer on one to read its throw").changed() {
             show.faults = ShownFaults::All(faults);
         }
         let mut ghosts = show.inactive == Inactive::Ghost;
@@ -54,7 +48,32 @@ pub fn show(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
     }
 }
 
-/// The picture's background.
+/// The outer faces of what is drawn; of opaque cells they are the image.
+fn hull(ui: &mut Ui, about: &About<'_>, show: &mut Show) {
+    let choices = [
+        (Hull::Hidden, "None", "Only the inside is drawn"),
+        (
+            Hull::Faint,
+            "Faint",
+            "A faint gray outline of the drawn cells around the inside",
+        ),
+        (
+            Hull::Opaque,
+            "Opaque",
+            "The outer faces of the drawn cells, in the property's colors",
+        ),
+    ];
+    let is_volume = about.scene.mode == Mode::Volume;
+    ui.add_enabled_ui(is_volume, |ui| {
+        if let Some(chosen) = one_of(ui, "Hull", show.hull, &choices) {
+            show.hull = chosen;
+        }
+    })
+    .response
+    .on_disabled_hover_text("In the mode Cells the outer faces are always drawn");
+}
+
+/// The background of the image.
 fn background(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
     let Some(color) = parse_color(&about.scene.background) else {
         return;

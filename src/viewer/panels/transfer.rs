@@ -57,7 +57,7 @@ const PRESETS: [Preset; 5] = [
     ),
     (
         "Peak",
-        "Values around one, to be moved; the rest is faint",
+        "A narrow band of values, to be moved; the rest is faint",
         &[
             [0.0, 0.005],
             [0.42, 0.005],
@@ -87,7 +87,7 @@ fn opacities(ui: &mut Ui, about: &About<'_>, spec: &mut TransferSpec) {
                 spec.opacity = Some(OpacitySpec::Points(points.to_vec()));
             }
         }
-        let what = "What is rich is the most solid, the rest a haze: found in the values";
+        let what = "The values looked for are solid and the rest is a haze; found from the values shown";
         if ui.button("Automatic").on_hover_text(what).clicked() {
             spec.opacity = Some(OpacitySpec::AUTOMATIC);
             spec.reference_length = None;
@@ -138,11 +138,7 @@ fn scale(ui: &mut Ui, spec: &mut TransferSpec, range: RangeSpec, actions: &mut V
 
 fn coloring(ui: &mut Ui, spec: &mut TransferSpec) {
     let choices = [
-        (
-            Coloring::Continuous,
-            "Continuous",
-            "Colors pass into each other",
-        ),
+        (Coloring::Continuous, "Continuous", "Smooth color gradient"),
         (
             Coloring::Banded,
             "Bands",
@@ -178,7 +174,7 @@ fn coloring(ui: &mut Ui, spec: &mut TransferSpec) {
 fn color_maps(ui: &mut Ui, spec: &mut TransferSpec) {
     let current = match &spec.color {
         ColorSpec::Name(name) => name.clone(),
-        ColorSpec::Points(_) => "own points".to_owned(),
+        ColorSpec::Points(_) => "custom".to_owned(),
     };
     let what = "Colors from the low to the high end of the range";
     list(ui, "Color map", what, &current, |ui| {
