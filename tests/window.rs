@@ -239,7 +239,6 @@ const SHIFT: u32 = 0xffe1;
 const RETURN: u32 = 0xff0d;
 
 #[test]
-#[ignore = "written for the window before its parts were merged; to be adapted"]
 fn the_window_shows_a_case_and_follows_the_hand() {
     let Some(display) = Display::start() else {
         return;
@@ -412,7 +411,6 @@ impl<'a> Other<'a> {
 }
 
 #[test]
-#[ignore = "written for the window before its parts were merged; to be adapted"]
 fn text_goes_to_other_programs_and_comes_from_them() {
     let Some(display) = Display::start() else {
         return;

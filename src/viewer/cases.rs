@@ -3,6 +3,8 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+use crate::load;
+
 /// What a path means.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Meaning {
@@ -16,6 +18,8 @@ pub enum Meaning {
 
 /// Endings of files that hold a grid; of a case with more than one of them the first counts.
 const GRIDS: [&str; 7] = ["EGRID", "FEGRID", "GRID", "FGRID", "GRDECL", "ROFF", "DATA"];
+/// Bytes of a text file that is searched for a grid, at most; a larger one is taken to have one.
+const MOST_SEARCHED: u64 = 16 << 20;
 /// Entries that are offered while a path is typed, at most.
 const MOST_OFFERED: usize = 200;
 
@@ -36,7 +40,7 @@ pub fn expanded(path: &str) -> PathBuf {
 /// What a path means.
 pub fn meaning(path: &Path) -> Meaning {
     if path.is_dir() {
-        let mut cases = in_folder(path);
+        let mut cases = of_folder(path);
         return match cases.len() {
             0 => Meaning::Nothing(format!("there is no case in {}", path.display())),
             1 => Meaning::Case(cases.remove(0)),
@@ -59,14 +63,29 @@ pub fn meaning(path: &Path) -> Meaning {
     )
 }
 
+/// The cases of a folder. Where there are cases that were run, text files with grids are parts of their decks; where
+/// there are none, those without a grid are left out.
+fn of_folder(folder: &Path) -> Vec<PathBuf> {
+    let mut cases = in_folder(folder);
+    let is_text = |path: &PathBuf| has_ending(path, "GRDECL");
+    let was_run = |path: &PathBuf| !is_text(path) && !has_ending(path, "DATA");
+    let were_run = cases.iter().any(was_run);
+    let is_large = |path: &PathBuf| path.metadata().is_ok_and(|m| m.len() > MOST_SEARCHED);
+    let is_grid = |path: &PathBuf| is_large(path) || load::is_case(path);
+    cases.retain(|path| !is_text(path) || !were_run && is_grid(path));
+    cases
+}
+
+fn has_ending(path: &Path, wanted: &str) -> bool {
+    let ending = path.extension().and_then(|e| e.to_str());
+    ending.is_some_and(|e| e.eq_ignore_ascii_case(wanted))
+}
+
 /// The grid of each case in a folder, in the order of their names.
 pub fn in_folder(folder: &Path) -> Vec<PathBuf> {
     let mut cases: BTreeMap<String, (usize, PathBuf)> = BTreeMap::new();
     for file in entries(folder).filter(|p| p.is_file()) {
-        let ending = file.extension().and_then(|e| e.to_str());
-        let rank = GRIDS
-            .iter()
-            .position(|g| ending.is_some_and(|e| e.eq_ignore_ascii_case(g)));
+        let rank = GRIDS.iter().position(|g| has_ending(&file, g));
         let (Some(rank), Some(stem)) = (rank, file.file_stem()) else {
             continue;
         };
@@ -128,10 +147,12 @@ mod tests {
         make("A.UNRST");
         make("readme.txt");
         assert_eq!(meaning(folder.path()), Meaning::Case(at("A.EGRID")));
+        // Text files beside a case that was run are parts of decks.
         make("b.grdecl");
-        make("b.data");
-        let both = vec![at("A.EGRID"), at("b.grdecl")];
-        assert_eq!(meaning(folder.path()), Meaning::Several(both.clone()));
+        assert_eq!(meaning(folder.path()), Meaning::Case(at("A.EGRID")));
+        make("c.data");
+        let both = vec![at("A.EGRID"), at("c.data")];
+        assert_eq!(meaning(folder.path()), Meaning::Several(both));
         assert_eq!(meaning(&at("a")), Meaning::Case(at("A.EGRID")));
         assert_eq!(meaning(&at("B")), Meaning::Case(at("b.grdecl")));
         assert_eq!(meaning(&at("A.UNRST")), Meaning::Case(at("A.UNRST")));
@@ -140,8 +161,18 @@ mod tests {
         std::fs::create_dir(at("beyond")).unwrap();
         let typed = |text: &str| offered(&at(text), text);
         assert_eq!(typed("b"), [at("b.grdecl"), at("beyond")]);
-        assert_eq!(offered(folder.path(), "").len(), 3);
+        assert_eq!(offered(folder.path(), "").len(), 4);
         assert!(typed("x").is_empty());
+    }
+
+    #[test]
+    fn text_files_with_a_grid_are_cases_where_none_was_run() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        std::fs::write(at("poro.grdecl"), "PORO\n 8*0.2 /\n").unwrap();
+        assert!(matches!(meaning(folder.path()), Meaning::Nothing(_)));
+        std::fs::write(at("grid.grdecl"), "SPECGRID\n 2 2 2 1 F /\n").unwrap();
+        assert_eq!(meaning(folder.path()), Meaning::Case(at("grid.grdecl")));
     }
 
     #[test]

@@ -163,6 +163,15 @@ pub struct PathSheet {
     path: String,
     /// The text field has had the focus.
     is_begun: bool,
+    /// What was found for the path that was typed.
+    found: Option<Found>,
+}
+
+/// What a path means, looked up when it changes.
+struct Found {
+    path: String,
+    wanted: Wanted,
+    offered: Vec<PathBuf>,
 }
 
 /// What came of a sheet.
@@ -182,6 +191,7 @@ impl PathSheet {
             path: path.display().to_string(),
             purpose,
             is_begun: false,
+            found: None,
         }
     }
 
@@ -208,15 +218,9 @@ impl PathSheet {
             response.request_focus();
         }
         let is_entered = response.lost_focus() && ui.input(|i| i.key_pressed(Key::Enter));
-        let path = cases::expanded(&self.path);
-        let wanted = match self.purpose {
-            Purpose::Case => of_case(&path),
-            Purpose::Add | Purpose::LoadScene => of_old(&path),
-            _ if self.purpose.is_folder() && path.is_dir() => {
-                (Some(vec![path.clone()]), String::new())
-            }
-            _ => of_new(&self.purpose.file(path.clone())),
-        };
+        let known = self.found.take().filter(|f| f.path == self.path);
+        let found = known.unwrap_or_else(|| self.look_up());
+        let wanted = found.wanted.clone();
         let mut chosen = None;
         ui.horizontal_wrapped(|ui| {
             let name = match self.purpose.new_name() {
@@ -233,14 +237,32 @@ impl PathSheet {
             response.request_focus();
         }
         if matches!(self.purpose, Purpose::Case) {
-            chosen = self.offer(ui, &path).map(|case| vec![case]).or(chosen);
+            let offered = self.offer(ui, &found.offered);
+            chosen = offered.map(|case| vec![case]).or(chosen);
         }
+        self.found = Some(found);
         chosen
     }
 
+    fn look_up(&self) -> Found {
+        let path = cases::expanded(&self.path);
+        let wanted = match self.purpose {
+            Purpose::Case => of_case(&path),
+            Purpose::Add | Purpose::LoadScene => of_old(&path),
+            _ if self.purpose.is_folder() && path.is_dir() => {
+                (Some(vec![path.clone()]), String::new())
+            }
+            _ => of_new(&self.purpose.file(path.clone())),
+        };
+        Found {
+            path: self.path.clone(),
+            wanted,
+            offered: cases::offered(&path, &self.path),
+        }
+    }
+
     /// Lists what the path may go on with; the case that was clicked. A folder that was clicked is the path.
-    fn offer(&mut self, ui: &mut Ui, path: &Path) -> Option<PathBuf> {
-        let offered = cases::offered(path, &self.path);
+    fn offer(&mut self, ui: &mut Ui, offered: &[PathBuf]) -> Option<PathBuf> {
         let mut chosen = None;
         egui::ScrollArea::vertical()
             .max_height(180.0)
@@ -256,7 +278,7 @@ impl PathSheet {
                             self.is_begun = false;
                         }
                     } else if ui.link(name.as_ref()).clicked() {
-                        chosen = Some(entry);
+                        chosen = Some(entry.clone());
                     }
                 }
             });

@@ -4,7 +4,7 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use eframe::egui::{self, Context, Margin, ScrollArea, Ui, WidgetInfo};
+use eframe::egui::{self, CollapsingResponse, Context, Margin, ScrollArea, Ui, WidgetInfo};
 
 use super::action::Action;
 use super::panels::{self, About, Panel};
@@ -20,7 +20,7 @@ const MOST: f32 = 520.0;
 /// Points that the picture has beside panels on both sides, at least.
 const PICTURE: f32 = 300.0;
 /// Points of the strip that opens a folded side.
-const STRIP: f32 = 22.0;
+const STRIP: f32 = 26.0;
 /// Points between the scroll bar of the panels and their edge, which can be dragged.
 const EDGE: i8 = 10;
 
@@ -179,10 +179,11 @@ fn unfolded(
                         0 => panel.title.to_owned(),
                         count => format!("{} ({count})", panel.title),
                     };
-                    egui::CollapsingHeader::new(title)
+                    let shown = egui::CollapsingHeader::new(title)
                         .id_salt(panel.title)
                         .default_open(panel.is_open)
                         .show(ui, |ui| (panel.show)(ui, about, actions));
+                    reveal(ui, &shown);
                 }
                 ui.separator();
                 let arrow = ["«", "»"][side];
@@ -190,6 +191,25 @@ fn unfolded(
             });
         });
     folds
+}
+
+/// Scrolls while a panel opens, so that all of it is seen, or as much as there is room for.
+fn reveal(ui: &Ui, shown: &CollapsingResponse<()>) {
+    let header = &shown.header_response;
+    let id = header.id.with("opens");
+    if header.clicked() {
+        ui.data_mut(|d| d.insert_temp(id, shown.openness < 0.5));
+    }
+    let opens = ui.data(|d| d.get_temp(id)).unwrap_or(false);
+    let Some(body) = shown.body_response.as_ref().filter(|_| opens) else {
+        return;
+    };
+    let all = header.rect.union(body.rect);
+    let fits = all.height() <= ui.clip_rect().height();
+    ui.scroll_to_rect(all, (!fits).then_some(egui::Align::TOP));
+    if shown.fully_open() {
+        ui.data_mut(|d| d.remove_temp::<bool>(id));
+    }
 }
 
 /// What is left of a folded side; true where it is to be opened.

@@ -32,6 +32,11 @@ pub struct Page {
 pub type Shown = (Arc<View>, Arc<Case>);
 
 impl Page {
+    /// Where it is in the window.
+    pub fn place(&self) -> Rect {
+        self.place
+    }
+
     /// Where the volume is.
     pub fn volume(&self) -> Rect {
         self.part(self.layout.volume)
@@ -99,11 +104,15 @@ pub fn draw(painter: &Painter, page: &Page, shown: &Shown, title: Option<&str>, 
     let (view, case) = shown;
     let annotations = Annotations::of(case, view);
     ground(painter, page, view);
-    let usual = format!("{}{}", annotations.title, annotations.when);
-    let title = title.unwrap_or(&usual);
+    let left = match title {
+        Some(title) => [title, ""],
+        None => [annotations.title.as_str(), annotations.when.as_str()],
+    };
+    let title = left.concat();
     // What the title has already is not said twice.
     let is_said = own.split("   ").all(|fact| title.contains(fact));
-    titles(painter, page, view, [title, if is_said { "" } else { own }]);
+    let right = if is_said { "" } else { own };
+    titles(painter, page, view, left, right);
     if let Some(strip) = page.layout.legend {
         legend(painter, page, strip, view, &annotations);
     }
@@ -122,7 +131,7 @@ pub fn draw_shared(painter: &Painter, page: &Page, shown: [&Shown; 2], own: &[St
         true => &annotations[0].title,
         false => &own[0],
     };
-    titles(painter, page, view, [first, &own[1]]);
+    titles(painter, page, view, [first, ""], &own[1]);
     let strips = [page.layout.left_legend, page.layout.legend];
     for (n, strip) in strips.into_iter().enumerate() {
         if let Some(strip) = strip {
@@ -147,7 +156,9 @@ fn ground(painter: &Painter, page: &Page, view: &View) {
 }
 
 /// Writes a title at the left, cut where there is no room, and one at the right.
-fn titles(painter: &Painter, page: &Page, view: &View, [left, right]: [&str; 2]) {
+/// Writes a title at the left, of two parts of which only the first becomes shorter where there is no room, and what
+/// is of a second picture at the right.
+fn titles(painter: &Painter, page: &Page, view: &View, [left, end]: [&str; 2], right: &str) {
     let Some(area) = page.layout.title.map(|t| page.part(t)) else {
         return;
     };
@@ -165,7 +176,7 @@ fn titles(painter: &Painter, page: &Page, view: &View, [left, right]: [&str; 2])
     } else {
         width(&right) + UNIT
     };
-    let left = cut(left, room - taken, &width);
+    let left = cut(left, room - taken - width(end), &width) + end;
     let y = area.center().y;
     let ends = [
         (pos2(area.left() + margin, y), Align2::LEFT_CENTER, left),

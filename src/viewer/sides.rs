@@ -50,6 +50,8 @@ struct Pointed {
 const REST: f64 = 0.3;
 /// Points on both sides of a wipe's line within which it is taken.
 const GRIP: f32 = 8.0;
+/// Points beside the image, from which the edges of the panels are dragged.
+const EDGE: f32 = 4.0;
 
 impl Sides {
     /// Pixels of the volume of each picture.
@@ -105,7 +107,11 @@ impl Window {
             return Touched::default();
         };
         let setup = document.state.setup.clone();
+        // The edges of the panels are caught beside it.
         let place = ui.available_rect_before_wrap();
+        let fill = ui.visuals().panel_fill;
+        ui.painter().rect_filled(place, 0.0, fill);
+        let place = place.shrink2(vec2(EDGE, 0.0));
         let (mut rects, layout) = layout(place, setup.comparison.as_ref());
         let other = self.other();
         if other.is_none() {
@@ -281,6 +287,11 @@ impl Window {
         cases: &[Option<Arc<Case>>; 2],
         layout: Option<Layout>,
     ) {
+        for (n, page) in pages.iter().flatten().enumerate() {
+            let id = ui.scope_id().with(("image", n));
+            let image = ui.interact(page.place(), id, Sense::hover());
+            image.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "image"));
+        }
         let shown = self.shown_views(cases);
         let own = match &shown {
             [Some(first), Some(second)] => {

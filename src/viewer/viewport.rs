@@ -99,6 +99,10 @@ impl Viewport {
                 None => self.under(view, grid, at),
             };
             self.pivot = Some(pivot);
+            // A pointer at rest must not move the camera, not even by rounding: each camera asks for a picture.
+            if by == DVec2::ZERO {
+                return None;
+            }
             let moved = match motion {
                 Motion::Rotate => orbit::rotate(camera, pivot, by),
                 Motion::Pan => orbit::pan(camera, pivot, by),

@@ -5,7 +5,7 @@ use strataray::scene::{RangeSpec, StepSpec, View};
 use strataray::viewer::{Action, Comparison, Layout, Picture};
 
 use super::common::{copy_of_sample, data, gpu, sample};
-use super::driven::{Driven, covered};
+use super::driven::Driven;
 
 /// Mean CIEDE2000 of pictures of the same: rays pause by time, so single pixels may round differently.
 const SAME: f64 = 1e-3;
@@ -226,7 +226,7 @@ fn two_cases_are_seen_alike_wherever_they_lie() {
         driven.wait("both cases", |w| w.picture(1).is_some());
         driven.wait_final();
         let shown = |d: &Driven| d.harness.state().picture(1).unwrap().0.view.clone();
-        let covered_by = |d: &Driven| covered(&d.picture(1), [255; 3]);
+        let covered_by = |d: &Driven| d.covered_by(1);
         assert!(covered_by(&driven) > 0.03, "{}", other.display());
         // A drag on either turns both.
         let before = shown(&driven).camera;

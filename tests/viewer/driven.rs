@@ -8,6 +8,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use strataray::picture::Rgb8;
 use strataray::scene::Scene;
+use strataray::transfer::presets::parse_color;
 use strataray::viewer::{Document, Settings, Window};
 
 /// Longest wait for anything: software adapters on busy machines are slow.
@@ -18,6 +19,8 @@ pub struct Driven {
     pub harness: Harness<'static, Window>,
     /// Where it remembers things.
     pub folder: tempfile::TempDir,
+    /// Points of the window.
+    size: [f32; 2],
 }
 
 impl Driven {
@@ -33,7 +36,11 @@ impl Driven {
         let harness = Harness::builder()
             .with_size(vec2(size[0], size[1]))
             .build_eframe(move |cc| Window::new(&cc.egui_ctx, cases, watches, settings));
-        Self { harness, folder }
+        Self {
+            harness,
+            folder,
+            size,
+        }
     }
 
     /// A window that shows the final picture of a case.
@@ -86,8 +93,29 @@ impl Driven {
         (*picture.rgb).clone()
     }
 
-    /// Clicks what has a label.
+    /// Part of the pixels of the picture shown that are not of the background.
+    pub fn covered(&self) -> f64 {
+        self.covered_by(0)
+    }
+
+    /// The same of a side.
+    pub fn covered_by(&self, side: usize) -> f64 {
+        let picture = self.picture(side);
+        let background = parse_color(&self.scene().background).unwrap();
+        let background = background.map(|v| (255.0 * v).round() as u8);
+        let count = picture.pixels.iter().filter(|p| **p != background).count();
+        count as f64 / picture.pixels.len() as f64
+    }
+
+    /// Clicks what has a label, which is scrolled to where it lies outside the window.
     pub fn click(&mut self, label: &str) {
+        let place = self.place(label);
+        // What lies near the lower edge may be covered by the player.
+        let window = egui::Rect::from_min_size(Pos2::ZERO, self.size.into());
+        if !window.shrink2(vec2(0.0, 60.0)).contains_rect(place) && place.top() > 60.0 {
+            self.harness.get_by_label(label).scroll_to_me();
+            self.wait_settled();
+        }
         self.harness.get_by_label(label).click();
         self.step();
         self.step();
@@ -113,6 +141,11 @@ impl Driven {
             .get_all_by_label(label)
             .map(|n| n.rect())
             .collect()
+    }
+
+    /// Where the last thing with a label is, of several.
+    pub fn last_place(&self, label: &str) -> egui::Rect {
+        self.places(label).pop().unwrap()
     }
 
     /// Where something with a label is.
@@ -149,10 +182,4 @@ impl Driven {
             self.step();
         }
     }
-}
-
-/// Part of the pixels that are not of the background.
-pub fn covered(picture: &Rgb8, background: [u8; 3]) -> f64 {
-    let count = picture.pixels.iter().filter(|p| **p != background).count();
-    count as f64 / picture.pixels.len() as f64
 }

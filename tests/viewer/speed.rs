@@ -45,7 +45,6 @@ fn turned(driven: &mut Driven, from: Pos2, moves: usize) -> u64 {
 }
 
 #[test]
-#[ignore = "written for the window before its parts were merged; to be adapted"]
 fn pictures_follow_the_pointer() {
     let Some(_) = gpu() else { return };
     let Some(case) = data("brugge/BRUGGE_0000.EGRID") else {
@@ -83,7 +82,6 @@ fn pictures_follow_the_pointer() {
 }
 
 #[test]
-#[ignore = "written for the window before its parts were merged; to be adapted"]
 fn every_step_that_plays_is_seen() {
     let Some(_) = gpu() else { return };
     let Some(case) = data("brugge/BRUGGE_0000.EGRID") else {

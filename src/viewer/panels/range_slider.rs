@@ -30,7 +30,8 @@ pub struct RangeSlider<'a> {
 impl RangeSlider<'_> {
     /// Draws it; true where a handle was moved.
     pub fn show(self, ui: &mut Ui, parts: &mut [f64; 2]) -> bool {
-        let (place, strip) = ui.allocate_exact_size(vec2(self.width, self.height), Sense::click());
+        // A click moves the nearest handle; the focus goes to the handles, which have names.
+        let (place, strip) = ui.allocate_exact_size(vec2(self.width, self.height), Sense::CLICK);
         let rail = place.shrink2(vec2(0.5 * HANDLE, 0.0));
         let before = *parts;
         if let Some(at) = strip.interact_pointer_pos().filter(|_| strip.clicked()) {
