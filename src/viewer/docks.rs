@@ -67,6 +67,10 @@ impl Window {
         }
         let Some(side) = turned else { return };
         self.settings.folded[side] = open[side];
+        if open[side] && !open[1 - side] {
+            // The other side was folded for want of room, and does not open by itself in its place.
+            self.settings.folded[1 - side] = true;
+        }
         if !open[side] {
             self.docks.last = side;
         }

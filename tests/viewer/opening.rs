@@ -326,7 +326,11 @@ fn nothing_is_out_of_reach_in_a_small_window() {
         driven.click("Hide the left panels");
         driven.wait_settled();
         assert!(!is_open(&driven, "Property"));
-        assert!(driven.place("volume").width() > picture.width() + 100.0);
+        let wide = driven.place("volume");
+        assert!(
+            wide.width() > picture.width() + 100.0,
+            "{wide:?} {picture:?}"
+        );
         // Sheets fit too.
         driven.press(Modifiers::NONE, Key::F1);
         driven.wait_settled();
