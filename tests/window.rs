@@ -191,6 +191,20 @@ impl Display {
     }
 }
 
+impl Display {
+    /// Waits until much of the screen is another than before; a cursor may blink in it.
+    fn changed(&self, what: &str, before: &[[u8; 4]]) {
+        let start = Instant::now();
+        let differs = |now: &[[u8; 4]]| now.iter().zip(before).filter(|(a, b)| a != b).count();
+        while differs(&self.pixels()) < 10_000 {
+            assert!(start.elapsed() < PATIENCE, "waited for {what}");
+            std::thread::sleep(Duration::from_millis(100));
+        }
+        // The field takes the keys one frame later.
+        std::thread::sleep(Duration::from_millis(500));
+    }
+}
+
 /// Pixels in the middle of the window that are neither white nor gray: the model's colors.
 fn colored(pixels: &[[u8; 4]]) -> usize {
     let rows = pixels.chunks(usize::from(SIZE[0])).skip(150).take(450);
@@ -420,7 +434,7 @@ fn text_goes_to_other_programs_and_comes_from_them() {
     let case = common::copy_of_sample(folder.path());
     let mut process = viewer(&display, &case, config.path());
     let window = display.window();
-    display.settled("the first picture", |p| colored(p) > 5_000);
+    let first = display.settled("the first picture", |p| colored(p) > 5_000);
     display.focus(window);
     // The command line goes out, and runs as it stands, in another folder.
     let other = Other::new(&display);
@@ -445,7 +459,7 @@ fn text_goes_to_other_programs_and_comes_from_them() {
     // A path comes in: pasted into the sheet that asks for one, it is where the scene is saved.
     let file = folder.path().join("pasted scene.json");
     display.keys(&[CONTROL, u32::from(b's')]);
-    display.settled("the sheet for a path", |_| true);
+    display.changed("the sheet for a path", &first);
     other.owns();
     for keys in [
         &[CONTROL, u32::from(b'a')][..],
