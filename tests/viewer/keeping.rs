@@ -3,10 +3,10 @@
 use eframe::egui::accesskit::Action as Asked;
 use eframe::egui::{Key, Modifiers};
 use egui_kittest::kittest::{NodeT, Queryable};
-use strataray::metrics::Comparison;
+use strataray::metrics::Comparison as Apart;
 use strataray::picture::film::FilmFormat;
-use strataray::scene::Scene;
-use strataray::viewer::{Action, Settings, State};
+use strataray::scene::{Scene, StepSpec};
+use strataray::viewer::{Action, Comparison, Layout, Settings, State};
 
 use super::common::{copy_of_sample, gpu, sample};
 use super::driven::Driven;
@@ -38,7 +38,7 @@ fn a_saved_scene_makes_the_same_picture() {
     driven.wait_final();
     assert_eq!(driven.scene(), &scene);
     // Rays pause by time, so sums may round differently, in single pixels.
-    let apart = Comparison::of(&driven.picture(0), &picture).unwrap();
+    let apart = Apart::of(&driven.picture(0), &picture).unwrap();
     assert!(apart.psnr_db > 90.0, "{apart:?}");
     // One that is none is refused, and changes nothing.
     std::fs::write(&file, "{\"propertee\": 1}").unwrap();
@@ -198,11 +198,8 @@ fn the_mouse_is_as_in_the_program_that_was_chosen() {
     assert!(after.distance(center) < 0.95 * before.distance(center));
 }
 
-#[test]
-fn a_command_is_copied_at_the_size_of_the_window() {
-    let Some(_) = gpu() else { return };
-    let mut driven = Driven::showing(sample());
-    let size = driven.picture(0).size;
+/// The text that Ctrl+Shift+C copies.
+fn copied(driven: &mut Driven) -> String {
     // All in one frame, whose output it is.
     let modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
     let input = driven.harness.input_mut();
@@ -219,9 +216,33 @@ fn a_command_is_copied_at_the_size_of_the_window() {
         eframe::egui::OutputCommand::CopyText(text) => Some(text.clone()),
         _ => None,
     });
-    let line = copied.unwrap();
+    copied.unwrap()
+}
+
+#[test]
+fn a_command_is_copied_at_the_size_of_the_window() {
+    let Some(_) = gpu() else { return };
+    let mut driven = Driven::showing(sample());
+    let size = driven.picture(0).size;
+    let line = copied(&mut driven);
     let wanted = format!("\"size\":[{},{}]", size[0], size[1]);
     assert!(line.contains(&wanted), "{line}");
+    assert!(line.contains("\"property\":\"SOIL\""), "{line}");
+    // A difference within the case is what the line draws.
+    let difference = Comparison {
+        layout: Layout::Difference,
+        step: Some(StepSpec::Index(0)),
+        ..Comparison::default()
+    };
+    driven
+        .harness
+        .state_mut()
+        .apply(Action::Compare(Some(difference)));
+    driven.wait_final();
+    let line = copied(&mut driven);
+    assert!(line.contains("\"property\":\"SOIL-SOIL@0\""), "{line}");
+    let (message, _) = driven.harness.state().message().unwrap();
+    assert!(message.contains("writes a PNG"), "{message}");
 }
 
 #[test]

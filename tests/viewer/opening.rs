@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 
 use eframe::egui::{self, Key, Modifiers, vec2};
 use egui_kittest::kittest::{NodeT, Queryable};
-use strataray::viewer::{Action, Settings};
+use strataray::viewer::{Action, Settings, Window};
 
-use super::common::{copy_of_sample, gpu, sample};
+use super::common::{copy_of_sample, gpu, sample, tiny};
 use super::driven::Driven;
 
 #[test]
@@ -363,4 +363,42 @@ fn panels_are_widened_by_their_edges() {
             assert!(after < before - 10.0, "{told}");
         }
     }
+}
+
+#[test]
+fn files_without_a_grid_are_added_to_the_case() {
+    let Some(_) = gpu() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let grid = tiny::write(folder.path(), "GRID.GRDECL", tiny::grid_text());
+    let write = |name: &str| {
+        let text = format!("{name}\n 60*100 60*300 /\n");
+        tiny::write(folder.path(), &format!("{name}.inc"), text)
+    };
+    let [first, second] = ["PERMX", "PERMY"].map(write);
+    let has = |w: &Window, name: &str| {
+        let case = w.document().and_then(|d| d.case.as_ref());
+        case.is_some_and(|c| c.properties.iter().any(|p| p.name == name))
+    };
+    // Named together with a grid.
+    let mut driven = Driven::open(&[first.clone(), grid.clone()]);
+    driven.wait_final();
+    assert!(has(driven.harness.state(), "PERMX"));
+    assert_eq!(driven.document().with, [first.clone()]);
+    let state = driven.document().state.clone();
+    // Dropped on the case that is open: it stays as it looks.
+    let file = std::sync::Arc::new(Dropped(second.clone()));
+    driven.harness.input_mut().dropped_files.push(file);
+    driven.wait("the property that was added", |w| has(w, "PERMY"));
+    driven.wait_final();
+    assert!(has(driven.harness.state(), "PERMX"));
+    assert_eq!(driven.document().with, [first, second]);
+    assert_eq!(driven.document().state, state);
+    assert_eq!(driven.document().title(), "GRID");
+    // A case that is no part of it gets a tab of its own.
+    let file = std::sync::Arc::new(Dropped(sample()));
+    driven.harness.input_mut().dropped_files.push(file);
+    driven.wait("the other case", |w| {
+        w.document()
+            .is_some_and(|d| d.case.is_some() && d.title() == "SCISSOR")
+    });
 }

@@ -1,8 +1,11 @@
 //! Showing: strategies, properties, time, colors.
 
 use eframe::egui::{Key, Modifiers};
+use egui_kittest::kittest::Queryable;
+use glam::DVec3;
 use strataray::metrics::Comparison;
-use strataray::scene::{OpacitySpec, StepSpec};
+use strataray::scene::lighting::LightSpec;
+use strataray::scene::{Hull, OpacitySpec, StepSpec};
 
 use super::common::{gpu, sample};
 use super::driven::Driven;
@@ -134,4 +137,71 @@ fn a_window_at_rest_asks_for_no_frames() {
     // The twin: while time plays, it does.
     driven.press(Modifiers::NONE, Key::Space);
     assert!(delay(&driven).as_secs() < 3600);
+}
+
+/// Sets a slider, which has its number beside it.
+fn set(driven: &mut Driven, name: &str, value: f64) {
+    let slider = driven.harness.get_all_by_label(name).next().unwrap();
+    slider.set_value_accesskit(value);
+    driven.step();
+    driven.step();
+}
+
+#[test]
+fn the_key_light_comes_from_where_it_is_set() {
+    let Some(_) = gpu() else { return };
+    let mut driven = Driven::sized(&[sample()], [1280.0, 1400.0], false);
+    driven.wait_final();
+    let before = driven.picture(0);
+    driven.click("Key light");
+    let direction = |d: &Driven| {
+        let light = d.scene().lighting.lights.first().cloned();
+        let Some(LightSpec::Directional {
+            direction,
+            intensity,
+            ..
+        }) = light
+        else {
+            panic!("{light:?}");
+        };
+        (direction, intensity)
+    };
+    let (key, strength) = direction(&driven);
+    assert_eq!(strength, None);
+    driven.wait_final();
+    let lit = driven.picture(0);
+    assert!(lit != before);
+    // A slider of the direction changes it, and the picture with it.
+    set(&mut driven, "Light azimuth", 90.0);
+    let (east, _) = direction(&driven);
+    assert!(east[0] < 0.0 && east[1].abs() < 1e-6, "{east:?}");
+    assert!((east[2] - key[2] / DVec3::from_array(key).length()).abs() < 1e-3);
+    driven.wait_final();
+    assert!(driven.picture(0) != lit);
+    set(&mut driven, "Light strength", 1.5);
+    assert_eq!(direction(&driven).1, Some(1.5));
+    driven.click("Key light");
+    assert!(driven.scene().lighting.lights.is_empty());
+    driven.wait_final();
+    let apart = Comparison::of(&driven.picture(0), &before).unwrap();
+    assert!(apart.ciede2000_mean < 1e-3, "{apart:?}");
+}
+
+#[test]
+fn the_hull_is_none_faint_or_opaque() {
+    let Some(_) = gpu() else { return };
+    let mut driven = Driven::showing(sample());
+    let mut pictures = Vec::new();
+    for (label, hull) in [
+        ("Hull: None", Hull::Hidden),
+        ("Hull: Faint", Hull::Faint),
+        ("Hull: Opaque", Hull::Opaque),
+    ] {
+        driven.click(label);
+        assert_eq!(driven.scene().show.hull, hull);
+        driven.wait_final();
+        let picture = driven.picture(0);
+        assert!(!pictures.contains(&picture), "{label}");
+        pictures.push(picture);
+    }
 }

@@ -43,6 +43,20 @@ pub fn list(ui: &mut Ui, name: &str, what: &str, current: &str, show: impl FnOnc
     });
 }
 
+/// A slider behind a name, as wide as there is room; true where it changed.
+pub fn slider(ui: &mut Ui, name: &str, what: &str, slider: egui::Slider<'_>) -> bool {
+    ui.horizontal(|ui| {
+        let label = ui.label(name);
+        ui.spacing_mut().slider_width = (ui.available_width() - BESIDE_SLIDER).max(40.0);
+        let slider = ui.add(slider).labelled_by(label.id);
+        slider.on_hover_text(what).changed()
+    })
+    .inner
+}
+
+/// Points that the number beside a slider takes.
+const BESIDE_SLIDER: f32 = 62.0;
+
 /// A number to drag or type, with six digits; true where it changed.
 pub fn number(ui: &mut Ui, value: &mut f64, speed: f64, name: &str, what: &str) -> bool {
     let drag = egui::DragValue::new(value)

@@ -4,7 +4,7 @@ use eframe::egui::{self, Ui};
 use glam::DVec3;
 
 use super::About;
-use super::controls::one_of;
+use super::controls::{one_of, slider};
 use crate::scene::lighting::{LightSpec, OcclusionSpec, PRESETS};
 use crate::scene::{LightMode, LightingSpec};
 use crate::viewer::action::Action;
@@ -25,8 +25,8 @@ pub fn show(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
     let mut lighting = current.clone();
     if let Some(occlusion) = &mut lighting.occlusion {
         let strength = egui::Slider::new(&mut occlusion.strength, 0.0..=1.0);
-        ui.add(strength.text("Occlusion strength"))
-            .on_hover_text("How much of the darkening is applied");
+        let what = "How much of the darkening is applied";
+        slider(ui, "Occlusion strength", what, strength);
     }
     key_light(ui, &mut lighting);
     if let Some(occlusion) = &mut lighting.occlusion {
@@ -70,26 +70,19 @@ fn key_light(ui: &mut Ui, lighting: &mut LightingSpec) {
         return;
     };
     let [mut azimuth, mut elevation] = angles(*direction);
-    let slider = egui::Slider::new(&mut azimuth, 0.0..=360.0).fixed_decimals(0);
-    let mut moved = ui
-        .add(slider.suffix("°").text("From azimuth"))
-        .on_hover_text("Compass direction that the light comes from: 0 north, 90 east")
-        .changed();
-    let slider = egui::Slider::new(&mut elevation, -90.0..=90.0).fixed_decimals(0);
-    moved |= ui
-        .add(slider.suffix("°").text("From elevation"))
-        .on_hover_text("Height of the light above the horizon; 90 is straight above")
-        .changed();
+    let what = "Compass direction that the light comes from: 0 north, 90 east";
+    let from = egui::Slider::new(&mut azimuth, 0.0..=360.0).suffix("°");
+    let mut moved = slider(ui, "Light azimuth", what, from.fixed_decimals(0));
+    let what = "Height of the light above the horizon; 90 is straight above";
+    let from = egui::Slider::new(&mut elevation, -90.0..=90.0).suffix("°");
+    moved |= slider(ui, "Light elevation", what, from.fixed_decimals(0));
     if moved {
         *direction = direction_of([azimuth, elevation]);
     }
     let mut strength = intensity.unwrap_or(share);
-    let slider = egui::Slider::new(&mut strength, 0.0..=2.0);
-    if ui
-        .add(slider.text("Light strength"))
-        .on_hover_text("Brightness of the light; occlusion shades the ambient light beside it")
-        .changed()
-    {
+    let what = "Brightness of the light; occlusion shades the ambient light beside it";
+    let of = egui::Slider::new(&mut strength, 0.0..=2.0);
+    if slider(ui, "Light strength", what, of) {
         *intensity = Some(strength);
     }
 }
@@ -131,12 +124,12 @@ fn cone(ui: &mut Ui, occlusion: &mut OcclusionSpec) {
     if let Some(mode) = one_of(ui, "Found in", occlusion.mode, &modes) {
         occlusion.mode = mode;
     }
+    let what = "Wider cones look at more of the surroundings";
     let angle = egui::Slider::new(&mut occlusion.half_angle_degrees, 1.0..=45.0);
-    ui.add(angle.suffix("°").text("Cone half angle"))
-        .on_hover_text("Wider cones look at more of the surroundings");
+    slider(ui, "Cone half angle", what, angle.suffix("°"));
+    let what = "Factor on the extinction that occludes";
     let attenuation = egui::Slider::new(&mut occlusion.attenuation, 0.0..=2.0);
-    ui.add(attenuation.text("Attenuation"))
-        .on_hover_text("Factor on the extinction that occludes");
+    slider(ui, "Attenuation", what, attenuation);
     let splits = [
         (1, "1", "Fastest"),
         (3, "3", "Between"),

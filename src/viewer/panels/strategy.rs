@@ -3,6 +3,7 @@
 use eframe::egui::{self, Ui};
 
 use super::About;
+use super::controls::slider;
 use crate::scene::Integration;
 use crate::strategies::StrategyKind;
 use crate::viewer::action::Action;
@@ -76,8 +77,9 @@ fn libc(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
 fn srg(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
     let mut settings = about.scene.srg;
     let mut budget = settings.budget_mb.unwrap_or(32);
-    let slider = egui::Slider::new(&mut budget, 1..=4096).logarithmic(true);
-    if ui.add(slider.text("Grid budget, MB")).changed() {
+    let of = egui::Slider::new(&mut budget, 1..=4096).logarithmic(true);
+    let what = "Memory of the resampled grid";
+    if slider(ui, "Grid budget", what, of.suffix(" MB")) {
         settings.budget_mb = Some(budget);
     }
     ui.checkbox(&mut settings.skip_empty, "Skip empty space")
