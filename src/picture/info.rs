@@ -44,7 +44,7 @@ impl Info {
         items.push(cells(facts));
         if let Some(values) = &facts.values {
             let unit = case.unit(&view.property);
-            items.push(said(values, &view.property, unit));
+            items.push(said(values, &case.heading_of(&view.property), unit));
         }
         let doubt = case
             .property(&view.property)

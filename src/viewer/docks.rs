@@ -24,6 +24,9 @@ const STRIP: f32 = 26.0;
 /// Points between the scroll bar of the panels and their edge, which can be dragged.
 const EDGE: i8 = 10;
 
+/// Points of the window with curves at first.
+const CURVES: [f32; 2] = [460.0, 280.0];
+
 const NAMES: [&str; 2] = ["left", "right"];
 
 /// Which sides are folded by the user, and which one was opened last: where there is room for one only, it is
@@ -93,9 +96,15 @@ impl Window {
             return;
         };
         let mut is_open = true;
+        // At first in the lower left corner of the image, where it hides no panel.
+        let place = self.sides.volume();
+        let corner = place.map_or(egui::Pos2::ZERO, |place| {
+            place.left_bottom() + egui::vec2(0.0, -(CURVES[1] + 60.0))
+        });
         egui::Window::new("Curves")
             .open(&mut is_open)
-            .default_size([520.0, 340.0])
+            .default_pos(corner)
+            .default_size(CURVES)
             .min_size([260.0, 180.0])
             .show(ctx, |ui| panels::curves(ui, &about, actions));
         if !is_open {

@@ -33,6 +33,13 @@ pub struct Sides {
     asked: Option<Pointed>,
 }
 
+impl Sides {
+    /// Where the volume of the first picture is, in points.
+    pub fn volume(&self) -> Option<Rect> {
+        self.rects[0]
+    }
+}
+
 /// The case and scene of a side.
 type Seen = Option<(Arc<Case>, Scene)>;
 

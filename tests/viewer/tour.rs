@@ -67,12 +67,11 @@ fn the_tour_is_walked() {
     let camera = CameraSpec::Framing(FramingCamera {
         azimuth_degrees: 150.0,
         elevation_degrees: 38.0,
-        zoom: 1.1,
+        zoom: 1.0,
         projection: Projection::Perspective,
     });
     apply(&mut driven, Action::Camera(camera));
-    driven.click("Highest only");
-    driven.click("soft");
+    driven.click("strong");
     driven.wait_final();
     shot(&mut driven, "4_oil");
     find(&mut driven);
@@ -139,7 +138,10 @@ fn understand(driven: &mut Driven) {
         curves.is_some_and(|c| c.of.cells.len() == 2)
     });
     driven.wait_final();
+    driven.press(Modifiers::COMMAND, Key::G);
+    driven.wait_settled();
     shot(driven, "8_cells");
+    driven.press(Modifiers::COMMAND, Key::G);
     driven.click("Transfer function");
     // Before and after, with a line to drag.
     let comparison = Comparison {
@@ -149,4 +151,12 @@ fn understand(driven: &mut Driven) {
     };
     apply(driven, Action::Compare(Some(comparison)));
     shot(driven, "9_compare");
+    // What the flood took, in values.
+    let comparison = Comparison {
+        layout: Layout::Difference,
+        step: Some(strataray::scene::StepSpec::Index(0)),
+        ..Comparison::default()
+    };
+    apply(driven, Action::Compare(Some(comparison)));
+    shot(driven, "10_difference");
 }

@@ -55,7 +55,7 @@ pub fn slider(ui: &mut Ui, name: &str, what: &str, slider: egui::Slider<'_>) -> 
 }
 
 /// Points that the number beside a slider takes.
-const BESIDE_SLIDER: f32 = 62.0;
+const BESIDE_SLIDER: f32 = 76.0;
 
 /// A number to drag or type, with six digits; true where it changed.
 pub fn number(ui: &mut Ui, value: &mut f64, speed: f64, name: &str, what: &str) -> bool {

@@ -81,11 +81,14 @@ fn value(property: &str, value: f64, case: &Case) -> String {
     text.trim_end().to_owned()
 }
 
-/// A fault with its throw, and the cell on its far side.
+/// A fault with its throw, and the cells on its near and far side.
 fn of_fault(fault: &Fault, case: &Case) -> String {
     let unit = short_unit(&case.about.length_unit);
-    let far = named(fault.far.one_based());
-    format!("{}\nFar side: {far}", fault.in_words(&unit))
+    let [near, far] = [fault.near, fault.far].map(|cell| named(cell.one_based()));
+    format!(
+        "{}\nBetween {near} and, beyond it, {far}",
+        fault.in_words(&unit)
+    )
 }
 
 /// What is seen where the pointer rests, in words; `None` where nothing is.

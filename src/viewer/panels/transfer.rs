@@ -69,12 +69,12 @@ const PRESETS: [Preset; 5] = [
     ("Uniform", "All values alike", &[[0.0, 0.15], [1.0, 0.15]]),
     (
         "Highest only",
-        "The highest fifth of the range",
+        "The highest fifth of the values shown",
         &[[0.0, 0.0], [0.78, 0.0], [0.82, 0.4], [1.0, 0.6]],
     ),
     (
         "Lowest only",
-        "The lowest fifth of the range",
+        "The lowest fifth of the values shown",
         &[[0.0, 0.6], [0.18, 0.4], [0.22, 0.0], [1.0, 0.0]],
     ),
 ];
@@ -84,7 +84,7 @@ fn opacities(ui: &mut Ui, about: &About<'_>, spec: &mut TransferSpec) {
         ui.label("Opacity");
         for (name, what, points) in PRESETS {
             if ui.button(name).on_hover_text(what).clicked() {
-                spec.opacity = Some(OpacitySpec::Points(points.to_vec()));
+                spec.opacity = Some(OpacitySpec::Points(over(extent(about), points)));
             }
         }
         let what = "The values looked for are solid and the rest is a haze; found from the values shown";
@@ -99,6 +99,28 @@ fn opacities(ui: &mut Ui, about: &About<'_>, spec: &mut TransferSpec) {
             spec.opacity = Some(OpacitySpec::Points(points));
         }
     });
+}
+
+/// Positions of the smallest and largest value of the step shown.
+fn extent(about: &About<'_>) -> [f64; 2] {
+    let view = about.picture.map(|p| &p.view);
+    let found = view.and_then(|v| Some((v.field.statistics()?, &v.transfer)));
+    found.map_or([0.0, 1.0], |(values, transfer)| {
+        [values.min, values.max].map(|v| transfer.position(v))
+    })
+}
+
+/// A curve over a part of the range, even on both sides of it.
+fn over([low, high]: [f64; 2], curve: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    let (Some(first), Some(last)) = (curve.first(), curve.last()) else {
+        return Vec::new();
+    };
+    let (low, high) = if low < high { (low, high) } else { (0.0, 1.0) };
+    let place = |[at, opacity]: &[f64; 2]| [low + at * (high - low), *opacity];
+    let before = (low > 0.0).then_some([0.0, first[1]]);
+    let behind = (high < 1.0).then_some([1.0, last[1]]);
+    let curve = curve.iter().map(place);
+    before.into_iter().chain(curve).chain(behind).collect()
 }
 
 /// Peaks at the boundaries in what is shown.
@@ -194,4 +216,21 @@ fn color_maps(ui: &mut Ui, spec: &mut TransferSpec) {
             }
         }
     });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::over;
+
+    #[test]
+    fn a_curve_lies_over_the_values_shown() {
+        let curve = [[0.0, 0.0], [0.8, 0.0], [1.0, 0.6]];
+        assert_eq!(over([0.0, 1.0], &curve), curve);
+        let found = over([0.0, 0.5], &curve);
+        assert_eq!(found, [[0.0, 0.0], [0.4, 0.0], [0.5, 0.6], [1.0, 0.6]]);
+        let found = over([0.5, 1.0], &curve);
+        assert_eq!(found[..2], [[0.0, 0.0], [0.5, 0.0]]);
+        // One value is everywhere in the range.
+        assert_eq!(over([0.3, 0.3], &curve), curve);
+    }
 }
