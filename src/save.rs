@@ -32,7 +32,7 @@ pub enum SaveError {
         cause: io::Error,
     },
     /// Whoever asked does not want it any more.
-    #[error("writing was cancelled")]
+    #[error("writing was canceled")]
     Cancelled,
 }
 

@@ -386,7 +386,7 @@ fn ctrl_c_leaves_nothing() {
         let done = film.wait_with_output().unwrap();
         let said = String::from_utf8(done.stderr).unwrap();
         assert_eq!(done.status.code(), Some(1), "{said}");
-        assert!(said.contains("cancelled"), "{said}");
+        assert!(said.contains("canceled"), "{said}");
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
     }
 }

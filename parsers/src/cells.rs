@@ -139,7 +139,7 @@ impl Head {
                 let parts: Option<Vec<i32>> = date.split('-').map(|p| p.parse().ok()).collect();
                 let parts = parts.and_then(|p| <[i32; 3]>::try_from(p).ok());
                 let known = parts.filter(|p| p[0] > 0 && self.date == date_text(*p));
-                known.ok_or_else(|| refused(format!("{date:?} is no date like 2001-06-30")))?
+                known.ok_or_else(|| refused(format!("{date:?} is not a date like 2001-06-30")))?
             }
         };
         let mut items = vec![0; INTEHEAD_ITEMS];

@@ -17,7 +17,7 @@ pub(crate) fn check<T: Sync>(
     let [ni, nj, nk] = dims;
     let cells = ni.checked_mul(nj).and_then(|n| n.checked_mul(nk));
     let Some(cells @ 1..=0x7fff_ffff) = cells else {
-        let message = format!("{ni} x {nj} x {nk} cells are not possible");
+        let message = format!("{ni} x {nj} x {nk} cells are not supported");
         return Err(refused(message));
     };
     let lengths = [

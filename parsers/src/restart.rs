@@ -63,7 +63,7 @@ pub fn open_unified(path: &Path, warnings: &mut Warnings) -> Result<Vec<Step>, P
         steps.push(step);
     }
     if steps.is_empty() {
-        let message = "is missing; this is no restart";
+        let message = "is missing; this is not a restart file";
         return Err(ParseError::new(path, At::File, "INTEHEAD", message));
     }
     count_days(&mut steps, path, warnings);
@@ -154,7 +154,7 @@ fn open_one(report: u32, path: &Path, warnings: &mut Warnings) -> Result<Step, P
             path,
             At::File,
             "INTEHEAD",
-            "is missing; this is no restart",
+            "is missing; this is not a restart file",
         )),
     }
 }

@@ -694,12 +694,12 @@ fn err_includes() {
             .to_string()
     };
     assert!(
-        message("A").contains("loop") && message("A").contains("A:2)"),
+        message("A").contains("includes itself") && message("A").contains("A:2)"),
         "{}",
         message("A")
     );
     assert!(
-        message("C").contains("C:2:2: INCLUDE: 'no such' is not found; looked for "),
+        message("C").contains("C:2:2: INCLUDE: 'no such' was not found; looked for "),
         "{}",
         message("C")
     );

@@ -15,25 +15,25 @@ use super::scene_options::SceneOptions;
 
 #[derive(clap::Args)]
 #[command(after_help = "\
-The output's form says the format:
-  .png   animated PNG: lossless, plays in browsers; the best choice for most uses
-  .gif   256 colors a picture
+The name of the output tells the format:
+  .gif   256 colors per image; plays everywhere, also in slides
+  .png   animated PNG: lossless, plays in browsers but not in slides
   .mp4   H.264, small; only in builds with `--features mp4`, which need a C++ compiler
          (H.264 is covered by patents: find out whether you need a license)
-  DIR/   numbered pictures frame_0000.png, frame_0001.png, ...
-Colors and opacity mean the same values in all pictures: the scene's range, or that of all steps shown.
+  DIR/   numbered images frame_0000.png, frame_0001.png, ...
+Colors and opacity mean the same values in all images: the scene's range, or that of all steps shown.
 
 Examples:
   strataray animate REEK.EGRID --over steps --property SWAT -o flood.png
   strataray animate REEK.EGRID --over steps --steps 2000-01-01..last --every 2 --fps 4 -o flood.gif
   strataray animate REEK.EGRID --over orbit --scene scene.json --frames 120 -o turn.png
-  strataray animate REEK.EGRID --over orbit --degrees -90 -o pictures/")]
+  strataray animate REEK.EGRID --over orbit --degrees -90 -o images/")]
 pub struct Arguments {
     /// Any file of the case, or its base name.
     case: PathBuf,
     #[command(flatten)]
     options: SceneOptions,
-    /// What changes from picture to picture: the time step, or the camera's azimuth.
+    /// What changes from image to image: the time step, or the camera's azimuth.
     #[arg(long, value_enum)]
     over: Over,
     /// With `--over steps`: first and last step, each a number, a date, first or last; all steps by default.
@@ -42,19 +42,19 @@ pub struct Arguments {
     /// With `--over steps`: take each Nth step only.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     every: Option<u32>,
-    /// With `--over orbit`: number of pictures [default: 72].
+    /// With `--over orbit`: number of images [default: 72].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
     frames: Option<u32>,
     /// With `--over orbit`: how far to turn; below 0 the other way around [default: 360].
     #[arg(long, allow_hyphen_values = true)]
     degrees: Option<f64>,
-    /// Pictures a second, 0.2 to 60 [default: 10 over steps, 24 over orbit].
+    /// Images per second, 0.2 to 60 [default: 10 over steps, 24 over orbit].
     #[arg(long)]
     fps: Option<f64>,
-    /// Seconds that the last picture stands longer, up to 60 [default: 1 over steps, 0 over orbit].
+    /// Extra seconds for the last image, up to 60 [default: 1 over steps, 0 over orbit].
     #[arg(long, value_name = "SECONDS")]
     hold: Option<f64>,
-    /// Film to write: .png (animated), .gif, .mp4 (see below), or a folder DIR/.
+    /// Animation to write: .gif, .png (animated), .mp4 (see below), or a folder DIR/.
     #[arg(short, long)]
     output: PathBuf,
     /// The model alone: no title, legend, info line or axes.
@@ -73,7 +73,7 @@ enum Over {
 }
 
 /// What a user who pressed Ctrl-C reads.
-const CANCELLED: &str = "the film was cancelled; nothing was written";
+const CANCELLED: &str = "the animation was canceled; nothing was written";
 
 pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let reporter = Reporter::new(arguments.verbosity);
@@ -87,7 +87,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
     }
     let pictures = u32::try_from(sequence.count())?;
     let [low, high] = sequence.range();
-    reporter.detail(&format!("{pictures} pictures of values {low} to {high}"));
+    reporter.detail(&format!("{pictures} images of values {low} to {high}"));
     let film = Film::create(&arguments.output, shape(arguments, scene.size, pictures))?;
     let gpu = arguments.options.open_gpu(&reporter)?;
     let mut renderer = Renderer::new(gpu, &case.grid)?;
@@ -119,7 +119,7 @@ fn check(arguments: &Arguments) -> anyhow::Result<()> {
     }
     ensure!(
         !(over_steps && arguments.options.picks_step()),
-        "--step is one step; choose those of a film with --steps A..B"
+        "--step is one step; choose those of an animation with --steps A..B"
     );
     let within = |option, value: Option<f64>, [low, high]: [f64; 2]| {
         let fits = value.is_none_or(|v| (low..=high).contains(&v));

@@ -14,12 +14,12 @@ use super::scene_options::SceneOptions;
 
 #[derive(clap::Args)]
 #[command(after_help = "\
-Writes into DIR, each time anew:
+Writes into DIR, replacing what is there:
   compare.md     who is right and who is fast: tables with links to all else
   compare.json   a row of figures for each strategy and view
-  sheet.png      all pictures side by side with their difference maps
+  sheet.png      all images side by side with their difference maps
   time.png, psnr.png, ssim.png, ciede2000.png   figures over the views
-  view_N_STRATEGY.png, view_N_STRATEGY_difference.png   pictures and CIEDE2000 difference maps
+  view_N_STRATEGY.png, view_N_STRATEGY_difference.png   images and CIEDE2000 difference maps
 
 Without --reference the accurate strategy is what the others are measured against.
 
@@ -44,13 +44,13 @@ pub struct Arguments {
     /// Measure against the f64 reference on the CPU, which is slow.
     #[arg(long)]
     reference: bool,
-    /// Compare in N views, half a turn of the camera about each of x, y and z in all; one view by default.
+    /// Compare in N views, half a rotation of the camera about each of x, y and z in turn; one view by default.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
     views: Option<u32>,
-    /// Axis of the turn: x east, y north, z up, or all three one after another [default: all].
+    /// Axis of the rotation: x east, y north, z up, or all three one after another [default: all].
     #[arg(long, value_enum, requires = "views", hide_possible_values = true)]
     turn: Option<TurnAxis>,
-    /// Frames to time for each picture, after one that is not timed.
+    /// Frames to time for each image, after one that is not timed.
     #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..))]
     frames: u32,
     /// CIEDE2000 difference at which the colors of difference maps end.
@@ -104,14 +104,14 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
     })?;
     ensure!(
         done > 0,
-        "the comparison was cancelled before a view was done"
+        "the comparison was canceled before a view was done"
     );
     let rows = report.finish()?;
     print!("{}", summary(&rows));
     let folder = arguments.output.display();
     ensure!(
         done == all,
-        "the comparison was cancelled; {folder} holds {done} of {all} views"
+        "the comparison was canceled; {folder} holds {done} of {all} views"
     );
     Ok(())
 }

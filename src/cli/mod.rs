@@ -36,24 +36,24 @@ struct Arguments {
     command: Option<Command>,
     /// Cases to open in the viewer.
     cases: Vec<PathBuf>,
-    /// Read the cases again when their files change, as while a simulation runs.
+    /// Reload the cases when their files change, for example while a simulation runs.
     #[arg(long)]
     watch: bool,
 }
 
 #[derive(Subcommand)]
 enum Command {
-    /// What a case holds.
+    /// Tells what a case holds.
     Info(info::Arguments),
-    /// One picture, no window needed.
+    /// Renders one image, without a window.
     Render(render::Arguments),
-    /// A film over time steps or around the model, or its numbered pictures.
+    /// Renders an animation over time steps or around the model, or its numbered images.
     Animate(animate::Arguments),
-    /// What a click at a pixel of the picture selects.
+    /// Tells what a click at a pixel of the image selects.
     Pick(pick::Arguments),
     /// Finds the cell, its parameters and the value at given points.
     Probe(probe::Arguments),
-    /// Strategies side by side: pictures, difference maps, figures.
+    /// Compares strategies side by side: images, difference maps, figures.
     Compare(compare::Arguments),
     /// Times loading and rendering on this machine.
     Bench(bench::Arguments),
@@ -64,10 +64,10 @@ enum Command {
 /// How much to say on standard error.
 #[derive(clap::Args, Clone, Copy)]
 pub struct Verbosity {
-    /// Say more, such as the time of each stage.
+    /// Print more, such as the time of each stage.
     #[arg(long, global = true)]
     verbose: bool,
-    /// Say nothing but errors.
+    /// Print errors only.
     #[arg(long, global = true, conflicts_with = "verbose")]
     quiet: bool,
 }

@@ -23,10 +23,10 @@ pub struct Arguments {
     case: PathBuf,
     #[command(flatten)]
     options: SceneOptions,
-    /// Pixel of the picture that `render` writes: X to the right and Y down, both from 0.
+    /// Pixel of the image that `render` writes: X to the right and Y down, both from 0.
     #[arg(long, value_name = "X,Y", allow_hyphen_values = true)]
     at: String,
-    /// The picture has no legend, title or axes: that of `render --plain`.
+    /// The image has no legend, title or axes, as with `render --plain`.
     #[arg(long)]
     plain: bool,
     /// Print JSON.
@@ -74,7 +74,7 @@ fn place(shot: &Shot, size: [u32; 2], [x, y]: [i64; 2]) -> anyhow::Result<DVec2>
     let [width, height] = size.map(i64::from);
     anyhow::ensure!(
         (0..width).contains(&x) && (0..height).contains(&y),
-        "--at {x},{y}: the picture has {width} x {height} pixels, so X goes from 0 to {} and Y from 0 to {}",
+        "--at {x},{y}: the image has {width} x {height} pixels, so X goes from 0 to {} and Y from 0 to {}",
         width - 1,
         height - 1
     );

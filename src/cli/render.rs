@@ -27,7 +27,7 @@ pub struct Arguments {
     case: PathBuf,
     #[command(flatten)]
     options: SceneOptions,
-    /// Picture to write: .png, or .exr for linear values.
+    /// Image to write: .png, or .exr for linear values.
     #[arg(short, long)]
     output: PathBuf,
     /// Write statistics (JSON).
@@ -75,7 +75,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
             .bar("reference", |progress| {
                 reference::render(&case.grid, &shot.view, progress)
             })
-            .context("the reference was cancelled")?
+            .context("the reference was canceled")?
     } else {
         on_gpu(arguments, &case, &shot, stages, &reporter)?
     };
@@ -107,7 +107,7 @@ fn on_gpu(
             .bar("rendering", |progress| {
                 renderer.render(&case.grid, view, &|f| progress(f))
             })?
-            .context("the picture was cancelled")
+            .context("the image was canceled")
     };
     let start = Instant::now();
     let first = frame()?;

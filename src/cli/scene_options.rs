@@ -33,10 +33,10 @@ pub struct SceneOptions {
     /// Values within a cell.
     #[arg(long)]
     interpolation: Option<Interpolation>,
-    /// Cells as solid bodies, or rays through the volume; by itself what shows more of the property.
+    /// Opaque cells, or rays through the inside; by default the one that shows more of the property.
     #[arg(long)]
     mode: Option<Mode>,
-    /// Picture size, such as 1000x1000.
+    /// Image size, such as 1000x1000.
     #[arg(long, value_name = "WxH")]
     pub size: Option<String>,
     /// Occlusion toward the viewer, and where it is found.

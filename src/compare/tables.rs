@@ -165,7 +165,7 @@ fn conditions(setting: &Setting, rows: &[Row], reference_times: &[Duration]) -> 
     let done = rows.last().map_or(0, |row| row.view + 1);
     let views = match done == views {
         true => views.to_string(),
-        false => format!("{done} of {views}: the rest was cancelled"),
+        false => format!("{done} of {views}: the rest was canceled"),
     };
     let size = format!("{} x {} x {}", dims.ni, dims.nj, dims.nk);
     let mut lines = vec![

@@ -42,7 +42,7 @@ pub enum GpuError {
     },
     /// A dispatch is larger than the adapter allows.
     #[error(
-        "the shader {shader} would need {groups:?} workgroups and the adapter takes {limit} along an axis; make the picture smaller"
+        "the shader {shader} would need {groups:?} workgroups and the adapter takes {limit} along an axis; make the image smaller"
     )]
     TooManyGroups {
         /// Shader and entry.
@@ -145,7 +145,7 @@ impl Gpu {
         };
         if offered.max_storage_buffers_per_shader_stage < needed {
             return Err(unsuitable(format!(
-                "it offers {} storage buffers a shader and {needed} are needed",
+                "it offers {} storage buffers per shader stage and {needed} are needed; install a Vulkan driver (on Debian the package mesa-vulkan-drivers)",
                 offered.max_storage_buffers_per_shader_stage
             )));
         }

@@ -118,7 +118,7 @@ impl FrameRenderer {
         if view.size.iter().any(|&n| n > limit) {
             return Err(GpuError::Unsuitable {
                 adapter: gpu.info.name.clone(),
-                reason: format!("pictures are limited to {limit} pixels each way"),
+                reason: format!("images are limited to {limit} pixels in each direction"),
             });
         }
         let target = target::create(gpu, view.size);

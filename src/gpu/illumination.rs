@@ -714,7 +714,7 @@ impl Emitters {
                     let work = steps * f64::from(lighting.rays);
                     if software && work > MOST_RAY_WORK {
                         return Err(GpuError::Device(format!(
-                            "lighting.rays: {} over cones of {steps:.0} steps are too many for an adapter in software; use at most {:.0}, or a smaller volume or length",
+                            "lighting.rays: {} over cones of {steps:.0} steps are too many for a software adapter; use at most {:.0}, or a smaller volume or length",
                             lighting.rays,
                             (MOST_RAY_WORK / steps).floor().max(1.0)
                         )));

@@ -56,7 +56,7 @@ impl Loaded {
         let length = named.map_or(Some(implied), LengthUnit::from_name);
         let length = length.unwrap_or_else(|| {
             about.notes.push(format!(
-                "GRIDUNIT {} is not known: lengths are taken for {}",
+                "GRIDUNIT {} is not known: lengths are taken as {}",
                 named.unwrap_or_default(),
                 implied.name()
             ));

@@ -22,7 +22,7 @@ pub struct Comparison {
 /// The pictures have unlike sizes, or none.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "pictures of {}x{} and {}x{} pixels cannot be compared: render both at one size",
+    "images of {}x{} and {}x{} pixels cannot be compared: render both at one size",
     .0[0][0], .0[0][1], .0[1][0], .0[1][1]
 )]
 pub struct UnlikeSizes([[u32; 2]; 2]);

@@ -11,11 +11,11 @@ use super::draft::Draft;
 #[derive(Debug, thiserror::Error)]
 pub enum PictureError {
     /// The extension is neither .png nor .exr.
-    #[error("{0}: pictures are written as .png or .exr")]
+    #[error("{0}: images are written as .png or .exr")]
     Format(PathBuf),
     /// The extension is none of a film.
     #[error(
-        "{0}: films are written as .png (animated), .gif or .mp4, or as numbered pictures into a folder (DIR/)"
+        "{0}: animations are written as .gif, .png (animated) or .mp4, or as numbered images into a folder (DIR/)"
     )]
     FilmFormat(PathBuf),
     /// This build writes no MP4.
@@ -25,7 +25,7 @@ pub enum PictureError {
     NoMp4(PathBuf),
     /// A folder holds more pictures than the film will have.
     #[error(
-        "{0} is left from a longer film; remove it and those behind it, or name another folder"
+        "{0} is left from a longer animation; remove it and those after it, or name another folder"
     )]
     Longer(PathBuf),
     /// The file could not be written.

@@ -19,11 +19,11 @@ const MOST_LINES: usize = 4;
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum SheetError {
     /// There is no picture, or one without pixels.
-    #[error("a contact sheet needs at least one picture with pixels")]
+    #[error("a contact sheet needs at least one image with pixels")]
     Empty,
     /// The pictures have unlike sizes.
     #[error(
-        "picture {number} is {}x{} pixels, the first {}x{}: a contact sheet takes one size",
+        "image {number} is {}x{} pixels, the first {}x{}: a contact sheet takes one size",
         .size[0], .size[1], .first[0], .first[1]
     )]
     UnlikeSizes {
@@ -35,7 +35,7 @@ pub enum SheetError {
         first: [u32; 2],
     },
     /// The sheet would be too wide or too high.
-    #[error("a contact sheet of {columns} by {rows} pictures is too large: use fewer")]
+    #[error("a contact sheet of {columns} by {rows} images is too large: use fewer")]
     TooLarge {
         /// Pictures in a row.
         columns: usize,
@@ -240,7 +240,7 @@ mod tests {
         assert!(
             unlike
                 .to_string()
-                .starts_with("picture 3 is 4x6 pixels, the first 6x4")
+                .starts_with("image 3 is 4x6 pixels, the first 6x4")
         );
         // The sizes alone decide, so nothing is allocated first.
         let huge = Rgb8 {

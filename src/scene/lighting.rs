@@ -56,13 +56,13 @@ impl Default for LightingSpec {
 #[serde(rename_all = "snake_case")]
 #[clap(rename_all = "snake_case")]
 pub enum LightMode {
-    /// Not at all: nothing is shaded.
+    /// No shading.
     Off,
-    /// At every sample of a ray.
+    /// By a cone at every sample of a ray: slower, more exact.
     Image,
-    /// Before the rays, in a light volume that they sample.
+    /// Precomputed in a light volume that the rays sample: fast.
     Preilluminated,
-    /// At every sample, by many rays over the cone: slow, for comparison.
+    /// By many rays over the cone at every sample: slow, for comparison.
     MonteCarlo,
 }
 

@@ -241,11 +241,10 @@ pub enum StepSpec {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
 #[serde(rename_all = "lowercase")]
 pub enum Mode {
-    /// Rays through the inside of the cells.
+    /// Rays through the inside of the cells: the values looked for are solid.
     #[default]
     Volume,
-    /// The cells as solid bodies: their outer faces and the sections of clip planes, opaque, each cell in the
-    /// color of its value.
+    /// Opaque cells: their outer faces and the sections of clip planes, each cell in the color of its value.
     Cells,
 }
 

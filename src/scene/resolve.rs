@@ -43,14 +43,14 @@ pub enum SceneError {
     Empty,
     /// The property is the same at all steps.
     #[error(
-        "{0} is static, so there is no film over its steps; name a property that changes with time, or turn the camera"
+        "{0} is static, so there is no animation over its steps; name a property that changes with time, or animate over the orbit"
     )]
     Static(String),
     /// The steps of a film are not what they should be.
     #[error("steps: {0}")]
     Steps(String),
     /// A turn of the camera is not what it should be.
-    #[error("a turn needs at least one view and a finite number of degrees")]
+    #[error("a rotation needs at least one view and a finite number of degrees")]
     Turn,
 }
 

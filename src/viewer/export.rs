@@ -109,7 +109,7 @@ impl Export {
             let made = match make(&spec, &path, &progress) {
                 Ok(true) => Ok(format!("saved {}", path.display())),
                 Ok(false) => Err(format!(
-                    "{} was cancelled; nothing was written",
+                    "{} was canceled; nothing was written",
                     path.display()
                 )),
                 Err(error) => Err(error.to_string()),
@@ -162,7 +162,7 @@ impl Drop for Export {
 
 pub(super) type Fallible<T> = Result<T, Box<dyn std::error::Error>>;
 
-/// Makes the file; false where it was cancelled.
+/// Makes the file; false where it was canceled.
 fn make(spec: &ExportSpec, path: &Path, progress: &dyn Fn(f64) -> bool) -> Fallible<bool> {
     let case = &spec.case;
     let (fps, sequence) = match spec.kind {

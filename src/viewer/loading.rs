@@ -54,7 +54,7 @@ impl Loading {
                         first: Box::new(first),
                     })
                 }
-                Ok(None) => Err("opening it was cancelled".into()),
+                Ok(None) => Err("opening it was canceled".into()),
                 Err(error) => Err(error.to_string()),
             };
             // Nobody listens where the tab was closed meanwhile.

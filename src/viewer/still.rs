@@ -19,7 +19,7 @@ use crate::picture::{
 use crate::renderer::Renderer;
 use crate::scene::{Scene, View};
 
-/// Makes one picture; false where it was cancelled.
+/// Makes one picture; false where it was canceled.
 pub fn still(spec: &ExportSpec, path: &Path, progress: &dyn Fn(f64) -> bool) -> Fallible<bool> {
     let format = Format::from_path(path)?;
     let mut renderer = StillRenderer::new()?;
@@ -71,7 +71,7 @@ impl StillRenderer {
         })
     }
 
-    /// The image of a view; `None` where it was cancelled.
+    /// The image of a view; `None` where it was canceled.
     fn image(
         &mut self,
         case: &Arc<Case>,
@@ -91,7 +91,7 @@ impl StillRenderer {
         Ok(frame.map(|frame| frame.image))
     }
 
-    /// A scene with what is written and marked on it; `None` where it was cancelled.
+    /// A scene with what is written and marked on it; `None` where it was canceled.
     fn picture(
         &mut self,
         spec: &ExportSpec,
@@ -110,7 +110,7 @@ impl StillRenderer {
         }))
     }
 
-    /// Two pictures as the window shows them; `None` where that was cancelled.
+    /// Two pictures as the window shows them; `None` where that was canceled.
     fn both(
         &mut self,
         spec: &ExportSpec,

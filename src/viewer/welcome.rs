@@ -121,7 +121,7 @@ pub fn waiting(ui: &mut Ui, document: &Document) -> Option<Answer> {
             ui.heading(format!("{} was not opened", document.title()));
             ui.add_space(12.0);
             let red = Color32::from_rgb(220, 80, 60);
-            let error = error.as_deref().unwrap_or("opening it was cancelled");
+            let error = error.as_deref().unwrap_or("opening it was canceled");
             ui.add(Label::new(RichText::new(error).color(red)).wrap());
             ui.add_space(12.0);
             if ui.button("Try again").clicked() {

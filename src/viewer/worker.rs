@@ -133,7 +133,7 @@ pub enum Answer {
     Progress(f32),
     /// A picture of a side.
     Picture(usize, Box<Picture>),
-    /// It was cancelled.
+    /// It was canceled.
     Cancelled,
     /// What is seen at the place, and what lies before and behind it.
     Picked(Why, Box<Pick>),

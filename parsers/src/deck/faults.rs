@@ -76,7 +76,7 @@ fn face_name(item: &Item) -> Result<String, Mistake> {
         return Ok(name);
     }
     let message =
-        format!("'{name}' is not a face; expected X, Y, Z, I, J or K, with + or - behind it");
+        format!("'{name}' is not a face; expected X, Y, Z, I, J or K, with + or - after it");
     Err(Mistake::new(item.at, message))
 }
 

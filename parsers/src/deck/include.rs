@@ -49,7 +49,7 @@ impl Scan<'_> {
                 .map(|place| place.display().to_string())
                 .collect();
             let message = format!(
-                "'{written}' is not found; looked for {}",
+                "'{written}' was not found; looked for {}",
                 places.join(" and ")
             );
             source.error(at, &keyword.name, message)
@@ -95,10 +95,7 @@ impl Scan<'_> {
     ) -> Result<Flow, ParseError> {
         let name = keyword.name.as_str();
         if self.open.contains(&canonical(path)) {
-            let message = format!(
-                "'{}' is being read already: the files include each other in a loop",
-                path.display()
-            );
+            let message = format!("'{}' includes itself through other files", path.display());
             return Err(source.error(at, name, message));
         }
         if self.open.len() >= DEEPEST || self.opened >= MOST_FILES {

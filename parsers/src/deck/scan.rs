@@ -342,7 +342,7 @@ impl Scan<'_> {
             }),
             None => place.warn(
                 self.warnings,
-                "ADDZCORN with more than a value and a box is not evaluated: depths are as ZCORN gives them",
+                "ADDZCORN with more than a value and a box is not evaluated: depths are those of ZCORN",
             ),
         }
         Ok(())
@@ -430,7 +430,7 @@ impl Scan<'_> {
             "EQLZCORN" => self.warn(
                 source,
                 keyword.at,
-                "EQLZCORN is not evaluated: depths are as ZCORN gives them",
+                "EQLZCORN is not evaluated: depths are those of ZCORN",
             ),
             _ => {}
         }

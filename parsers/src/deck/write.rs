@@ -132,13 +132,13 @@ impl<W: Write> DeckWriter<W> {
     /// Writes a property with one value for each of all cells; NaN becomes a default (`1*`).
     ///
     /// # Errors
-    /// When writing fails, a value is infinite, or `name` is no keyword of at most 8 characters
+    /// When writing fails, a value is infinite, or `name` is not a keyword of at most 8 characters
     /// that starts with a letter.
     pub fn property<T: Number>(&mut self, name: &str, values: &[T]) -> io::Result<()> {
         let starts = name.starts_with(|c: char| c.is_ascii_alphabetic());
         let spelled = name.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_');
         if !starts || !spelled || name.len() > 8 {
-            return Err(refused(format!("{name:?} is no keyword")));
+            return Err(refused(format!("{name:?} is not a keyword")));
         }
         if let Some(number) = geometry::first_not(values, |v| !v.is_infinite()) {
             return Err(refused(format!("{name}: value {number} is infinite")));

@@ -43,7 +43,7 @@ pub(super) fn index(file: &MappedFile) -> (Vec<Entry>, Option<ParseError>) {
                 // The array before it is to blame as often as the header itself.
                 if let (true, Some(last)) = (fault.keyword.is_empty(), entries.last()) {
                     fault.keyword = last.name().to_owned();
-                    fault.message = format!("behind it: {}", fault.message);
+                    fault.message = format!("after it: {}", fault.message);
                 }
                 return (entries, Some(stop(fault)));
             }
@@ -114,7 +114,7 @@ fn header(bytes: &[u8], at: u64) -> Result<Header<'_>, Fault> {
             if rest.starts_with(b" '") {
                 "this is a formatted (text) file, and those are not read yet"
             } else {
-                "this is not an array header; the file is no Eclipse binary file or is damaged"
+                "not an array header: this is not an Eclipse binary file, or it is damaged"
             },
         )
     };

@@ -28,7 +28,7 @@ impl<W: Write> RecordWriter<W> {
     /// Writes an INTE array.
     ///
     /// # Errors
-    /// When `name` is no keyword of at most 8 ASCII characters, or writing fails.
+    /// When `name` is not a keyword of at most 8 ASCII characters, or writing fails.
     pub fn inte(&mut self, name: &str, values: &[i32]) -> io::Result<()> {
         self.numbers(name, Kind::Inte, values, i32::to_be_bytes)
     }
@@ -153,7 +153,7 @@ impl<W: Write> RecordWriter<W> {
         let is_keyword =
             (1..=8).contains(&name.len()) && name.bytes().all(|b| b.is_ascii_graphic());
         if !is_keyword {
-            return Err(refused(format!("{name:?} is no keyword")));
+            return Err(refused(format!("{name:?} is not a keyword")));
         }
         let count = i32::try_from(count).map_err(|e| refused(format!("{name}: {e}")))?;
         self.out.write_all(&16i32.to_be_bytes())?;

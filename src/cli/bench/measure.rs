@@ -145,7 +145,7 @@ fn strategy(
             };
             renderer.render(&case.grid, view, &told)
         })?;
-        let mut frame = frame.context("the picture was cancelled")?;
+        let mut frame = frame.context("the image was canceled")?;
         frame.stats.cpu = cpu_time().saturating_sub(cpu);
         Ok(frame)
     };

@@ -32,7 +32,7 @@ pub struct Gif {
 impl Gif {
     pub fn create(path: &Path, shape: FilmShape) -> Result<Self, Cause> {
         let [Ok(width), Ok(height)] = shape.size.map(u16::try_from) else {
-            return Err("pictures of a GIF have at most 65535 pixels each way".into());
+            return Err("images of a GIF have at most 65535 pixels each way".into());
         };
         let file = BufWriter::new(File::create(path)?);
         let mut encoder = gif::Encoder::new(file, width, height, &[])?;

@@ -165,7 +165,7 @@ impl Film {
         let (added, wanted) = (self.added, self.shape.pictures);
         let end = || {
             if added != wanted {
-                return Err(format!("the film has {added} pictures instead of {wanted}").into());
+                return Err(format!("the animation has {added} images instead of {wanted}").into());
             }
             self.encoder.finish()?;
             Ok(self.draft.keep()?)

@@ -40,7 +40,7 @@ impl Mp4 {
         let (smaller, larger) = (padded[0].min(padded[1]), padded[0].max(padded[1]));
         if smaller < SMALLEST || larger > LARGEST[0] || smaller > LARGEST[1] {
             let [w, h] = shape.size;
-            return Err(format!("pictures of {w}x{h} do not fit H.264: use {SMALLEST}x{SMALLEST} to 3840x2160, or name a .png").into());
+            return Err(format!("images of {w}x{h} do not fit H.264: use {SMALLEST}x{SMALLEST} to 3840x2160, or name a .png").into());
         }
         // What the conversion below computes; sRGB and BT.709 share their primaries.
         let color = VuiConfig::bt709()
