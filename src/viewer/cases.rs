@@ -150,8 +150,8 @@ mod tests {
         // Text files beside a case that was run are parts of decks.
         make("b.grdecl");
         assert_eq!(meaning(folder.path()), Meaning::Case(at("A.EGRID")));
-        make("c.data");
-        let both = vec![at("A.EGRID"), at("c.data")];
+        make("d.data");
+        let both = vec![at("A.EGRID"), at("d.data")];
         assert_eq!(meaning(folder.path()), Meaning::Several(both));
         assert_eq!(meaning(&at("a")), Meaning::Case(at("A.EGRID")));
         assert_eq!(meaning(&at("B")), Meaning::Case(at("b.grdecl")));
@@ -171,7 +171,8 @@ mod tests {
         let at = |name: &str| folder.path().join(name);
         std::fs::write(at("poro.grdecl"), "PORO\n 8*0.2 /\n").unwrap();
         assert!(matches!(meaning(folder.path()), Meaning::Nothing(_)));
-        std::fs::write(at("grid.grdecl"), "SPECGRID\n 2 2 2 1 F /\n").unwrap();
+        let grid = "SPECGRID\n 2 2 2 1 F /\nCOORD\n 54*0 /\nZCORN\n 64*1000 /\n";
+        std::fs::write(at("grid.grdecl"), grid).unwrap();
         assert_eq!(meaning(folder.path()), Meaning::Case(at("grid.grdecl")));
     }
 

@@ -265,7 +265,7 @@ mod tests {
         assert!(file("turn.gif").metadata().unwrap().len() > 100);
         let error = made(spec(Kind::Steps { fps: 5.0 }), file("b.gif"), true).unwrap_err();
         assert!(
-            error.contains("cancelled") && !file("b.gif").exists(),
+            error.contains("canceled") && !file("b.gif").exists(),
             "{error}"
         );
         let error = made(spec(Kind::Still), file("c.tiff"), false).unwrap_err();

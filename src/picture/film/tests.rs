@@ -165,7 +165,7 @@ fn unfinished_films_leave_nothing() {
             assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
             if finish {
                 let error = film.finish().unwrap_err().to_string();
-                assert!(error.contains("1 pictures instead of 3"), "{error}");
+                assert!(error.contains("1 images instead of 3"), "{error}");
             } else {
                 drop(film);
             }
