@@ -88,7 +88,7 @@ fn the_curve_is_edited_by_keyboard() {
     let moved = points(&driven);
     assert!((moved[1][1] - ramp[1][1] - 0.01).abs() < 1e-9, "{moved:?}");
     driven.press(Modifiers::NONE, Key::Insert);
-    assert_eq!(points(&driven).len(), 4);
+    assert_eq!(points(&driven).len(), ramp.len() + 1);
     driven.press(Modifiers::NONE, Key::Delete);
     assert_eq!(points(&driven), moved);
     // The keys were the curve's: the step is the same. Without the focus they are the player's.

@@ -78,6 +78,7 @@ fn the_transfer_function_is_edited_and_undone() {
     let Some(_) = gpu() else { return };
     let mut driven = Driven::showing(sample());
     let (before, start) = (driven.picture(0), driven.scene().clone());
+    driven.wait_settled();
     let place = driven.place("opacity curve");
     // The last point, wherever it is: the one at the right end.
     let points = driven.scene().transfer.opacity.clone();
@@ -98,8 +99,9 @@ fn the_transfer_function_is_edited_and_undone() {
     };
     let from =
         place.left_top() + place.size() * eframe::egui::vec2(last.0 as f32, 1.0 - last.1 as f32);
-    let nudge = eframe::egui::vec2(2.0, 0.0);
-    driven.drag(from - nudge, place.right_center() - nudge);
+    // Within the curve's edges, which it lies on.
+    let inside = eframe::egui::vec2(-3.0, 3.0);
+    driven.drag(from + inside, place.right_center() + inside);
 
     let edited = driven.scene().transfer.opacity.clone().unwrap();
     let OpacitySpec::Points(points) = &edited else {
