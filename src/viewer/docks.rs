@@ -24,6 +24,8 @@ const STRIP: f32 = 26.0;
 /// Points between the scroll bar of the panels and their edge, which can be dragged.
 const EDGE: i8 = 10;
 
+/// Points beside the panels that belong to their scroll bar.
+const BAR: f32 = 10.0;
 /// Points of the window with curves at first.
 const CURVES: [f32; 2] = [460.0, 280.0];
 
@@ -186,6 +188,8 @@ fn unfolded(
         .show(ui, |ui| {
             // Filled whatever is in it, so that the picture keeps its size.
             let scroll = ScrollArea::vertical().auto_shrink(false);
+            // The bar covers no control: points of the curve lie at its right end.
+            ui.spacing_mut().scroll.floating_allocated_width = BAR;
             scroll.show(ui, |ui| {
                 for panel in list {
                     let title = match (panel.count)(about) {
