@@ -26,17 +26,24 @@ const ANGLES: [f64; 3] = [10.0, 20.0, 30.0];
 /// One for all models, transfer functions and angles.
 const ATTENUATION: f64 = 0.7;
 
-/// An opaque shell, a medium, and a large even haze around something opaque.
-fn opacities() -> [(&'static str, Value); 3] {
+/// An opaque shell, a medium, and a large even haze around something opaque, each with the mean CIEDE2000 over
+/// covered pixels that cones stay within.
+fn opacities() -> [(&'static str, Value, f64); 3] {
     [
-        ("shell", json!([[0, 0], [0.4, 0], [0.5, 0.95], [1, 0.95]])),
+        (
+            "shell",
+            json!([[0, 0], [0.4, 0], [0.5, 0.95], [1, 0.95]]),
+            12.0,
+        ),
         (
             "medium",
             json!([[0, 0.0], [0.3, 0.1], [0.6, 0.3], [1, 0.9]]),
+            4.5,
         ),
         (
             "haze",
             json!([[0, 0.25], [0.75, 0.25], [0.85, 0.9], [1, 0.9]]),
+            4.5,
         ),
     ]
 }
@@ -151,7 +158,7 @@ fn cones_are_close_to_many_rays() {
     let mut rows = Vec::new();
     for (path, camera) in models() {
         let mut subject = Subject::new(&gpu, &path, camera);
-        for (name, opacity) in opacities() {
+        for (name, opacity, most) in opacities() {
             for angle in ANGLES {
                 let row = row(&mut subject, &opacity, angle);
                 let [seven, three, one] = row.cones;
@@ -166,7 +173,8 @@ fn cones_are_close_to_many_rays() {
                     row.none.covered,
                     row.volume
                 );
-                assert!(seven.all.ciede2000_mean < 5.0 && seven.all.ssim > 0.9);
+                // Over all pixels the mean would fall with the background that the framing leaves.
+                assert!(seven.covered < most, "{}", seven.covered);
                 assert!(row.volume < 2.0);
                 rows.push(row);
             }
