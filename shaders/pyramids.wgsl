@@ -8,7 +8,8 @@
 // `classify`: of each brick, how rays pass it: the largest part of the pyramid around it that is empty,
 // even or thin.
 // Departures from the survey: a part covers what is interpolated inside it, half a voxel beyond its sides;
-// rays do not climb the pyramid, each brick knows the part they may pass at once.
+// rays do not climb the pyramid, each brick knows the part they may pass at once; and what is even is so by
+// its values, not by its colors, so that a peak of opacity within the range is stepped over.
 #import layout
 #import mean
 

@@ -57,7 +57,7 @@ fn top(field: &str, value: &Value) -> Value {
 #[test]
 fn err_values_out_of_range_name_their_field() {
     // What is refused, and what is as far as one may go.
-    let cases: [(Part, &str, Value, Value); 25] = [
+    let cases: [(Part, &str, Value, Value); 27] = [
         (
             occlusion,
             "occlusion.half_angle_degrees",
@@ -100,6 +100,8 @@ fn err_values_out_of_range_name_their_field() {
         (top, "ambient", json!(1.5), json!(1)),
         (top, "rays", json!(0), json!(1)),
         (top, "rays", json!(1025), json!(1024)),
+        (top, "rays_gap", json!(-0.1), json!(0)),
+        (top, "rays_gap", json!(20.5), json!(20)),
         (
             volume,
             "volume.size",
@@ -188,7 +190,7 @@ fn nothing_said_is_no_light_and_all_said_comes_back() {
         },
         "ambient": 0.2, "blinn_phong": true, "exact_colors": true,
         "volume": {"budget_mb": 7, "size": [10, 11, 12], "light_size": [5, 6, 7]},
-        "rays": 32, "seed": 5,
+        "rays": 32, "rays_gap": 2.5, "seed": 5,
     });
     let spec: LightingSpec = serde_json::from_value(all.clone()).unwrap();
     let written = serde_json::to_value(&spec).unwrap();

@@ -379,9 +379,9 @@ impl Illumination {
             step: Lighting::REFERENCE_STEP as f32,
             gradient_scale: (view.transfer.reference_length / space.sigma) as f32,
             work: emitters.work,
+            rays_gap: lighting.rays_gap as f32,
             reserved0: 0,
             reserved1: 0,
-            reserved2: 0,
         };
         self.info = gpu.uniform("lighting", &info);
         self.emitters = gpu.storage("emitters", &emitters.emitters)?;

@@ -31,6 +31,9 @@ pub struct LightingSpec {
     pub volume: VolumeSpec,
     /// Rays over a cone in the mode `monte_carlo`.
     pub rays: u32,
+    /// Distance at which rays over a cone start, in the mode `monte_carlo` and in the reference, in standard
+    /// deviations of the finest level.
+    pub rays_gap: f64,
     /// Picks the random numbers of the mode `monte_carlo`.
     pub seed: u32,
 }
@@ -46,6 +49,7 @@ impl Default for LightingSpec {
             exact_colors: false,
             volume: VolumeSpec::default(),
             rays: 16,
+            rays_gap: 1.0,
             seed: 0,
         }
     }
@@ -94,7 +98,7 @@ impl Default for OcclusionSpec {
             mode: LightMode::Preilluminated,
             half_angle_degrees: 20.0,
             splits: 7,
-            attenuation: 0.6,
+            attenuation: 1.0,
             strength: 1.0,
             gap: 3.0,
             length: 0.5,
@@ -246,13 +250,13 @@ impl LightingSpec {
                 ..none
             },
             "key" => Self {
-                occlusion: occlusion(20.0, 0.6, 1.0),
+                occlusion: Some(OcclusionSpec::default()),
                 lights: vec![LightSpec::key()],
                 blinn_phong: true,
                 ..none
             },
             "technical" => Self {
-                occlusion: occlusion(20.0, 0.6, 1.0),
+                occlusion: Some(OcclusionSpec::default()),
                 exact_colors: true,
                 ..none
             },
@@ -397,6 +401,9 @@ pub struct Lighting {
     pub exact_colors: bool,
     /// Rays over a cone in the mode `MonteCarlo`.
     pub rays: u32,
+    /// Distance at which they start, in standard deviations of the finest level. Cones have a gap of their own:
+    /// their sections are wide, and would count the surface that they start from.
+    pub rays_gap: f64,
     /// Picks their random numbers.
     pub seed: u32,
     /// World-space edges of the model's box along the grid's x, y and depth.
@@ -462,7 +469,7 @@ impl Lighting {
     }
 
     /// Distance of the samples of the rays of the mode `MonteCarlo`, in standard deviations of the finest
-    /// level (campagnolo-2021, 3.5: half a voxel). They start where the cone does.
+    /// level (campagnolo-2021, 3.5: half a voxel).
     pub const REFERENCE_STEP: f64 = 0.5;
 }
 
@@ -522,6 +529,7 @@ pub(crate) fn resolve(
         blinn_phong: spec.blinn_phong && !spec.lights.is_empty(),
         exact_colors: spec.exact_colors,
         rays: spec.rays,
+        rays_gap: within("lighting.rays_gap", spec.rays_gap, [0.0, 20.0])?,
         seed: spec.seed,
         extent,
         cells,
