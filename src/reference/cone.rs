@@ -32,7 +32,7 @@ impl Integrator<'_> {
         random: &mut fastrand::Rng,
     ) -> f64 {
         let lighting = &self.view.lighting;
-        let sigma = lighting.sigma(true);
+        let sigma = lighting.sigma();
         let step = Lighting::REFERENCE_STEP * sigma;
         let range = [lighting.rays_gap * sigma, cone.length.min(reach)];
         let (right, up) = axis.any_orthonormal_pair();

@@ -411,6 +411,8 @@ pub struct Lighting {
     /// Cells of the grid.
     pub cells: usize,
     volume: VolumeSpec,
+    /// What [`Self::size`] gives: decided once, for the device and the reference alike.
+    size: [u32; 3],
 }
 
 /// Voxels along an axis, at most.
@@ -424,6 +426,22 @@ const VOXEL_BYTES: f64 = 2.0 * (2.0 + 1.0 / 7.0);
 /// Megabytes of the extinction volume where the scene says nothing: of a GPU, and of an adapter in
 /// software.
 const BUDGET_MB: [u32; 2] = [160, 10];
+
+impl VolumeSpec {
+    /// Voxels of the extinction volume over a box of a grid of so many cells: cubes in world space, unless the
+    /// scene says otherwise.
+    fn voxels(&self, is_software: bool, extent: DVec3, cells: usize) -> [u32; 3] {
+        self.size.unwrap_or_else(|| {
+            let budget = BUDGET_MB[usize::from(is_software)];
+            let bytes = f64::from(self.budget_mb.unwrap_or(budget)) * f64::from(1 << 20);
+            let voxels = (bytes / VOXEL_BYTES).min(VOXELS_A_CELL * cells as f64);
+            let edge = (extent.element_product() / voxels.max(1.0)).cbrt();
+            (extent / edge)
+                .to_array()
+                .map(|n| (n.round() as u32).clamp(4, MOST_ALONG))
+        })
+    }
+}
 
 impl Lighting {
     /// True where nothing is shaded.
@@ -441,30 +459,28 @@ impl Lighting {
         self
     }
 
-    /// Voxels of the extinction volume along the grid's x, y and depth: cubes in world space, unless the
-    /// scene says otherwise.
-    pub fn size(&self, is_software: bool) -> [u32; 3] {
-        self.volume.size.unwrap_or_else(|| {
-            let budget = BUDGET_MB[usize::from(is_software)];
-            let bytes = f64::from(self.volume.budget_mb.unwrap_or(budget)) * f64::from(1 << 20);
-            let voxels = (bytes / VOXEL_BYTES).min(VOXELS_A_CELL * self.cells as f64);
-            let edge = (self.extent.element_product() / voxels.max(1.0)).cbrt();
-            (self.extent / edge)
-                .to_array()
-                .map(|n| (n.round() as u32).clamp(4, MOST_ALONG))
-        })
+    /// The same with the extinction volume that suits an adapter, where the scene names neither size nor budget.
+    #[must_use]
+    pub(super) fn for_adapter(mut self, is_software: bool) -> Self {
+        self.size = self.volume.voxels(is_software, self.extent, self.cells);
+        self
+    }
+
+    /// Voxels of the extinction volume along the grid's x, y and depth.
+    pub fn size(&self) -> [u32; 3] {
+        self.size
     }
 
     /// Voxels of a light volume.
-    pub fn light_size(&self, is_software: bool) -> [u32; 3] {
-        let half = || self.size(is_software).map(|n| n.div_ceil(2));
+    pub fn light_size(&self) -> [u32; 3] {
+        let half = || self.size.map(|n| n.div_ceil(2));
         self.volume.light_size.unwrap_or_else(half)
     }
 
     /// Standard deviation of the finest level of the extinction pyramid, in world space: the mean edge of
-    /// a voxel.
-    pub fn sigma(&self, is_software: bool) -> f64 {
-        let voxels = self.size(is_software).map(f64::from);
+    /// a voxel. Gaps and steps are in units of it.
+    pub fn sigma(&self) -> f64 {
+        let voxels = self.size.map(f64::from);
         (self.extent / DVec3::from_array(voxels)).element_sum() / 3.0
     }
 
@@ -534,6 +550,7 @@ pub(crate) fn resolve(
         extent,
         cells,
         volume: spec.volume,
+        size: spec.volume.voxels(true, extent, cells),
     })
 }
 

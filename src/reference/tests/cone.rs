@@ -92,6 +92,28 @@ fn in_a_uniform_medium_all_rays_are_as_long_as_the_cone() {
 }
 
 #[test]
+fn rays_start_by_the_voxels_that_the_view_decided_on() {
+    let grid = row(&[0.0, 200.0]);
+    let found = [true, false].map(|is_software| {
+        let mut view = row_view(&grid, &[true], 0.03, 5);
+        let extent = view.world_bounds[1] - view.world_bounds[0];
+        let spec = LightingSpec {
+            rays_gap: 2.0,
+            ..LightingSpec::default()
+        };
+        // So many cells that the budget alone decides.
+        view.lighting = crate::scene::lighting::resolve(&spec, extent, 10_000_000).unwrap();
+        let view = view.for_adapter(is_software);
+        let integrator = Integrator::new(&grid, &view);
+        let found = transmittance(&integrator, 100.0, DVec3::X, &cone(20.0, 35.0), 1);
+        let start = 2.0 * view.lighting.sigma();
+        assert!((found - (-0.03 * (35.0 - start)).exp()).abs() < 1e-12);
+        found
+    });
+    assert!(found[1] < found[0] - 1e-3, "{found:?}");
+}
+
+#[test]
 fn rays_end_at_what_they_reach_for_and_when_all_is_dark() {
     let grid = row(&[0.0, 200.0]);
     let view = row_view(&grid, &[true], 0.03, 5);
