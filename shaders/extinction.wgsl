@@ -6,6 +6,7 @@
 // what the pyramid holds. Unit of length is the finest level's standard deviation in world space. Nothing is
 // outside the box.
 #import light
+#import mean
 
 // What is done.
 override WORK: u32 = 1u;
@@ -54,7 +55,8 @@ fn blurred(voxel: vec3u) -> f32 {
         let off = f32(n) - center;
         let relative = off / max(blur.deviation, 1e-3);
         // A Gaussian, or the part of a voxel that lies within the larger one.
-        let weight = select(exp(-0.5 * relative * relative), clamp(reach - abs(off), 0.0, 1.0), WORK == WORK_MEAN);
+        let part = overlap(n, i32(voxel[blur.axis]), count, i32(blur.made_count));
+        let weight = select(exp(-0.5 * relative * relative), part, WORK == WORK_MEAN);
         weights += weight;
         if n >= 0 && n < count {
             var at = vec3i(voxel);

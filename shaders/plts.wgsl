@@ -4,8 +4,9 @@
 // the target and the counters. The first sample of a ray is located through the acceleration grid;
 // each next one by Newton's method in the same cell, then in the neighbor across the face that the
 // result overshoots most, and through the acceleration grid again where the cells do not join.
-// Departure from the paper: the start value is extrapolated with the last inverse Jacobian, so that
-// one iteration usually does, and empty bins are skipped instead of rasterizing the hull. A ray that
+// Departures from the paper: the start value is extrapolated with the last inverse Jacobian, so that
+// one iteration usually does; where the neighbor is not drawn, the grid is asked at once and no other
+// neighbor; and empty bins are skipped instead of rasterizing the hull. A ray that
 // has done tile.work_limit loop iterations pauses: drivers end long loops without a word (llvmpipe
 // after 65,535 iterations of all loops together), and no submission may run for long.
 #import section

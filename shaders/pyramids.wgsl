@@ -1,14 +1,17 @@
 // Pyramids over a resampled volume (volumetric-ray-tracing survey, 8.3 to 8.7).
 //
-// `average`: the average pyramid, the volume's own coarser levels; one thread = one voxel.
+// `average`: the average pyramid, the volume's own coarser levels, each voxel the mean of what it covers of the
+// level below; one thread = one voxel.
 // `summarize`: range of values and least presence of each brick; one thread = one brick.
 // `weigh`: the largest extinction that the transfer function gives to a brick's range.
 // `reduce`: the next level of the pyramid of bricks; one thread = one part of it.
 // `classify`: of each brick, how rays pass it: the largest part of the pyramid around it that is empty,
 // even or thin.
 // Departures from the survey: a part covers what is interpolated inside it, half a voxel beyond its sides;
-// rays do not climb the pyramid, each brick knows the part they may pass at once.
+// rays do not climb the pyramid, each brick knows the part they may pass at once; and what is even is so by
+// its values, not by its colors, so that a peak of opacity within the range is stepped over.
 #import layout
+#import mean
 
 // Values are divided by presence when they are sampled, else absent voxels count as zero.
 override WEIGHTED: bool = true;
@@ -28,24 +31,36 @@ struct Part {
 @group(3) @binding(1) var<uniform> slab: Slab;
 // The level of the volume that is read.
 @group(3) @binding(2) var volume: texture_3d<f32>;
-@group(3) @binding(3) var linear: sampler;
 // As in resample.wgsl.
-@group(3) @binding(4) var<storage, read_write> voxels: array<u32>;
+@group(3) @binding(3) var<storage, read_write> voxels: array<u32>;
 // All levels of the pyramid, bricks first, each x fastest.
-@group(3) @binding(5) var<storage, read_write> parts: array<Part>;
+@group(3) @binding(4) var<storage, read_write> parts: array<Part>;
 // Of each brick, a PASS constant and the level of the part, times 256.
-@group(3) @binding(6) var<storage, read_write> passes: array<u32>;
+@group(3) @binding(5) var<storage, read_write> passes: array<u32>;
 // Largest extinctions of 2^l entries of the transfer table from each on, level after level.
-@group(3) @binding(7) var<storage, read> maxima: array<f32>;
+@group(3) @binding(6) var<storage, read> maxima: array<f32>;
 
 @compute @workgroup_size(8, 8)
 fn average(@builtin(global_invocation_id) id: vec3u) {
     if any(id >= slab.size) {
         return;
     }
-    let size = max(textureDimensions(volume) / 2u, vec3u(1u));
-    // In the middle between eight voxels the interpolated value is their mean.
-    let mean = textureSampleLevel(volume, linear, (vec3f(slab.first + id) + vec3f(0.5)) / vec3f(size), 0.0);
+    let fine = vec3i(textureDimensions(volume));
+    let coarse = max(fine / 2, vec3i(1));
+    let voxel = vec3i(slab.first + id);
+    // An odd number of voxels has no pairs: up to four along an axis lie within a larger one, in whole or in part.
+    let first = voxel * fine / coarse;
+    let end = ((voxel + 1) * fine + coarse - 1) / coarse;
+    var sum = vec4f(0.0);
+    for (var z = first.z; z < end.z; z++) {
+        for (var y = first.y; y < end.y; y++) {
+            let weight = overlap(z, voxel.z, fine.z, coarse.z) * overlap(y, voxel.y, fine.y, coarse.y);
+            for (var x = first.x; x < end.x; x++) {
+                sum += weight * overlap(x, voxel.x, fine.x, coarse.x) * textureLoad(volume, vec3i(x, y, z), 0);
+            }
+        }
+    }
+    let mean = sum / (f32(fine.x) * f32(fine.y) * f32(fine.z));
     let at = (id.z * slab.size.y + id.y) * slab.row + id.x;
     if WIDE {
         voxels[2u * at] = pack2x16float(mean.xy);

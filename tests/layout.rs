@@ -187,9 +187,9 @@ fn structs_of_light_agree() {
         step,
         gradient_scale,
         work,
+        rays_gap,
         reserved0,
-        reserved1,
-        reserved2
+        reserved1
     );
     agrees!(
         m, Emitter, at, kind, axis, cos_outer, color, cos_inner, first, ones, threes, sevens,

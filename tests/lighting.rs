@@ -4,11 +4,14 @@
 mod common;
 
 use common::shape::Shape;
+use glam::DVec3;
 use serde_json::{Value, json};
 use strataray::case::Case;
+use strataray::gpu::volume::Volume;
 use strataray::load;
+use strataray::renderer::Renderer;
 use strataray::scene::lighting::PRESETS;
-use strataray::scene::{self, Lighting, LightingSpec, Scene};
+use strataray::scene::{self, Lighting, LightingSpec, Scene, View};
 
 /// A scene's lighting for a case, or what is wrong with it.
 fn resolved(case: &Case, lighting: &Value) -> Result<Lighting, String> {
@@ -57,7 +60,7 @@ fn top(field: &str, value: &Value) -> Value {
 #[test]
 fn err_values_out_of_range_name_their_field() {
     // What is refused, and what is as far as one may go.
-    let cases: [(Part, &str, Value, Value); 25] = [
+    let cases: [(Part, &str, Value, Value); 27] = [
         (
             occlusion,
             "occlusion.half_angle_degrees",
@@ -100,6 +103,8 @@ fn err_values_out_of_range_name_their_field() {
         (top, "ambient", json!(1.5), json!(1)),
         (top, "rays", json!(0), json!(1)),
         (top, "rays", json!(1025), json!(1024)),
+        (top, "rays_gap", json!(-0.1), json!(0)),
+        (top, "rays_gap", json!(20.5), json!(20)),
         (
             volume,
             "volume.size",
@@ -188,7 +193,7 @@ fn nothing_said_is_no_light_and_all_said_comes_back() {
         },
         "ambient": 0.2, "blinn_phong": true, "exact_colors": true,
         "volume": {"budget_mb": 7, "size": [10, 11, 12], "light_size": [5, 6, 7]},
-        "rays": 32, "seed": 5,
+        "rays": 32, "rays_gap": 2.5, "seed": 5,
     });
     let spec: LightingSpec = serde_json::from_value(all.clone()).unwrap();
     let written = serde_json::to_value(&spec).unwrap();
@@ -241,7 +246,7 @@ fn volumes_have_cubes_and_fit_their_budget() {
         };
         scene.lighting.volume.budget_mb = Some(budget_mb);
         let lighting = scene::resolve(&scene, &case).unwrap().lighting;
-        let size = lighting.size(true);
+        let size = lighting.size();
         let voxels: f64 = size.iter().map(|n| f64::from(*n)).product();
         // Values, extinction and pyramid in half floats.
         let megabytes = 2.0 * (2.0 + 1.0 / 7.0) * voxels / f64::from(1 << 20);
@@ -250,13 +255,61 @@ fn volumes_have_cubes_and_fit_their_budget() {
             (megabytes / f64::from(budget_mb) - 1.0).abs() < 0.06,
             "{megabytes}"
         );
-        let edges = lighting.extent / glam::DVec3::from_array(size.map(f64::from));
+        let edges = lighting.extent / DVec3::from_array(size.map(f64::from));
         assert!(edges.max_element() < 1.1 * edges.min_element(), "{edges}");
-        assert!((lighting.sigma(true) - edges.element_sum() / 3.0).abs() < 1e-9);
-        assert_eq!(lighting.light_size(true), size.map(|n| n.div_ceil(2)));
+        assert!((lighting.sigma() - edges.element_sum() / 3.0).abs() < 1e-9);
+        assert_eq!(lighting.light_size(), size.map(|n| n.div_ceil(2)));
     }
     // A small model has no more voxels than its cells need, whatever the budget; at least a few.
     let small = resolved(&Shape::default().case(), &volume("budget_mb", &json!(500))).unwrap();
-    let voxels: u32 = small.size(false).iter().product();
+    let voxels: u32 = small.size().iter().product();
     assert!(voxels > 1000 && voxels <= 3000, "{voxels}");
+}
+
+/// The view of the sample without a size of the extinction volume, for adapters in software and for a GPU.
+fn for_adapters(case: &Case, volume: &Value) -> [View; 2] {
+    let scene = json!({
+        "size": [8, 6], "property": "PORO", "sampling_step": 50,
+        "lighting": {"occlusion": {}, "volume": volume},
+    });
+    let scene: Scene = serde_json::from_value(scene).unwrap();
+    [true, false].map(|is_software| {
+        let view = scene::resolve(&scene, case).unwrap();
+        view.for_adapter(is_software)
+    })
+}
+
+#[test]
+fn an_adapter_decides_the_volume_where_the_scene_does_not() {
+    let case = load::open(&common::sample()).unwrap();
+    let [software, gpu] = for_adapters(&case, &json!({})).map(|v| v.lighting);
+    assert!(gpu.sigma() < 0.95 * software.sigma());
+    assert!(gpu.size().iter().zip(software.size()).all(|(a, b)| *a > b));
+    let voxels = DVec3::from_array(gpu.size().map(f64::from));
+    assert!((gpu.sigma() - (gpu.extent / voxels).element_sum() / 3.0).abs() < 1e-9);
+    for volume in [json!({"budget_mb": 3}), json!({"size": [20, 30, 10]})] {
+        let [software, gpu] = for_adapters(&case, &volume).map(|v| v.lighting);
+        assert_eq!(gpu, software);
+    }
+}
+
+#[test]
+fn a_device_takes_the_volume_of_the_view_and_not_its_own() {
+    let Some(gpu) = common::gpu() else { return };
+    let case = load::open(&common::sample()).unwrap();
+    let views = for_adapters(&case, &json!({}));
+    // The view for an adapter of the other kind.
+    let [own, other] = match gpu.is_software() {
+        true => [0, 1],
+        false => [1, 0],
+    };
+    let [own, other] = [own, other].map(|n: usize| &views[n]);
+    let mut renderer = Renderer::new(gpu, &case.grid).unwrap();
+    renderer.render(&case.grid, other, &|_| true).unwrap();
+    let light = renderer.light();
+    let size = |volume: Option<&Volume>| volume.unwrap().shape.size;
+    assert_eq!(size(light.field()), other.lighting.size());
+    assert_eq!(size(light.pyramid()), other.lighting.size());
+    assert_eq!(size(light.light_volumes()), other.lighting.light_size());
+    assert_ne!(size(light.field()), own.lighting.size());
 }

@@ -279,6 +279,8 @@ fn occlusion_in_parallel_agrees_with_the_reference() {
         let occlusion = scene.lighting.occlusion.as_mut().unwrap();
         (occlusion.attenuation, occlusion.strength) = (0.8, 1.0);
         occlusion.mode = mode;
+        // Rays start where cones do: what is compared is where they go.
+        scene.lighting.rays_gap = occlusion.gap;
         scene.lighting.rays = 14;
         let perspective = scene::resolve(&scene, &case).unwrap();
         parallel(&mut scene);

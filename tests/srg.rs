@@ -9,16 +9,18 @@ mod process;
 use std::cell::Cell;
 use std::time::Duration;
 
+use common::light::Block;
 use common::shape::{Shape, parallelepipeds};
 use glam::DVec3;
 use half::f16;
 use rayon::prelude::*;
 use strataray::case::Case;
 use strataray::gpu::layout::RUN;
+use strataray::gpu::pyramids::{Bricks, PyramidMaker};
 use strataray::gpu::resample::{Resampler, VOXEL_WORK};
 use strataray::gpu::slabs::Slabs;
 use strataray::gpu::tiles::Pace;
-use strataray::gpu::volume::{self, Volume};
+use strataray::gpu::volume::{self, Volume, Voxel};
 use strataray::gpu::{Gpu, GpuGrid};
 use strataray::load;
 use strataray::metrics::{Comparison, psnr_8bit};
@@ -581,6 +583,79 @@ fn quality_grows_with_the_factor() {
         before = found.psnr_db;
     }
     assert!(before > 45.0);
+}
+
+/// Both numbers of each voxel of a level.
+fn pairs(gpu: &Gpu, volume: &Volume, level: u32) -> [Block; 2] {
+    let words = volume.read(gpu, level).unwrap();
+    [0, 16].map(|shift| Block {
+        size: volume.shape.at(level).map(|n| n as usize),
+        values: words
+            .iter()
+            .map(|w| f16::from_bits((w >> shift) as u16).into())
+            .collect(),
+    })
+}
+
+#[test]
+fn averages_are_means_of_an_odd_number_of_voxels_too() {
+    let Some(gpu) = common::gpu() else { return };
+    // What a half float leaves of a number below 1.
+    const HALF: f64 = 5e-4;
+    let maker = PyramidMaker::new(&gpu).unwrap();
+    let mut random = fastrand::Rng::with_seed(5);
+    for size in [[3, 5, 7], [7, 3, 5], [6, 9, 1], [4, 8, 16]] {
+        let shape = volume::Shape {
+            size,
+            levels: 3,
+            voxel: Voxel::Pair,
+        };
+        let volume = Volume::new(&gpu, shape);
+        let number = 2 * size.iter().product::<u32>();
+        let halves: Vec<u16> = (0..number)
+            .map(|_| f16::from_f64(random.f64()).to_bits())
+            .collect();
+        let [width, height, depth_or_array_layers] = size;
+        gpu.queue.write_texture(
+            volume.texture.as_image_copy(),
+            bytemuck::cast_slice(&halves),
+            wgpu::TexelCopyBufferLayout {
+                offset: 0,
+                bytes_per_row: Some(4 * width),
+                rows_per_image: Some(height),
+            },
+            wgpu::Extent3d {
+                width,
+                height,
+                depth_or_array_layers,
+            },
+        );
+        let mut slabs = Slabs {
+            gpu: &gpu,
+            pace: &mut Pace::default(),
+            progress: &|_| true,
+        };
+        let bricks = Bricks::unused(&gpu, size);
+        assert!(maker.average(&mut slabs, &volume, &bricks).unwrap());
+        let mut worst: f64 = 0.0;
+        for level in 1..shape.levels {
+            let [below, made] = [level - 1, level].map(|l| pairs(&gpu, &volume, l));
+            for (below, made) in below.iter().zip(&made) {
+                let error = made.apart(&below.means(made.size));
+                // The twin: one lookup in the middle, which is the mean where voxels pair off.
+                let mut lookup = made.clone();
+                for voxel in made.voxels() {
+                    *lookup.at_mut(voxel) = below.linear(made.middle(voxel));
+                }
+                let twin = made.apart(&lookup);
+                println!("{size:?}, level {level}: off by {error:.5}, a lookup by {twin:.4}");
+                assert!(error < HALF, "{error}");
+                worst = worst.max(twin);
+            }
+        }
+        let is_odd = size.iter().any(|n| n % 2 == 1 && *n > 1);
+        assert!(if is_odd { worst > 0.1 } else { worst < HALF }, "{worst}");
+    }
 }
 
 #[test]

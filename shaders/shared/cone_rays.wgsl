@@ -15,7 +15,7 @@ fn sharp_depth(p: vec3f) -> f32 {
 fn rays_transmittance(emitter: Emitter, p: vec3f) -> f32 {
     let way = toward(emitter, p);
     let side = across(way.xyz);
-    let range = vec2f(sections[emitter.first].x, min(emitter.length, way.w));
+    let range = vec2f(lighting.rays_gap, min(emitter.length, way.w));
     let bits = bitcast<vec3u>(p);
     let seed = pcg(bits.x ^ pcg(bits.y ^ pcg(bits.z ^ pcg(lighting.seed))));
     var sum = 0.0;

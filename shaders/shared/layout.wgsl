@@ -181,9 +181,10 @@ struct LightingInfo {
     gradient_scale: f32,
     // Loop iterations that a sample costs, about.
     work: u32,
+    // Where rays over a cone start.
+    rays_gap: f32,
     reserved0: u32,
     reserved1: u32,
-    reserved2: u32,
 }
 
 // The viewer, or a light.

@@ -73,16 +73,16 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let strategies = strategies(arguments)?;
     let case = arguments.options.open_case(&arguments.case, &reporter)?;
     let scene = arguments.options.scene(&case, &reporter)?;
+    let gpu = arguments.options.open_gpu(&reporter)?;
     let plan = Plan {
         strategies,
         reference: match arguments.reference {
             true => Reference::Cpu,
             false => Reference::Strategy(StrategyKind::accurate()),
         },
-        views: views(arguments, &scene, &case)?,
+        views: views(arguments, &scene, &case, gpu.is_software())?,
         frames: arguments.frames as usize,
     };
-    let gpu = arguments.options.open_gpu(&reporter)?;
     let setting = Setting {
         case: &case,
         plan: &plan,
@@ -134,8 +134,13 @@ fn strategies(arguments: &Arguments) -> anyhow::Result<Vec<StrategyKind>> {
     Ok(found)
 }
 
-fn views(arguments: &Arguments, scene: &Scene, case: &Case) -> anyhow::Result<Vec<NamedView>> {
-    let view = scene::resolve(scene, case)?;
+fn views(
+    arguments: &Arguments,
+    scene: &Scene,
+    case: &Case,
+    is_software: bool,
+) -> anyhow::Result<Vec<NamedView>> {
+    let view = scene::resolve(scene, case)?.for_adapter(is_software);
     Ok(match arguments.views {
         Some(count) => {
             let about = arguments.turn.unwrap_or(TurnAxis::All);

@@ -1,6 +1,7 @@
 //! `strataray render`: one picture of a case, without a window.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use anyhow::Context;
@@ -68,16 +69,21 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let start = Instant::now();
     let scene = arguments.options.scene(&case, &reporter)?;
     let plain = arguments.plain || format == picture::Format::Exr;
-    let shot = Shot::of(&scene, &case, plain)?;
+    let mut shot = Shot::of(&scene, &case, plain)?;
     stages.read = start.elapsed();
     let image = if arguments.reference {
+        // The truth of what the adapter would render.
+        let is_software = arguments.options.is_software_at_hand();
+        shot.view = shot.view.for_adapter(is_software);
         reporter
             .bar("reference", |progress| {
                 reference::render(&case.grid, &shot.view, progress)
             })
             .context("the reference was canceled")?
     } else {
-        on_gpu(arguments, &case, &shot, stages, &reporter)?
+        let gpu = arguments.options.open_gpu(&reporter)?;
+        shot.view = shot.view.for_adapter(gpu.is_software());
+        on_gpu(arguments, &case, &shot, &gpu, stages, &reporter)?
     };
     match format {
         picture::Format::Exr => picture::write_exr(&arguments.output, &image)?,
@@ -93,11 +99,11 @@ fn on_gpu(
     arguments: &Arguments,
     case: &Case,
     shot: &Shot,
+    gpu: &Arc<Gpu>,
     mut stages: Stages,
     reporter: &Reporter,
 ) -> anyhow::Result<Image> {
     let view = &shot.view;
-    let gpu = arguments.options.open_gpu(reporter)?;
     let start = Instant::now();
     let mut renderer = Renderer::new(gpu.clone(), &case.grid)?;
     stages.acceleration = renderer.acceleration_time();
@@ -133,7 +139,7 @@ fn on_gpu(
         timed.push(again);
     }
     let median = Frame::median(timed).context("no frame was timed")?;
-    let stats = statistics(case, shot, &gpu, &median, &stages);
+    let stats = statistics(case, shot, gpu, &median, &stages);
     write_json(path, &stats)?;
     Ok(median.image)
 }

@@ -111,21 +111,12 @@ impl Gpu {
     /// # Errors
     /// When there is no (such) adapter, or it lacks a limit.
     pub fn new(wanted: Option<&str>) -> Result<Self, GpuError> {
-        let instance =
-            wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
-        let mut adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::all()));
-        adapters.sort_by_key(|a| rank(a.get_info().device_type));
-        let names: Vec<String> = adapters.iter().map(|a| a.get_info().name).collect();
-        let matches =
-            |name: &str| wanted.is_none_or(|w| name.to_lowercase().contains(&w.to_lowercase()));
-        match (names.iter().position(|n| matches(n)), wanted) {
-            (Some(at), _) => Self::open(&adapters[at]),
-            (None, Some(wanted)) if !names.is_empty() => Err(GpuError::NoSuchAdapter {
-                wanted: wanted.to_owned(),
-                known: names.join(", "),
-            }),
-            _ => Err(GpuError::NoAdapter),
-        }
+        Self::open(&best_adapter(wanted)?)
+    }
+
+    /// True where [`Self::new`] would open an adapter in software, or none.
+    pub fn is_software_at_hand(wanted: Option<&str>) -> bool {
+        best_adapter(wanted).map_or(true, |adapter| is_software(&adapter.get_info()))
     }
 
     fn open(adapter: &wgpu::Adapter) -> Result<Self, GpuError> {
@@ -203,7 +194,7 @@ impl Gpu {
 
     /// True where the "GPU" is a program on the CPU.
     pub fn is_software(&self) -> bool {
-        self.info.device_type == wgpu::DeviceType::Cpu
+        is_software(&self.info)
     }
 
     /// Name and kind of the adapter in one line.
@@ -394,6 +385,29 @@ impl Gpu {
         staging.unmap();
         Ok(content)
     }
+}
+
+/// The adapter that [`Gpu::new`] opens.
+fn best_adapter(wanted: Option<&str>) -> Result<wgpu::Adapter, GpuError> {
+    let instance =
+        wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
+    let mut adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::all()));
+    adapters.sort_by_key(|a| rank(a.get_info().device_type));
+    let names: Vec<String> = adapters.iter().map(|a| a.get_info().name).collect();
+    let matches =
+        |name: &str| wanted.is_none_or(|w| name.to_lowercase().contains(&w.to_lowercase()));
+    match (names.iter().position(|n| matches(n)), wanted) {
+        (Some(at), _) => Ok(adapters.swap_remove(at)),
+        (None, Some(wanted)) if !names.is_empty() => Err(GpuError::NoSuchAdapter {
+            wanted: wanted.to_owned(),
+            known: names.join(", "),
+        }),
+        _ => Err(GpuError::NoAdapter),
+    }
+}
+
+fn is_software(info: &wgpu::AdapterInfo) -> bool {
+    info.device_type == wgpu::DeviceType::Cpu
 }
 
 fn rank(kind: wgpu::DeviceType) -> u8 {

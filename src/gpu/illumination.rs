@@ -266,7 +266,7 @@ impl Illumination {
     ) -> Result<bool, GpuError> {
         let shape = Shape {
             voxel: Voxel::Packed,
-            ..Shape::single(view.lighting.size(gpu.is_software()), 1)
+            ..Shape::single(view.lighting.size(), 1)
         };
         let before = self.field.take();
         let before = before.filter(|f| f.volume.shape == shape);
@@ -309,7 +309,7 @@ impl Illumination {
             values: &field.volume,
             number: self.made.fields,
             position: position(view, field.range),
-            sigma: view.lighting.sigma(gpu.is_software()),
+            sigma: view.lighting.sigma(),
             ghost: ghost(view)[3],
             clip_planes: clip_planes(grid, view),
             clip_count: view.clip.len() as u32,
@@ -357,8 +357,7 @@ impl Illumination {
         emitters: &Emitters,
     ) -> Result<(), GpuError> {
         let lighting = &view.lighting;
-        let software = gpu.is_software();
-        let space = LightSpace::new(grid, view, software);
+        let space = LightSpace::new(grid, view);
         let range = self.field.as_ref().map_or([0.0, 1.0], |f| f.range);
         let [position_low, position_scale] = position(view, range);
         let info = LightingInfo {
@@ -368,7 +367,7 @@ impl Illumination {
             strength: lighting.occlusion.map_or(0.0, |o| o.strength as f32),
             size: (lighting.extent / space.sigma).as_vec3().to_array(),
             ambient: lighting.ambient as f32,
-            light_size: lighting.light_size(software),
+            light_size: lighting.light_size(),
             volumes: emitters.volumes.len().max(1) as u32,
             emitters: emitters.emitters.len() as u32,
             levels: self.pyramid.as_ref().map_or(1, Pyramid::levels),
@@ -379,9 +378,9 @@ impl Illumination {
             step: Lighting::REFERENCE_STEP as f32,
             gradient_scale: (view.transfer.reference_length / space.sigma) as f32,
             work: emitters.work,
+            rays_gap: lighting.rays_gap as f32,
             reserved0: 0,
             reserved1: 0,
-            reserved2: 0,
         };
         self.info = gpu.uniform("lighting", &info);
         self.emitters = gpu.storage("emitters", &emitters.emitters)?;
@@ -399,7 +398,7 @@ impl Illumination {
         emitters: &Emitters,
         progress: &dyn Fn(f64) -> bool,
     ) -> Result<bool, GpuError> {
-        let size = view.lighting.light_size(gpu.is_software());
+        let size = view.lighting.light_size();
         let count = emitters.volumes.len() as u32;
         if count == 0 {
             self.lights = None;
@@ -472,7 +471,7 @@ impl Illumination {
         }
         let shape = Shape {
             voxel: Voxel::Quad,
-            ..Shape::single(view.lighting.light_size(gpu.is_software()), 1)
+            ..Shape::single(view.lighting.light_size(), 1)
         };
         let scale = view.lighting.extent.as_vec3().to_array();
         let [_, position_scale] = position(view, field.range);
@@ -620,9 +619,9 @@ struct LightSpace {
 }
 
 impl LightSpace {
-    fn new(grid: &GpuGrid, view: &View, software: bool) -> Self {
+    fn new(grid: &GpuGrid, view: &View) -> Self {
         let [low, high] = grid.bounds;
-        let sigma = view.lighting.sigma(software);
+        let sigma = view.lighting.sigma();
         let edges = (high - low).max(DVec3::splat(1e-6));
         Self {
             low,
@@ -644,7 +643,7 @@ impl LightSpace {
 
 fn emitters(grid: &GpuGrid, view: &View, software: bool) -> Result<Emitters, GpuError> {
     let lighting = &view.lighting;
-    let space = LightSpace::new(grid, view, software);
+    let space = LightSpace::new(grid, view);
     let mut all = Emitters {
         emitters: Vec::new(),
         sections: Vec::new(),

@@ -158,9 +158,9 @@ pub struct LightingInfo {
     pub step: f32,
     pub gradient_scale: f32,
     pub work: u32,
+    pub rays_gap: f32,
     pub reserved0: u32,
     pub reserved1: u32,
-    pub reserved2: u32,
 }
 
 /// The viewer, or a light.

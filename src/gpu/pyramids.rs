@@ -14,8 +14,8 @@ const PART_BYTES: u64 = 16;
 /// Levels of [`range_maxima`].
 const MAXIMA_LEVELS: u32 = LUT_SIZE.ilog2() + 1;
 
-/// Loop iterations that a voxel of an average costs, about.
-const AVERAGE_WORK: u64 = 8;
+/// Loop iterations that a voxel of an average costs, about: it covers two or three voxels along each axis.
+const AVERAGE_WORK: u64 = 16;
 
 /// What bricks are classified by; each negative for never.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -44,7 +44,6 @@ pub struct PyramidMaker {
     weigh: [Pipeline; 2],
     reduce: Pipeline,
     classify: Pipeline,
-    sampler: wgpu::Sampler,
 }
 
 /// The pyramid of a volume's bricks.
@@ -159,7 +158,6 @@ impl PyramidMaker {
             weigh: both("weigh", "WEIGHTED")?,
             reduce: entry("reduce")?,
             classify: entry("classify")?,
-            sampler: gpu.linear_sampler(),
         })
     }
 
@@ -176,7 +174,6 @@ impl PyramidMaker {
             bricks.info.as_entire_binding(),
             slab.as_entire_binding(),
             wgpu::BindingResource::TextureView(what.volume),
-            wgpu::BindingResource::Sampler(&self.sampler),
             what.voxels.as_entire_binding(),
             bricks.parts.as_entire_binding(),
             bricks.passes.as_entire_binding(),

@@ -29,6 +29,7 @@ sources! {
     "cone_rays" => "shared/cone_rays.wgsl",
     "shading" => "shared/shading.wgsl",
     "random" => "shared/random.wgsl",
+    "mean" => "shared/mean.wgsl",
     "groups" => "shared/groups.wgsl",
     "extinction" => "extinction.wgsl",
     "faces" => "faces.wgsl",

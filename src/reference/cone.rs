@@ -20,8 +20,8 @@ impl Integrator<'_> {
     /// weighted by their cosines to the axis (equation 3-6).
     ///
     /// The rays are [`Lighting::rays`], uniform in solid angle, one at a random place in each of as many
-    /// rings of equal solid angle. They start at the cone's gap and end at its length or at `reach`, the
-    /// distance to the light or the viewer, whichever is nearer; both in world space. Attenuation, splits
+    /// rings of equal solid angle. They start at [`Lighting::rays_gap`] and end at the cone's length or at `reach`,
+    /// the distance to the light or the viewer, whichever is nearer; both in world space. Gap, attenuation, splits
     /// and the correction for even media belong to the approximation and count for nothing here.
     pub fn transmittance(
         &self,
@@ -32,9 +32,9 @@ impl Integrator<'_> {
         random: &mut fastrand::Rng,
     ) -> f64 {
         let lighting = &self.view.lighting;
-        let sigma = lighting.sigma(true);
+        let sigma = lighting.sigma();
         let step = Lighting::REFERENCE_STEP * sigma;
-        let range = [cone.gap * sigma, cone.length.min(reach)];
+        let range = [lighting.rays_gap * sigma, cone.length.min(reach)];
         let (right, up) = axis.any_orthonormal_pair();
         let open = 1.0 - cone.half_angle.cos();
         let start = random.f64();

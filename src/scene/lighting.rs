@@ -31,6 +31,9 @@ pub struct LightingSpec {
     pub volume: VolumeSpec,
     /// Rays over a cone in the mode `monte_carlo`.
     pub rays: u32,
+    /// Distance at which rays over a cone start, in the mode `monte_carlo` and in the reference, in standard
+    /// deviations of the finest level.
+    pub rays_gap: f64,
     /// Picks the random numbers of the mode `monte_carlo`.
     pub seed: u32,
 }
@@ -46,6 +49,7 @@ impl Default for LightingSpec {
             exact_colors: false,
             volume: VolumeSpec::default(),
             rays: 16,
+            rays_gap: 1.0,
             seed: 0,
         }
     }
@@ -94,7 +98,7 @@ impl Default for OcclusionSpec {
             mode: LightMode::Preilluminated,
             half_angle_degrees: 20.0,
             splits: 7,
-            attenuation: 0.6,
+            attenuation: 1.0,
             strength: 1.0,
             gap: 3.0,
             length: 0.5,
@@ -246,13 +250,13 @@ impl LightingSpec {
                 ..none
             },
             "key" => Self {
-                occlusion: occlusion(20.0, 0.6, 1.0),
+                occlusion: Some(OcclusionSpec::default()),
                 lights: vec![LightSpec::key()],
                 blinn_phong: true,
                 ..none
             },
             "technical" => Self {
-                occlusion: occlusion(20.0, 0.6, 1.0),
+                occlusion: Some(OcclusionSpec::default()),
                 exact_colors: true,
                 ..none
             },
@@ -397,6 +401,9 @@ pub struct Lighting {
     pub exact_colors: bool,
     /// Rays over a cone in the mode `MonteCarlo`.
     pub rays: u32,
+    /// Distance at which they start, in standard deviations of the finest level. Cones have a gap of their own:
+    /// their sections are wide, and would count the surface that they start from.
+    pub rays_gap: f64,
     /// Picks their random numbers.
     pub seed: u32,
     /// World-space edges of the model's box along the grid's x, y and depth.
@@ -404,6 +411,8 @@ pub struct Lighting {
     /// Cells of the grid.
     pub cells: usize,
     volume: VolumeSpec,
+    /// What [`Self::size`] gives: decided once, for the device and the reference alike.
+    size: [u32; 3],
 }
 
 /// Voxels along an axis, at most.
@@ -417,6 +426,22 @@ const VOXEL_BYTES: f64 = 2.0 * (2.0 + 1.0 / 7.0);
 /// Megabytes of the extinction volume where the scene says nothing: of a GPU, and of an adapter in
 /// software.
 const BUDGET_MB: [u32; 2] = [160, 10];
+
+impl VolumeSpec {
+    /// Voxels of the extinction volume over a box of a grid of so many cells: cubes in world space, unless the
+    /// scene says otherwise.
+    fn voxels(&self, is_software: bool, extent: DVec3, cells: usize) -> [u32; 3] {
+        self.size.unwrap_or_else(|| {
+            let budget = BUDGET_MB[usize::from(is_software)];
+            let bytes = f64::from(self.budget_mb.unwrap_or(budget)) * f64::from(1 << 20);
+            let voxels = (bytes / VOXEL_BYTES).min(VOXELS_A_CELL * cells as f64);
+            let edge = (extent.element_product() / voxels.max(1.0)).cbrt();
+            (extent / edge)
+                .to_array()
+                .map(|n| (n.round() as u32).clamp(4, MOST_ALONG))
+        })
+    }
+}
 
 impl Lighting {
     /// True where nothing is shaded.
@@ -434,35 +459,33 @@ impl Lighting {
         self
     }
 
-    /// Voxels of the extinction volume along the grid's x, y and depth: cubes in world space, unless the
-    /// scene says otherwise.
-    pub fn size(&self, is_software: bool) -> [u32; 3] {
-        self.volume.size.unwrap_or_else(|| {
-            let budget = BUDGET_MB[usize::from(is_software)];
-            let bytes = f64::from(self.volume.budget_mb.unwrap_or(budget)) * f64::from(1 << 20);
-            let voxels = (bytes / VOXEL_BYTES).min(VOXELS_A_CELL * self.cells as f64);
-            let edge = (self.extent.element_product() / voxels.max(1.0)).cbrt();
-            (self.extent / edge)
-                .to_array()
-                .map(|n| (n.round() as u32).clamp(4, MOST_ALONG))
-        })
+    /// The same with the extinction volume that suits an adapter, where the scene names neither size nor budget.
+    #[must_use]
+    pub(super) fn for_adapter(mut self, is_software: bool) -> Self {
+        self.size = self.volume.voxels(is_software, self.extent, self.cells);
+        self
+    }
+
+    /// Voxels of the extinction volume along the grid's x, y and depth.
+    pub fn size(&self) -> [u32; 3] {
+        self.size
     }
 
     /// Voxels of a light volume.
-    pub fn light_size(&self, is_software: bool) -> [u32; 3] {
-        let half = || self.size(is_software).map(|n| n.div_ceil(2));
+    pub fn light_size(&self) -> [u32; 3] {
+        let half = || self.size.map(|n| n.div_ceil(2));
         self.volume.light_size.unwrap_or_else(half)
     }
 
     /// Standard deviation of the finest level of the extinction pyramid, in world space: the mean edge of
-    /// a voxel.
-    pub fn sigma(&self, is_software: bool) -> f64 {
-        let voxels = self.size(is_software).map(f64::from);
+    /// a voxel. Gaps and steps are in units of it.
+    pub fn sigma(&self) -> f64 {
+        let voxels = self.size.map(f64::from);
         (self.extent / DVec3::from_array(voxels)).element_sum() / 3.0
     }
 
     /// Distance of the samples of the rays of the mode `MonteCarlo`, in standard deviations of the finest
-    /// level (campagnolo-2021, 3.5: half a voxel). They start where the cone does.
+    /// level (campagnolo-2021, 3.5: half a voxel).
     pub const REFERENCE_STEP: f64 = 0.5;
 }
 
@@ -522,10 +545,12 @@ pub(crate) fn resolve(
         blinn_phong: spec.blinn_phong && !spec.lights.is_empty(),
         exact_colors: spec.exact_colors,
         rays: spec.rays,
+        rays_gap: within("lighting.rays_gap", spec.rays_gap, [0.0, 20.0])?,
         seed: spec.seed,
         extent,
         cells,
         volume: spec.volume,
+        size: spec.volume.voxels(true, extent, cells),
     })
 }
 

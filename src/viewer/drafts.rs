@@ -121,14 +121,13 @@ impl Side {
     }
 
     /// Takes a picture in.
-    pub fn arrive(&mut self, ctx: &Context, picture: Picture, of: Wanted, is_software: bool) {
+    pub fn arrive(&mut self, ctx: &Context, picture: Picture, of: Wanted) {
         if !std::ptr::eq(self.budget_of.as_ptr(), Arc::as_ptr(&of.case)) {
             self.budget = DraftBudget::default();
             self.budget_of = Arc::downgrade(&of.case);
         }
-        self.budget
-            .learn(&spent(&picture, is_software), picture.is_draft);
-        let whole = picture.view.lighting.size(is_software);
+        self.budget.learn(&spent(&picture), picture.is_draft);
+        let whole = picture.view.lighting.size();
         self.light_size = Some(whole.map(|n| n.div_ceil(2)));
         // A draft replaces what was finished before.
         self.finished = (!picture.is_draft).then(|| of.clone());
@@ -170,11 +169,11 @@ fn is_lit(lighting: &LightingSpec) -> bool {
     lighting.occlusion.is_some() || !lighting.lights.is_empty()
 }
 
-fn spent(picture: &Picture, is_software: bool) -> Spent {
+fn spent(picture: &Picture) -> Spent {
     let ms = |time: std::time::Duration| 1e3 * time.as_secs_f64();
     let [width, height] = picture.rgb.size.map(f64::from);
     let light = picture.light.volumes;
-    let voxels = picture.view.lighting.light_size(is_software);
+    let voxels = picture.view.lighting.light_size();
     let voxels: f64 = voxels.into_iter().map(f64::from).product();
     Spent {
         strategy: picture.view.strategy,

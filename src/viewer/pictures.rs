@@ -170,10 +170,9 @@ impl Pictures {
             Answer::Refused(error) => return Some(Event::Failed(error)),
             Answer::Picked(why, pick) => return Some(Event::Picked(why, pick)),
             Answer::Picture(side, picture) => {
-                let is_software = self.is_software();
                 if let Some(flight) = self.land().filter(|f| !f.is_forgotten) {
                     self.drafts.made += u64::from(picture.is_draft);
-                    self.sides[side].arrive(ctx, *picture, flight.wanted, is_software);
+                    self.sides[side].arrive(ctx, *picture, flight.wanted);
                 }
                 return Some(Event::Came);
             }

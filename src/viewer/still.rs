@@ -87,7 +87,8 @@ impl StillRenderer {
             ),
         };
         let renderer = &mut self.renderer.insert(kept).1;
-        let frame = renderer.render(&case.grid, view, progress)?;
+        let view = view.clone().for_adapter(self.gpu.is_software());
+        let frame = renderer.render(&case.grid, &view, progress)?;
         Ok(frame.map(|frame| frame.image))
     }
 

@@ -67,14 +67,13 @@ pub fn turn(case: &Arc<Case>, scene: &Scene, moves: usize) -> Result<Vec<Turned>
             }
             let shown = pictures.shown(0, case).map(|s| &s.picture);
             if let Some(picture) = shown.filter(|p| p.wanted.scene.camera == camera) {
-                let is_software = pictures.adapter.as_ref().is_none_or(|a| a.1);
                 let lighting = &picture.view.lighting;
                 turned.push(Turned {
                     took: start.elapsed(),
                     rays: picture.stats.wall,
                     light_volumes: picture.light.volumes,
                     size: picture.rgb.size,
-                    light: (!lighting.is_off()).then(|| lighting.light_size(is_software)),
+                    light: (!lighting.is_off()).then(|| lighting.light_size()),
                 });
                 break;
             }

@@ -210,6 +210,8 @@ fn light_falls_on_surfaces_as_on_samples() {
         (occlusion.attenuation, occlusion.strength) = (0.8, 1.0);
         scene.lighting.occlusion.as_mut().unwrap().mode = mode;
         scene.lighting.shadows.mode = mode;
+        // Rays start where cones do: what is compared is which points are lit.
+        scene.lighting.rays_gap = scene.lighting.shadows.gap;
         scene.lighting.rays = 14;
         scene.lighting.lights = vec![low.clone()];
         let lit = with(&scene::resolve(&scene, &case).unwrap(), surfaces);

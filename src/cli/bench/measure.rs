@@ -93,7 +93,7 @@ pub fn case(
     let mut strategies = Vec::new();
     let mut light = None;
     for scene in scenes {
-        let view = scene::resolve(scene, &case)?;
+        let view = scene::resolve(scene, &case)?.for_adapter(gpu.is_software());
         let times = strategy(&mut renderer, &case, &view, frames, reporter);
         let what = || format!("{} by {}", case.about.name, view.strategy.name());
         let (times, light_times) = times.with_context(what)?;

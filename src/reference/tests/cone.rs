@@ -73,9 +73,44 @@ fn in_a_uniform_medium_all_rays_are_as_long_as_the_cone() {
         assert!((found - (-0.03 * (length - 1.0)).exp()).abs() < 1e-12);
         assert!((found - (-0.03 * length).exp()).abs() > 1e-3);
     }
+    // Rays begin at a gap of their own: a cone's counts for nothing.
+    for gap in [0.0, 2.5] {
+        let mut view = row_view(&grid, &[true], 0.03, 5);
+        view.lighting.rays_gap = gap;
+        let integrator = Integrator::new(&grid, &view);
+        let found = transmittance(&integrator, 100.0, axis, &cone(20.0, 35.0), 1);
+        assert!(
+            (found - (-0.03 * (35.0 - gap)).exp()).abs() < 1e-12,
+            "{found}"
+        );
+        let gap = cone(20.0, 35.0).gap;
+        assert!((found - (-0.03 * (35.0 - gap)).exp()).abs() > 5e-3);
+    }
     // Nothing between the gap and the end.
     let short = transmittance(&integrator, 100.0, axis, &cone(20.0, 0.9), 1);
     assert!((short - 1.0).abs() < 1e-12);
+}
+
+#[test]
+fn rays_start_by_the_voxels_that_the_view_decided_on() {
+    let grid = row(&[0.0, 200.0]);
+    let found = [true, false].map(|is_software| {
+        let mut view = row_view(&grid, &[true], 0.03, 5);
+        let extent = view.world_bounds[1] - view.world_bounds[0];
+        let spec = LightingSpec {
+            rays_gap: 2.0,
+            ..LightingSpec::default()
+        };
+        // So many cells that the budget alone decides.
+        view.lighting = crate::scene::lighting::resolve(&spec, extent, 10_000_000).unwrap();
+        let view = view.for_adapter(is_software);
+        let integrator = Integrator::new(&grid, &view);
+        let found = transmittance(&integrator, 100.0, DVec3::X, &cone(20.0, 35.0), 1);
+        let start = 2.0 * view.lighting.sigma();
+        assert!((found - (-0.03 * (35.0 - start)).exp()).abs() < 1e-12);
+        found
+    });
+    assert!(found[1] < found[0] - 1e-3, "{found:?}");
 }
 
 #[test]

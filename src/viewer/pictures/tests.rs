@@ -143,16 +143,15 @@ fn every_move_leads_to_a_draft_within_bounds_and_the_light_with_it() {
         for degrees in 1..=20 {
             turning.until(degrees);
             let picture = &turning.pictures.shown(0, &turning.case).unwrap().picture;
-            let is_software = turning.pictures.is_software();
             for (n, whole) in picture.rgb.size.into_iter().zip(SIZE) {
                 let least = (COARSEST * f64::from(whole)).floor();
                 assert!(f64::from(n) >= least && n <= whole, "{n} of {whole}");
             }
             if light != "off" {
                 let lighting = &picture.view.lighting;
-                let whole = lighting.size(is_software).map(|n| n.div_ceil(2));
+                let whole = lighting.size().map(|n| n.div_ceil(2));
                 let voxels = |s: [u32; 3]| s.iter().product::<u32>();
-                let made = lighting.light_size(is_software);
+                let made = lighting.light_size();
                 assert!(voxels(made) <= voxels(whole), "{made:?} of {whole:?}");
             }
         }
