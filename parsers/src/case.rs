@@ -129,7 +129,7 @@ pub fn find(path: &Path) -> Result<CaseFiles, ParseError> {
         file.map(|(p, _)| p.clone())
     };
     if path.is_dir() && files.is_empty() {
-        let message = "is a folder; name a file of the case in it";
+        let message = "is a folder with no case in it, or several; name one of its files";
         return Err(ParseError::new(path, At::File, "", message));
     }
     if !path.exists() && !files.is_empty() && role(path).is_some_and(|r| first(r).is_none()) {

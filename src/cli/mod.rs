@@ -17,6 +17,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
+use strataray::load;
 
 const EXAMPLES: &str = "Examples:
   strataray info samples/scissor/SCISSOR.EGRID
@@ -72,6 +73,18 @@ pub struct Verbosity {
     quiet: bool,
 }
 
+/// Opens the window, unless what is to be opened is not there: that is told where it was typed.
+fn open_window(cases: Vec<PathBuf>, watches: bool) -> anyhow::Result<()> {
+    let is_there = |path: &PathBuf| path.exists() || load::is_case(path);
+    if let Some(missing) = cases.iter().find(|path| !is_there(path)) {
+        anyhow::bail!(
+            "{}: there is no such file, case or command; `strataray --help` lists the commands",
+            missing.display()
+        );
+    }
+    strataray::viewer::run(cases, watches).map_err(anyhow::Error::msg)
+}
+
 /// Runs the command line and turns an error into one sentence and exit code 1.
 pub fn run() -> ExitCode {
     process::give_runtime_folder();
@@ -85,9 +98,7 @@ pub fn run() -> ExitCode {
         Some(Command::Compare(a)) => compare::run(&a),
         Some(Command::Bench(a)) => bench::run(&a),
         Some(Command::Sample(a)) => sample::run(&a),
-        None => {
-            strataray::viewer::run(arguments.cases, arguments.watch).map_err(anyhow::Error::msg)
-        }
+        None => open_window(arguments.cases, arguments.watch),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -81,7 +81,7 @@ fn place(shot: &Shot, size: [u32; 2], [x, y]: [i64; 2]) -> anyhow::Result<DVec2>
     let middle = [x, y].map(|n| n as f64 + 0.5);
     let place = shot.layout.volume_place(middle);
     place.with_context(|| {
-        format!("--at {x},{y} lies beside the volume, on the title, the legend or the info line")
+        format!("--at {x},{y} is outside the model view, on the title, the legend or the info line")
     })
 }
 

@@ -157,6 +157,11 @@ fn read_points(arguments: &Arguments) -> anyhow::Result<Vec<DVec3>> {
             ),
         }
     }
+    anyhow::ensure!(
+        !points.is_empty(),
+        "{}: there are no points; write one x,y,depth per line",
+        path.display()
+    );
     Ok(points)
 }
 

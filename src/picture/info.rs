@@ -165,10 +165,26 @@ fn cells(facts: &Facts) -> Item {
     ])
 }
 
+/// A value near zero, with three digits.
+fn small(value: f64) -> String {
+    match format!("{value:.2e}").parse::<f64>() {
+        Ok(v) if v.abs() >= 1e-4 => v.to_string(),
+        Ok(v) => format!("{v:e}"),
+        Err(_) => value.to_string(),
+    }
+}
+
 /// What the values are like.
 fn said(values: &Values, property: &str, unit: &str) -> Item {
     let Values { min, max, .. } = *values;
-    let number = |v: f64| readable(v, min.abs().max(max.abs()), max - min);
+    let number = |v: f64| {
+        let text = readable(v, min.abs().max(max.abs()), max - min);
+        match text.parse() {
+            // What is not zero is not called so.
+            Ok(0.0) if v != 0.0 => small(v),
+            _ => text,
+        }
+    };
     let unit = match unit.is_empty() {
         true => String::new(),
         false => format!(" {unit}"),

@@ -123,7 +123,10 @@ impl Scene {
 
 /// A camera in world coordinates, or one that frames what is drawn.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(untagged)]
+#[serde(
+    untagged,
+    expecting = "camera must have azimuth_degrees, elevation_degrees and zoom, or eye, target and up"
+)]
 pub enum CameraSpec {
     /// Explicit position.
     Explicit(ExplicitCamera),
@@ -229,7 +232,10 @@ fn one() -> f64 {
 
 /// A time step by number, date or name.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(untagged)]
+#[serde(
+    untagged,
+    expecting = "step must be a number from 0, a date such as \"2001-06-30\", \"first\" or \"last\""
+)]
 pub enum StepSpec {
     /// Position in file order, from 0.
     Index(usize),

@@ -38,9 +38,12 @@ pub enum SceneError {
     /// The case cannot give what the scene asks for.
     #[error(transparent)]
     Case(#[from] CaseError),
-    /// No active cell has a thickness.
+    /// No cell is active.
     #[error("the case has no active cell to show")]
     Empty,
+    /// No active cell has a thickness.
+    #[error("all active cells of the case have zero thickness; there is nothing to show")]
+    Flat,
     /// The property is the same at all steps.
     #[error(
         "{0} is static, so there is no animation over its steps; name a property that changes with time, or animate over the orbit"
@@ -220,6 +223,11 @@ pub(super) fn resolve_over(
 ) -> Result<View, SceneError> {
     check_version(scene)?;
     let active_bounds = case.grid.bounds().ok_or(SceneError::Empty)?;
+    let dims = case.grid.dims();
+    let mut cells = case.grid.active_cells().iter();
+    if !cells.any(|c| case.grid.has_thickness(dims.ijk(*c))) {
+        return Err(SceneError::Flat);
+    }
     let exaggeration = exaggeration(scene, active_bounds)?;
     let spaces = Spaces::new(case.grid.map_axes(), exaggeration);
     let edges = mean_world_edges(case, exaggeration);

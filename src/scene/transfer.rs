@@ -112,7 +112,10 @@ pub enum Coloring {
 
 /// A color map by name or by points (position 0..1, `#rrggbb`).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(untagged)]
+#[serde(
+    untagged,
+    expecting = "transfer.color must be a name or points [[position, \"#rrggbb\"], ...]"
+)]
 pub enum ColorSpec {
     /// One of the presets.
     Name(String),

@@ -237,7 +237,7 @@ fn change(document: &mut Document, command: Command) -> Option<String> {
                 _ => None,
             };
             let told = next.is_some().then(|| {
-                "the Compare panel has other steps, properties, cases and strategies".into()
+                "more steps, properties, cases and strategies are in the Compare panel".into()
             });
             document.apply(Action::Compare(next));
             return told;

@@ -18,7 +18,7 @@ const WIDTH: f32 = 280.0;
 const LEAST: f32 = 240.0;
 const MOST: f32 = 520.0;
 /// Points that the picture has beside panels on both sides, at least.
-const PICTURE: f32 = 300.0;
+const PICTURE: f32 = 360.0;
 /// Points of the strip that opens a folded side.
 const STRIP: f32 = 26.0;
 /// Points between the scroll bar of the panels and their edge, which can be dragged.
@@ -41,7 +41,7 @@ pub struct Docks {
 /// Which sides are open in a window of a width.
 fn open(width: f32, folded: [bool; 2], last: usize) -> [bool; 2] {
     let wanted = folded.map(|f| !f);
-    if width >= 2.0 * LEAST + PICTURE || wanted != [true, true] {
+    if width >= 2.0 * WIDTH + PICTURE || wanted != [true, true] {
         return wanted;
     }
     [last == 0, last == 1]

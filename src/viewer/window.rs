@@ -98,7 +98,14 @@ impl Window {
             self.add(ctx, files);
             return;
         }
-        for paths in load::group(&files) {
+        // What is not there says so in a tab of its own, and keeps no other case from opening.
+        let is_there = |file: &PathBuf| file.exists() || load::is_case(file);
+        let (there, missing): (Vec<_>, Vec<_>) = files.into_iter().partition(is_there);
+        let missing = missing.into_iter().map(|path| CasePaths {
+            path,
+            with: Vec::new(),
+        });
+        for paths in load::group(&there).into_iter().chain(missing) {
             self.show_case(ctx, paths);
         }
     }

@@ -315,7 +315,7 @@ fn nothing_is_out_of_reach_in_a_small_window() {
         let is_open = |driven: &Driven, name: &str| driven.harness.query_by_label(name).is_some();
         assert!(is_open(&driven, "Property"));
         if !is_open(&driven, "Transfer function") {
-            assert!(width < 790.0);
+            assert!(width < 900.0);
             driven.click("Show the right panels");
             driven.wait_settled();
             assert!(is_open(&driven, "Transfer function") && !is_open(&driven, "Property"));

@@ -24,7 +24,7 @@ pub fn show(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
             refusal(ui, id, filter.along(axis), count);
         });
     }
-    ui.weak(format!("Lists such as {FORM}: 10 to 30 by twos"));
+    ui.weak(format!("For example {FORM}: 10-30:2 is every second one"));
     slices(ui, about, &mut filter, actions);
     clear(ui, &mut filter);
     if filter != about.scene.filter {

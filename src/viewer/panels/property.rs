@@ -5,7 +5,7 @@ use eframe::egui::{self, Ui};
 use super::About;
 use super::controls::{list, number, one_of, show_chosen};
 use crate::case::{Kind, Property};
-use crate::scene::{Coloring, Interpolation, OwnRange, RangeSpec, ScaleSpec};
+use crate::scene::{Coloring, Interpolation, Mode, OwnRange, RangeSpec, ScaleSpec};
 use crate::viewer::action::Action;
 
 /// Groups in the order in which they are listed.
@@ -120,9 +120,18 @@ fn interpolation(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
             "Averages at the corners, never across a fault",
         ),
     ];
-    if let Some(chosen) = one_of(ui, "Values", about.scene.interpolation, &choices) {
-        actions.push(Action::Interpolation(chosen));
-    }
+    let is_volume = about.scene.mode == Mode::Volume;
+    let shown = match is_volume {
+        true => about.scene.interpolation,
+        false => Interpolation::Cell,
+    };
+    ui.add_enabled_ui(is_volume, |ui| {
+        if let Some(chosen) = one_of(ui, "Values", shown, &choices) {
+            actions.push(Action::Interpolation(chosen));
+        }
+    })
+    .response
+    .on_disabled_hover_text("In the mode Cells each cell has the color of its own value");
 }
 
 /// What a range is taken from.

@@ -27,7 +27,10 @@ pub fn show(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
     };
     if let Some(pick) = about.pick {
         let hit = pick.hit.as_ref();
-        if let Some(hit) = hit.filter(|h| h.ijk.one_based() == *last) {
+        // What was seen there holds for the step and property of the click.
+        let view = about.picture.map(|p| &p.view);
+        let is_shown = view.is_some_and(|v| v.step == pick.step && v.property == pick.property);
+        if let Some(hit) = hit.filter(|h| is_shown && h.ijk.one_based() == *last) {
             ui.label(place(hit));
             ui.label(seen(pick, hit, about.case));
         }
