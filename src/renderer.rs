@@ -314,7 +314,7 @@ mod tests {
             }
         };
         let case = one_cell();
-        // Along x: rays come in where nothing will be found, and leave where all is.
+        // Parallel and along x: all rays come in where nothing will be found, and leave where all is.
         let scene = Scene {
             size: [60, 60],
             strategy: StrategyKind::Plts.name().into(),
@@ -323,7 +323,7 @@ mod tests {
                 target: [50.0, 50.0, -1050.0],
                 up: [0.0, 0.0, 1.0],
                 fovy_degrees: 20.0,
-                projection: Projection::Perspective,
+                projection: Projection::Parallel,
             }),
             vertical_exaggeration: Some(1.0),
             early_termination: 0.0,
@@ -348,7 +348,6 @@ mod tests {
         renderer.grid.lose_half(&gpu, &case.grid).unwrap();
         let halved = stats(&mut renderer);
         let missing = whole.samples - halved.samples;
-        // Rays that leave before something is found have no cell to tell that they were in one.
         let lost = halved.lost_samples;
         assert!(4 * missing > whole.samples, "{whole:?} {halved:?}");
         assert!(
