@@ -204,6 +204,7 @@ fn begin(@builtin(global_invocation_id) id: vec3u) {
     }
     if walk.phase == STRAYED {
         locate_again(&walk, ray, &tally);
+        tally.entries += select(0u, 1u, walk.phase == WALKS);
     }
     finish(number, walk, Accumulated(section.rgb, 1.0 - section.a), layers, tally);
 }
@@ -219,8 +220,16 @@ fn set_right(@builtin(global_invocation_id) id: vec3u) {
         return;
     }
     var tally: Tally;
+    let ray = ray_of(tile.origin + in_tile(number));
     walk.t += 0.25 * frame.step;
-    locate_again(&walk, ray_of(tile.origin + in_tile(number)), &tally);
+    let cell = load_cell(walk.column, walk.layer, frame.interpolation);
+    locate_again(&walk, ray, &tally);
+    // The next sample is lost where the ray has no cell, and yet the last one holds the sample.
+    let n = max(walk.n, ceil(walk.t / frame.step - 0.5) - ray.first);
+    let point = ray.base + n * ray.advance;
+    if walk.phase != WALKS && n < ray.count && encloses(cell, relative_to(cell, point)) {
+        tally.lost += 1u;
+    }
     store_walk(number, walk);
     add_up(tally);
 }
@@ -241,6 +250,7 @@ fn walk(@builtin(global_invocation_id) id: vec3u) {
     var tally: Tally;
     if walk.phase == NEEDS_ENTRY && stage.x == ENTERS {
         enter(&walk, r, textureLoad(entries, vec2i(place), 0).xy);
+        tally.entries += select(0u, 1u, walk.phase == WALKS);
     }
     while (walk.phase == WALKS || walk.phase == CROSSES_FAULT) && tally.work < tile.work_limit {
         while walk.phase == WALKS && tally.work < tile.work_limit {
@@ -261,6 +271,7 @@ fn walk(@builtin(global_invocation_id) id: vec3u) {
             walk.done = t;
             walk.uvw = uvw;
             walk.exit_face = exit.face;
+            tally.crossings += 1u;
             step_through(&walk);
             if !is_open(sum) || walk.n >= ray.count || t >= ray.leave {
                 walk.phase = ENDED;
@@ -307,6 +318,9 @@ fn add_up(tally: Tally) {
     count(COUNT_STEPS, tally.steps);
     count(COUNT_FALLBACKS, tally.fallbacks);
     count(COUNT_WORK, tally.work);
+    count(COUNT_ENTRIES, tally.entries);
+    count(COUNT_CROSSINGS, tally.crossings);
+    count(COUNT_LOST_SAMPLES, tally.lost);
 }
 
 // What a dispatch adds to the counters.
@@ -316,6 +330,9 @@ struct Tally {
     steps: u32,
     fallbacks: u32,
     work: u32,
+    entries: u32,
+    crossings: u32,
+    lost: u32,
 }
 
 fn load_walk(number: u32) -> Walk {
@@ -338,7 +355,7 @@ fn store_walk(number: u32, walk: Walk) {
 // Locates the ray at its distance; it walks on in its cell, or needs an entry where there is none.
 fn locate_again(walk: ptr<function, Walk>, ray: Ray, tally: ptr<function, Tally>) {
     let point = ray.origin + (*walk).t * ray.direction;
-    let location = locate(Query(point, vec3f(0.0), SECTION_ENOUGH, frame.interpolation), vec3f(0.0));
+    let location = locate(Query(point, vec3f(0.0), SECTION_ENOUGH, frame.interpolation));
     (*tally).fallbacks += 1u;
     (*tally).iterations += location.iterations;
     (*tally).work += location.work;

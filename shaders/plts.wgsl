@@ -14,6 +14,13 @@
 #import surfaces
 #import topology
 
+// State of a ray: its sums; then the number of the next sample, layers of surfaces that are blended and above them
+// the gap before the sample, column of the last cell, and its layer with whether there is one.
+const PASSED_BITS: u32 = 8u;
+const MOST_PASSED: u32 = 0xffu;
+const MOST_GAP: f32 = 16777215.0;
+const HAS_LAST: u32 = 0x80000000u;
+
 @compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     if any(id.xy >= tile.size) {
@@ -25,12 +32,17 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     var sum = Accumulated(vec3f(0.0), 1.0);
     var n = 0.0;
     var passed = 0u;
+    var track: Track;
     if tile.resume == 1u {
         n = bitcast<f32>(ray_states[state + 1u].x);
-        passed = ray_states[state + 1u].y;
         if n == DONE {
             return;
         }
+        let words = ray_states[state + 1u];
+        passed = words.y & MOST_PASSED;
+        track.gap = f32(words.y >> PASSED_BITS);
+        track.has_last = (words.w & HAS_LAST) != 0u;
+        track.last = vec2u(words.z, words.w & ~HAS_LAST);
         let sums = bitcast<vec4f>(ray_states[state]);
         sum = Accumulated(sums.rgb, sums.a);
     } else {
@@ -39,13 +51,13 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     }
     var layers = layers_of(pixel, passed);
     let ray = before_hull(whole, layers);
-    var track: Track;
     var samples = 0u;
     // Two phases, so that rays side by side locate together and march together.
     while n < ray.count && is_open(sum) && track.work < tile.work_limit {
-        while !track.has_cell && n < ray.count && track.work < tile.work_limit {
+        while needs_cell(track) && n < ray.count && track.work < tile.work_limit {
             n += find(&track, ray.base + n * ray.advance, ray.advance, frame.interpolation);
         }
+        n += settle(&track, ray.base + n * ray.advance, ray.advance, ray.count - n, frame.interpolation);
         while track.has_cell {
             if blend_layer(&layers, &sum, (ray.first + n + 0.5) * frame.step) {
                 continue;
@@ -70,7 +82,9 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     }
     if n < ray.count && is_open(sum) {
         ray_states[state] = bitcast<vec4u>(vec4f(sum.color, sum.transmittance));
-        ray_states[state + 1u] = vec4u(bitcast<u32>(n), layers.passed, 0u, 0u);
+        let gap = u32(min(track.gap, MOST_GAP));
+        ray_states[state + 1u] = vec4u(bitcast<u32>(n), layers.passed | gap << PASSED_BITS, track.last.x,
+            track.last.y | select(0u, HAS_LAST, track.has_last));
     } else {
         while blend_layer(&layers, &sum, BEYOND_LAYERS) {}
         ray_states[state + 1u] = vec4u(bitcast<u32>(DONE), 0u, 0u, 0u);
@@ -82,4 +96,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     count(COUNT_STEPS, track.topological_steps);
     count(COUNT_FALLBACKS, track.fallbacks);
     count(COUNT_WORK, track.work);
+    count(COUNT_ENTRIES, track.entries);
+    count(COUNT_CROSSINGS, track.crossings);
+    count(COUNT_LOST_SAMPLES, track.lost);
 }

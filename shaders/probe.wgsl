@@ -24,7 +24,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     }
     let point = points[2u * id.x].xyz;
     let query = Query(point, points[2u * id.x + 1u].xyz, PROBE_ENOUGH, points_info.interpolation);
-    let location = locate(query, vec3f(0.0));
+    let location = locate(query);
     var result: Found;
     result.column = NOT_FOUND;
     if location.found {

@@ -44,9 +44,10 @@ fn fill_line(line: vec2u) {
     var n = 0.0;
     // Two phases, so that lines side by side locate together and march together.
     while n < count {
-        while !track.has_cell && n < count {
+        while needs_cell(track) && n < count {
             n += find(&track, top + n * advance, advance, volume.interpolation);
         }
+        n += settle(&track, top + n * advance, advance, count - n, volume.interpolation);
         while track.has_cell {
             let voxel = at + u32(n / parts) * slice;
             let stored = clamp((value_on(track) - volume.value_low) * volume.value_scale, 0.0, 1.0);

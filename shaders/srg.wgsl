@@ -63,6 +63,7 @@ fn begin(@builtin(global_invocation_id) id: vec3u) {
     let state = SRG_STATE * (id.y * tile.size.x + id.x);
     ray_states[state] = bitcast<vec4u>(vec4f(color.rgb, 1.0 - color.a));
     ray_states[state + 1u] = vec4u(bitcast<vec2u>(vec2f(first, select(0.0, last + 1.0, is_met))), 0u, 0u);
+    count(COUNT_ENTRIES, select(0u, 1u, is_met));
 }
 
 @compute @workgroup_size(8, 8)

@@ -283,3 +283,77 @@ fn strategy<'a>(
     };
     Ok(compiled[at].1.as_mut())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{self, CameraSpec, ExplicitCamera, Projection, Scene};
+    use crate::{case::Case, load};
+
+    /// One cell of 100 x 100 x 100.
+    fn one_cell() -> Case {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("cell.grdecl");
+        let mut text = String::from("SPECGRID\n 1 1 1 1 F /\nCOORD\n");
+        for [x, y] in [[0, 0], [100, 0], [0, 100], [100, 100]] {
+            text += &format!("{x} {y} 1000 {x} {y} 1100\n");
+        }
+        text += "/\nZCORN\n 4*1000 4*1100 /\nPORO\n 0.2 /\n";
+        std::fs::write(&path, text).unwrap();
+        load::open(&path).unwrap()
+    }
+
+    #[test]
+    fn samples_that_the_acceleration_grid_lacks_are_counted_as_lost() {
+        let gpu = match Gpu::new(None) {
+            Ok(gpu) => Arc::new(gpu),
+            Err(error) => {
+                assert!(std::env::var("REQUIRE_GPU").is_err(), "{error}");
+                eprintln!("SKIPPED: {error}");
+                return;
+            }
+        };
+        let case = one_cell();
+        // Parallel and along x: all rays come in where nothing will be found, and leave where all is.
+        let scene = Scene {
+            size: [60, 60],
+            strategy: StrategyKind::Plts.name().into(),
+            camera: CameraSpec::Explicit(ExplicitCamera {
+                eye: [-300.0, 50.0, -1050.0],
+                target: [50.0, 50.0, -1050.0],
+                up: [0.0, 0.0, 1.0],
+                fovy_degrees: 20.0,
+                projection: Projection::Parallel,
+            }),
+            vertical_exaggeration: Some(1.0),
+            early_termination: 0.0,
+            ..Scene::default()
+        };
+        let view = scene::resolve(&scene, &case).unwrap();
+        let view = View {
+            sampling_step: 3.0,
+            ..view
+        };
+        let mut renderer = Renderer::new(gpu, &case.grid).unwrap();
+        let stats = |renderer: &mut Renderer| {
+            let frame = renderer.render(&case.grid, &view, &|_| true).unwrap();
+            frame.unwrap().stats
+        };
+        let whole = stats(&mut renderer);
+        assert!(
+            whole.samples > 10_000 && whole.lost_samples == 0,
+            "{whole:?}"
+        );
+        let gpu = renderer.gpu.clone();
+        renderer.grid.lose_half(&gpu, &case.grid).unwrap();
+        let halved = stats(&mut renderer);
+        let missing = whole.samples - halved.samples;
+        let lost = halved.lost_samples;
+        assert!(4 * missing > whole.samples, "{whole:?} {halved:?}");
+        assert!(
+            lost <= missing && 10 * lost > 9 * missing,
+            "{lost} of {missing}"
+        );
+        assert_eq!(whole.entries, whole.covered_pixels);
+    }
+}

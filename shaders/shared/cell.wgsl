@@ -27,6 +27,8 @@ struct Cell {
 struct Solution {
     uvw: vec3f,
     inside: bool,
+    // Inside, or outside of a cell that does not fold over.
+    sure: bool,
     iterations: u32,
     // Rows of the inverse Jacobian of the last iteration.
     inverse_u: vec3f,
@@ -171,11 +173,13 @@ fn solve(cell: Cell, point: vec3f, start: vec3f, enough: f32) -> Solution {
         // What is left is of the square of the step: so far outside it will not come in again.
         let outside = max(-s.uvw, s.uvw - vec3f(1.0));
         if length < SURE_STEP && max(outside.x, max(outside.y, outside.z)) > length {
+            s.sure = true;
             break;
         }
         previous = length;
     }
     s.inside = converged && is_inside(s.uvw);
+    s.sure = s.sure || converged;
     return s;
 }
 
@@ -203,6 +207,7 @@ fn below(cell: Cell, point: vec3f, uv: vec2f) -> Solution {
     var s: Solution;
     s.uvw = vec3f(clamp(uv, vec2f(-1.0), vec2f(2.0)), w);
     s.inside = is_inside(s.uvw);
+    s.sure = true;
     return s;
 }
 

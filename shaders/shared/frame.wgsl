@@ -5,7 +5,7 @@
 @group(0) @binding(1) var<uniform> tile: Tile;
 @group(0) @binding(2) var target_image: texture_storage_2d<rgba32float, write>;
 // Pairs of low and high words, see the COUNT constants.
-@group(0) @binding(3) var<storage, read_write> counters: array<atomic<u32>, 24>;
+@group(0) @binding(3) var<storage, read_write> counters: array<atomic<u32>, 2u * COUNTERS>;
 // What a strategy keeps of each ray of the tile from one dispatch to the next, and behind that the layers of
 // surfaces; floats as their bits, for numbers kept as floats may be flushed to zero.
 @group(0) @binding(4) var<storage, read_write> ray_states: array<vec4u>;

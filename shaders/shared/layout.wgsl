@@ -253,6 +253,8 @@ const COLUMN_FLAG: u32 = 0x40000000u;
 const LIST_OFFSET: u32 = 0x3fffffffu;
 // Corners closer than this along their pillar coincide.
 const COINCIDENT: f32 = 1e-3;
+// Flag of a bin, in the position of its first entry: points there are found only by a search of all cells.
+const BIN_IS_ODD: u32 = 0x80000000u;
 // Voxels along one side of a brick.
 const BRICK: u32 = 8u;
 // Voxels that a thread fills one after the other, downwards.
@@ -298,7 +300,7 @@ const EDGE_DARKNESS: f32 = 0.4;
 const EDGE_FADE_LOW: f32 = 3.0;
 const EDGE_FADE_HIGH: f32 = 12.0;
 // Counters, each of a low and a high word.
-const COUNTERS: u32 = 12u;
+const COUNTERS: u32 = 14u;
 const COUNT_SAMPLES: u32 = 0u;
 const COUNT_ITERATIONS: u32 = 1u;
 const COUNT_STEPS: u32 = 2u;
@@ -309,3 +311,7 @@ const COUNT_PEELS: u32 = 6u;
 const COUNT_RECOVERED: u32 = 7u;
 const COUNT_LOST: u32 = 8u;
 const COUNT_PAUSED: u32 = 9u;
+const COUNT_ENTRIES: u32 = 10u;
+const COUNT_SECTIONS: u32 = 11u;
+const COUNT_CROSSINGS: u32 = 12u;
+const COUNT_LOST_SAMPLES: u32 = 13u;

@@ -1,6 +1,9 @@
 // Point location through the acceleration grid: bin, columns in the bin, layer by depth, Newton.
 // (campagnolo-2021, 4.1; the regular grid here is two-dimensional, with a search by depth in the column.)
+// That is quick and right where cells do not fold over. Bins where some do are searched thoroughly, and so
+// is a bin where the quick search finds no cell but cannot be sure that there is none.
 #import cell
+#import thorough
 
 struct Location {
     found: bool,
@@ -11,6 +14,10 @@ struct Location {
     solution: Solution,
     // Where not found: how many steps of `advance` surely lie outside all cells (at least 1).
     skip: f32,
+    // The quick search has found nothing, but cannot be sure.
+    in_doubt: bool,
+    // Not found by the thorough search, and yet inside a drawn cell.
+    is_lost: bool,
 }
 
 const LAYER_MOVES: u32 = 8u;
@@ -29,20 +36,31 @@ struct Query {
     interpolation: u32,
 }
 
-// Finds the cell that holds a point; `advance` is the displacement to the next sample, used to skip
-// what is empty.
-fn locate(query: Query, advance: vec3f) -> Location {
+// Finds the cell that holds a point.
+fn locate(query: Query) -> Location {
+    var location = locate_quickly(query, vec3f(0.0));
+    locate_thoroughly(query, &location);
+    return location;
+}
+
+fn bin_at(point: vec3f) -> vec2u {
+    let at = floor((point.xy - grid.bin_origin) / grid.bin_size);
+    return vec2u(clamp(at, vec2f(0.0), vec2f(f32(grid.bins_x - 1u), f32(grid.bins_y - 1u))));
+}
+
+// Finds the cell that holds a point, or is in doubt; `advance` is the displacement to the next sample, used to
+// skip what is empty.
+fn locate_quickly(query: Query, advance: vec3f) -> Location {
     let point = query.point;
     var result: Location;
     result.skip = 1.0;
-    let at = floor((point.xy - grid.bin_origin) / grid.bin_size);
-    let bin_xy = vec2u(clamp(at, vec2f(0.0), vec2f(f32(grid.bins_x - 1u), f32(grid.bins_y - 1u))));
+    let bin_xy = bin_at(point);
     let bin = bin_xy.x + grid.bins_x * bin_xy.y;
     let range = bins[bin].y;
     let shallow = grid.depth_low + grid.depth_scale * f32(range & 0xffffu);
     let deep = grid.depth_low + grid.depth_scale * f32(range >> 16u);
-    let first = bins[bin].x;
-    let last = bins[bin + 1u].x;
+    let first = bins[bin].x & ~BIN_IS_ODD;
+    let last = bins[bin + 1u].x & ~BIN_IS_ODD;
     if first == last || point.z < shallow || point.z > deep {
         let low = grid.bin_origin + vec2f(bin_xy) * grid.bin_size;
         var skip = min(steps_to_leave(point.x, advance.x, low.x, low.x + grid.bin_size.x),
@@ -60,13 +78,25 @@ fn locate(query: Query, advance: vec3f) -> Location {
     let low = grid.bin_origin + vec2f(bin_xy) * grid.bin_size;
     result.skip = min(steps_to_leave(point.x, advance.x, low.x, low.x + grid.bin_size.x),
         steps_to_leave(point.y, advance.y, low.y, low.y + grid.bin_size.y));
-    for (var n = first; n < last; n++) {
-        if locate_in_column(bin_columns[n], query, advance, &result) {
-            return result;
-        }
+    let is_odd = (bins[bin].x & BIN_IS_ODD) != 0u;
+    for (var n = first; n < last && !is_odd && !result.found; n++) {
+        result.found = locate_in_column(bin_columns[n], query, advance, &result);
     }
-    result.skip = max(1.0, ceil(result.skip - 1e-3));
+    result.in_doubt = (result.in_doubt || is_odd) && !result.found;
+    result.skip = select(max(1.0, ceil(result.skip - 1e-3)), 1.0, result.in_doubt);
     return result;
+}
+
+// Settles a location that is in doubt.
+fn locate_thoroughly(query: Query, location: ptr<function, Location>) {
+    let bin_xy = bin_at(query.point);
+    let bin = bin_xy.x + grid.bins_x * bin_xy.y;
+    let last = bins[bin + 1u].x & ~BIN_IS_ODD;
+    for (var n = bins[bin].x & ~BIN_IS_ODD; n < last && (*location).in_doubt && !(*location).found; n++) {
+        (*location).found = search_all_layers(bin_columns[n], query, location);
+    }
+    (*location).in_doubt = false;
+    (*location).is_lost = (*location).is_lost && !(*location).found;
 }
 
 // Number of steps until `at` leaves (low, high); a large number where it never does.
@@ -115,10 +145,6 @@ fn search_column(
 ) -> bool {
     let lists = column_lists[column];
     let margin = column_margin(lists);
-    if (lists.x & COLUMN_FLAG) != 0u {
-        (*result).skip = 1.0;
-        return search_all_layers(column, query, uv, result);
-    }
     let inner = clamp(uv, vec2f(0.0), vec2f(1.0));
     let weights = vec4f((1.0 - inner.x) * (1.0 - inner.y), inner.x * (1.0 - inner.y),
         (1.0 - inner.x) * inner.y, inner.x * inner.y);
@@ -213,6 +239,8 @@ fn search_from_layer(
     var direction = 0;
     for (var n = 0u; n < LAYER_MOVES; n++) {
         if layer < 0 || layer >= i32(grid.nk) {
+            // So near to top or bottom of the model that the last layer was tried.
+            (*result).in_doubt = true;
             return false;
         }
         let top_depths = depths_at(layer_entries(lists, u32(layer), 0u));
@@ -226,7 +254,7 @@ fn search_from_layer(
             move_to = -1;
         } else if bottom < -depth_slack(bottom_depths, margin) {
             move_to = 1;
-        } else if is_drawn(column, u32(layer)) {
+        } else if is_drawn(column, u32(layer)) && any(top_depths != bottom_depths) {
             if try_cell(column, u32(layer), query, vec3f(uv, w), result) {
                 return true;
             }
@@ -239,12 +267,18 @@ fn search_from_layer(
                 move_to = direction;
             }
         }
-        if move_to == 0 || (direction != 0 && move_to != direction) {
+        if move_to == 0 {
+            return false;
+        }
+        if direction != 0 && move_to != direction {
+            // Between two layers, so near to both that rounding may hide the point.
+            (*result).in_doubt = true;
             return false;
         }
         direction = move_to;
         layer += move_to;
     }
+    (*result).in_doubt = true;
     return false;
 }
 
@@ -262,19 +296,23 @@ fn depth_spread(patch_depths: vec4f) -> f32 {
 // Newton in one cell; the result's solution is left there either way.
 fn try_cell(column: u32, layer: u32, query: Query, start: vec3f, result: ptr<function, Location>) -> bool {
     let cell = load_cell(column, layer, query.interpolation);
-    let s = solve(cell, relative_to(cell, query.point) + query.low_bits, start, query.enough);
+    let point = relative_to(cell, query.point) + query.low_bits;
+    let s = solve(cell, point, start, query.enough);
     (*result).iterations += s.iterations;
     (*result).work += s.iterations + 1u;
     (*result).solution = s;
+    // No answer, or beside the cell, which contradicts the column's section; and yet among the corners.
+    let is_beside = !s.inside && s.uvw.z >= 0.0 && s.uvw.z <= 1.0;
+    (*result).in_doubt = (*result).in_doubt || (is_beside && is_between(start.xy, 0.0))
+        || ((is_beside || !s.sure) && may_hold(cell, point, vec3f(0.5), 1.0));
     if s.inside {
-        (*result).found = true;
         (*result).cell = cell;
     }
     return s.inside;
 }
 
-// Layers that cross or are turned over allow no search by depth.
-fn search_all_layers(column: u32, query: Query, uv: vec2f, result: ptr<function, Location>) -> bool {
+// Finds the uppermost drawn cell of a column that holds a point, by a thorough search of all of them.
+fn search_all_layers(column: u32, query: Query, result: ptr<function, Location>) -> bool {
     let lists = column_lists[column];
     (*result).work += grid.nk;
     for (var layer = 0u; layer < grid.nk; layer++) {
@@ -286,12 +324,23 @@ fn search_all_layers(column: u32, query: Query, uv: vec2f, result: ptr<function,
         let shallow = min(top, bottom);
         let deep = max(top, bottom);
         if min(min(shallow.x, shallow.y), min(shallow.z, shallow.w)) > COINCIDENT
-            || max(max(deep.x, deep.y), max(deep.z, deep.w)) < -COINCIDENT {
+            || max(max(deep.x, deep.y), max(deep.z, deep.w)) < -COINCIDENT || all(top == bottom) {
             continue;
         }
-        if try_cell(column, layer, query, vec3f(uv, 0.5), result) {
+        let cell = load_cell(column, layer, query.interpolation);
+        let point = relative_to(cell, query.point) + query.low_bits;
+        var s = solve_by_parts(cell, point, query.enough);
+        (*result).iterations += s.iterations;
+        if VERTICAL && !s.inside {
+            s = solve_vertical(cell, point);
+        }
+        (*result).work += PART_WORK * (s.iterations + 1u);
+        if s.inside {
+            (*result).solution = s;
+            (*result).cell = cell;
             return true;
         }
+        (*result).is_lost = (*result).is_lost || encloses(cell, point);
     }
     return false;
 }

@@ -13,7 +13,8 @@ fn section_color(ray: Ray) -> vec4f {
         return vec4f(0.0);
     }
     let point = ray.origin + ray.enter * ray.direction;
-    let location = locate(Query(point, vec3f(0.0), SECTION_ENOUGH, frame.interpolation), vec3f(0.0));
+    let location = locate(Query(point, vec3f(0.0), SECTION_ENOUGH, frame.interpolation));
+    count(COUNT_SECTIONS, 1u);
     if !location.found || is_ghost(location.cell.column, location.cell.layer) {
         return vec4f(0.0);
     }

@@ -14,6 +14,18 @@ struct Track {
     has_cell: bool,
     cell: Cell,
     solution: Solution,
+    // The next sample is to be located thoroughly.
+    in_doubt: bool,
+    // Samples found in no cell since the last one that was found, and how many of them surely lie in one all the same.
+    gap: f32,
+    lost_in_gap: u32,
+    // A sample has been found before, in the cell of this column and layer.
+    has_last: bool,
+    last: vec2u,
+    // Times that the line came into the model, cells that it came into, samples lost.
+    entries: u32,
+    crossings: u32,
+    lost: u32,
     iterations: u32,
     topological_steps: u32,
     fallbacks: u32,
@@ -25,20 +37,88 @@ fn value_on(track: Track) -> f32 {
     return evaluate(track.cell, clamp(track.solution.uvw, vec3f(0.0), vec3f(1.0))).w;
 }
 
-// Locates a sample anew. Where it lies in no cell, so do as many samples as are returned, this one
-// included.
+fn needs_cell(track: Track) -> bool {
+    return !track.has_cell && !track.in_doubt;
+}
+
+// Locates a sample anew, unless that leaves doubt. Where it lies in no cell, so do as many samples as are
+// returned, this one included.
 fn find(track: ptr<function, Track>, point: vec3f, advance: vec3f, interpolation: u32) -> f32 {
-    let location = locate(Query(point, vec3f(0.0), MARCH_ENOUGH, interpolation), advance);
+    let location = locate_quickly(Query(point, vec3f(0.0), MARCH_ENOUGH, interpolation), advance);
     (*track).fallbacks += 1u;
+    return take(track, location);
+}
+
+fn take(track: ptr<function, Track>, location: Location) -> f32 {
     (*track).iterations += location.iterations;
     (*track).work += location.work + 2u;
     (*track).has_cell = location.found;
+    (*track).in_doubt = location.in_doubt;
     if location.found {
         (*track).cell = location.cell;
         (*track).solution = location.solution;
-        return 0.0;
     }
-    return location.skip;
+    let passed = select(location.skip, 0.0, location.found || location.in_doubt);
+    (*track).gap += passed;
+    return passed;
+}
+
+// What follows `find`, outside of its loop because it is rare: locates a sample that is in doubt, and looks back
+// where samples outside all cells have come to an end, at one that is found or at the end of the line, which is
+// `left` samples ahead. Returns how many samples lie in no cell, this one included.
+fn settle(track: ptr<function, Track>, point: vec3f, advance: vec3f, left: f32, interpolation: u32) -> f32 {
+    var passed = 0.0;
+    if (*track).in_doubt {
+        var location: Location;
+        location.in_doubt = true;
+        location.skip = 1.0;
+        locate_thoroughly(Query(point, vec3f(0.0), MARCH_ENOUGH, interpolation), &location);
+        passed = take(track, location);
+        (*track).lost_in_gap += select(0u, 1u, location.is_lost);
+    }
+    if (*track).has_cell || passed >= left {
+        let lost = max(lost_at_ends(*track, point + passed * advance, advance, interpolation), (*track).lost_in_gap);
+        (*track).lost += lost;
+        let enters = (*track).has_cell && (!(*track).has_last || f32(lost) < (*track).gap);
+        (*track).entries += select(0u, 1u, enters);
+        (*track).gap = 0.0;
+        (*track).lost_in_gap = 0u;
+        if (*track).has_cell {
+            arrive(track, enters);
+        }
+    }
+    return passed;
+}
+
+// Counts the cell of the last sample where the line has come into it.
+fn arrive(track: ptr<function, Track>, enters: bool) {
+    let here = vec2u((*track).cell.column, (*track).cell.layer);
+    (*track).crossings += select(0u, 1u, enters || any(here != (*track).last));
+    (*track).has_last = true;
+    (*track).last = here;
+}
+
+// Number of samples in a gap before `point` that lie in the cell before it, or in the one behind it.
+fn lost_at_ends(track: Track, point: vec3f, advance: vec3f, interpolation: u32) -> u32 {
+    var lost = 0u;
+    for (var side = 0u; side < 2u; side++) {
+        let is_before = side == 0u;
+        var cell = track.cell;
+        if is_before {
+            cell = load_cell(track.last.x, track.last.y, interpolation);
+        }
+        // From that end.
+        let start = select(-1.0, -track.gap, is_before);
+        let step = select(-1.0, 1.0, is_before);
+        let is_known = select(track.has_cell, track.has_last, is_before);
+        var n = 0.0;
+        while is_known && f32(lost) < track.gap
+            && encloses(cell, relative_to(cell, point + (start + step * n) * advance)) {
+            n += 1.0;
+            lost += 1u;
+        }
+    }
+    return lost;
 }
 
 // Goes on to the next sample of a line that has a cell; it has none where the cells do not join.
@@ -55,6 +135,7 @@ fn follow(track: ptr<function, Track>, point: vec3f, advance: vec3f, interpolati
         (*track).work += s.iterations + 2u;
         if s.inside {
             (*track).has_cell = true;
+            arrive(track, false);
             break;
         }
         start = s.uvw;

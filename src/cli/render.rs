@@ -161,6 +161,7 @@ fn statistics(
     let stats = &frame.stats;
     json!({
         "strategy": shot.view.strategy.name(),
+        "executor": "gpu",
         "adapter": gpu.describe(),
         "size": shot.layout.size.to_array().map(|n| n as u32),
         "volume_size": shot.view.size,
@@ -177,6 +178,11 @@ fn statistics(
         "peels": stats.peels,
         "recovered_rays": stats.recovered_rays,
         "lost_rays": stats.lost_rays,
+        "covered_pixels": stats.covered_pixels,
+        "entries": stats.entries,
+        "point_locations": stats.point_locations,
+        "cell_crossings": stats.cell_crossings,
+        "lost_samples": stats.lost_samples,
         "cells": {"total": case.grid.dims().cells(), "active": case.grid.active_cells().len()},
         "gpu_bytes": frame.bytes,
         "stages_ms": {

@@ -3,6 +3,8 @@
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
+use super::columns::ColumnShape;
+use super::layout::BIN_IS_ODD;
 use crate::model::{Grid, Ijk};
 
 /// Bytes of acceleration that an active cell may cost; the number of bins follows from it.
@@ -20,7 +22,8 @@ pub struct AccelGrid {
     pub origin: DVec2,
     /// Size of a bin.
     pub bin: DVec2,
-    /// First entry in `columns` and 2 x 16 bits of depth range; one more than there are bins.
+    /// First entry in `columns`, with [`BIN_IS_ODD`] where one of them is odd, and 2 x 16 bits of depth range;
+    /// one more than there are bins.
     pub bins: Vec<[u32; 2]>,
     /// Columns of each bin in rising order.
     pub columns: Vec<u32>,
@@ -31,6 +34,7 @@ pub struct AccelGrid {
 /// The corners that bound the active cells of a column.
 struct Footprint {
     column: u32,
+    is_odd: bool,
     /// Two ends of the used part of each of the four pillars.
     corners: [DVec3; 8],
 }
@@ -76,8 +80,8 @@ impl Footprint {
 
 impl AccelGrid {
     /// Builds the bins over the active columns of a grid, relative to `origin`.
-    pub fn new(grid: &Grid, origin: DVec3) -> Self {
-        let footprints = footprints(grid, origin);
+    pub fn new(grid: &Grid, shapes: &[ColumnShape], origin: DVec3) -> Self {
+        let footprints = footprints(grid, shapes, origin);
         let bounds = footprints.iter().map(Footprint::bounds);
         let start = [DVec3::INFINITY, DVec3::NEG_INFINITY];
         let [low, high] = bounds.fold(start, |[a, b], [c, d]| [a.min(c), b.max(d)]);
@@ -115,10 +119,14 @@ impl AccelGrid {
         let bounds: Vec<[f64; 2]> = footprints.iter().map(|f| f.bounds().map(|b| b.z)).collect();
         let bins = size[0] as usize * size[1] as usize;
         let mut counts = vec![0u32; bins + 1];
+        let mut flags = vec![0; bins + 1];
         let mut ranges = vec![[f64::MAX, f64::MIN]; bins];
-        for (list, bounds) in lists.iter().zip(&bounds) {
+        for ((list, bounds), footprint) in lists.iter().zip(&bounds).zip(footprints) {
             for &(at, _) in list {
                 counts[at as usize + 1] += 1;
+                if footprint.is_odd {
+                    flags[at as usize] = BIN_IS_ODD;
+                }
                 let range = &mut ranges[at as usize];
                 *range = [range[0].min(bounds[0]), range[1].max(bounds[1])];
             }
@@ -148,7 +156,7 @@ impl AccelGrid {
         let bins = counts
             .iter()
             .enumerate()
-            .map(|(n, &first)| [first, pack(ranges.get(n))])
+            .map(|(n, &first)| [first | flags[n], pack(ranges.get(n))])
             .collect();
         Self {
             size,
@@ -161,7 +169,7 @@ impl AccelGrid {
     }
 }
 
-fn footprints(grid: &Grid, origin: DVec3) -> Vec<Footprint> {
+fn footprints(grid: &Grid, shapes: &[ColumnShape], origin: DVec3) -> Vec<Footprint> {
     let dims = grid.dims();
     let columns = (0..dims.columns()).into_par_iter();
     columns
@@ -180,6 +188,7 @@ fn footprints(grid: &Grid, origin: DVec3) -> Vec<Footprint> {
             }
             (ends[0][0] <= ends[0][1]).then(|| Footprint {
                 column: column as u32,
+                is_odd: shapes[column].is_odd,
                 corners: std::array::from_fn(|c| {
                     grid.pillar(i, j, c & 3).at(ends[c & 3][c >> 2]) - origin
                 }),

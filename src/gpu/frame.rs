@@ -36,6 +36,30 @@ pub struct FrameStats {
     pub topological_steps: u64,
     /// Point locations through the acceleration grid.
     pub grid_fallbacks: u64,
+    /// Pixels whose alpha is not zero.
+    pub covered_pixels: u64,
+    /// Times that rays came into the drawn model. PLTS: first samples inside, at the start of the ray or behind one
+    /// outside. LIBC: boundary faces through which rays began to walk, and rays that start inside; faces of faults
+    /// count where rays are set not to walk across. SRG: rays that meet the model, once each. None where cells are
+    /// solid, for there no ray is cast.
+    pub entries: u64,
+    /// Lookups of a point without a cell to start from: those of `grid_fallbacks`, which are all of PLTS's that no
+    /// neighbor answers and those that set LIBC's rays right, and points of opaque sections. SRG looks up no others,
+    /// for its samples come from the volume.
+    pub point_locations: u64,
+    /// Cells that rays passed through, each time. PLTS: in which they have samples; LIBC: all, down to those between
+    /// two samples. None by SRG, whose rays know no cells, nor where cells are solid.
+    pub cell_crossings: u64,
+    /// Lattice samples that lie inside a drawn cell and were found in none.
+    ///
+    /// PLTS: the faces of a cell enclose the sample. Asked are the cell of the last sample before those that are not
+    /// found, that of the first one after them, and each one that a thorough search has tried; in a cell that
+    /// encloses a point, winding around it, the trilinear map takes it. Holes, faults that gape and hidden cells are
+    /// thus not counted, nor what is within a thousandth of a cell of its faces.
+    /// LIBC: samples are found by the segments that they lie on, so that only a ray that lost its way can lose one:
+    /// it is counted where neither walk nor point location go on and the last cell encloses the next sample.
+    /// SRG: none, for samples come from the volume; nor where cells are solid.
+    pub lost_samples: u64,
     /// Rays that have reached their end.
     pub finished_rays: u64,
     /// Entries into the model of the ray that has most of them.
@@ -176,6 +200,7 @@ impl FrameRenderer {
             done += area;
         }
         let pixels = target::read(gpu, &target, view.size)?;
+        stats.covered_pixels = pixels.iter().filter(|pixel| pixel[3] != 0.0).count() as u64;
         stats.wall = start.elapsed();
         Ok(Some((
             Image {
@@ -370,6 +395,10 @@ impl FrameStats {
         self.newton_iterations = count(layout::COUNT_ITERATIONS);
         self.topological_steps = count(layout::COUNT_STEPS);
         self.grid_fallbacks = count(layout::COUNT_FALLBACKS);
+        self.entries = count(layout::COUNT_ENTRIES);
+        self.point_locations = self.grid_fallbacks + count(layout::COUNT_SECTIONS);
+        self.cell_crossings = count(layout::COUNT_CROSSINGS);
+        self.lost_samples = count(layout::COUNT_LOST_SAMPLES);
         self.finished_rays = count(layout::COUNT_FINISHED);
         self.work = count(layout::COUNT_WORK);
         self.peels = count(layout::COUNT_PEELS);

@@ -4,6 +4,7 @@ use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
 use super::accel::AccelGrid;
+use super::columns::{self, ColumnShape};
 use super::device::{Gpu, GpuError};
 use super::layout::{COLUMN_FLAG, GridInfo, LIST_GAPPED, LIST_OFFSET};
 use super::pipeline::flag;
@@ -126,7 +127,8 @@ impl GpuGrid {
         let bounds = grid.bounds().unwrap_or([DVec3::ZERO, DVec3::ONE]);
         let origin = round_origin(bounds);
         let start = std::time::Instant::now();
-        let accel = AccelGrid::new(grid, origin);
+        let shapes = columns::shapes(grid);
+        let accel = AccelGrid::new(grid, &shapes, origin);
         let acceleration_time = start.elapsed();
         let dims = grid.dims();
         if grid.depths().len() > LIST_OFFSET as usize {
@@ -162,12 +164,12 @@ impl GpuGrid {
             .par_iter()
             .map(|d| (d - origin.z) as f32)
             .collect();
-        let lists = column_lists(grid);
+        let lists = column_lists(grid, &shapes);
         Ok(Self {
             origin,
             bounds: bounds.map(|b| b - origin),
             vertical: grid.pillars().iter().all(|p| p.slope() == DVec2::ZERO),
-            layers_cross: lists.iter().any(|l| l[0] & COLUMN_FLAG != 0),
+            layers_cross: shapes.iter().any(|s| s.layers_cross),
             handedness: if grid.signed_bulk_volume() < 0.0 {
                 -1.0
             } else {
@@ -271,6 +273,19 @@ impl GpuGrid {
         }
     }
 
+    /// Empties the bins of the lower half of x, so that tests have a grid in which points are lost.
+    #[cfg(test)]
+    pub(crate) fn lose_half(&mut self, gpu: &Gpu, grid: &Grid) -> Result<(), GpuError> {
+        let mut accel = AccelGrid::new(grid, &columns::shapes(grid), self.origin);
+        for row in accel.bins.chunks_exact_mut(accel.size[0] as usize) {
+            let half = row.len() / 2;
+            let next = row[half][0];
+            row[..half].iter_mut().for_each(|bin| bin[0] = next);
+        }
+        self.bins = gpu.storage("acceleration bins", &accel.bins)?;
+        Ok(())
+    }
+
     /// Bytes by purpose.
     pub fn bytes(&self) -> GpuBytes {
         let sum = |buffers: &[&wgpu::Buffer]| buffers.iter().map(|b| b.size()).sum();
@@ -297,77 +312,25 @@ fn round_origin([low, high]: [DVec3; 2]) -> DVec3 {
     (0.5 * (low + high) / grain).round() * grain
 }
 
-fn column_lists(grid: &Grid) -> Vec<[u32; 4]> {
-    (0..grid.dims().columns())
-        .into_par_iter()
-        .map(|column| {
+fn column_lists(grid: &Grid, shapes: &[ColumnShape]) -> Vec<[u32; 4]> {
+    shapes
+        .par_iter()
+        .enumerate()
+        .map(|(column, shape)| {
             let mut lists = grid
                 .column_lists(column)
                 .map(|list| list.offset() as u32 | if list.gapped() { LIST_GAPPED } else { 0 });
-            if layers_cross(grid, column) {
+            if shape.layers_cross {
                 lists[0] |= COLUMN_FLAG;
             }
-            let level = margin_level(column_margin(grid, column));
             for bit in 0..3 {
-                if level >> bit & 1 == 1 {
+                if shape.margin_level >> bit & 1 == 1 {
                     lists[bit + 1] |= COLUMN_FLAG;
                 }
             }
             lists
         })
         .collect()
-}
-
-/// True where depth does not grow with the layer on some pillar, so that no search by depth works.
-fn layers_cross(grid: &Grid, column: usize) -> bool {
-    let nk = grid.dims().nk;
-    grid.column_lists(column).iter().any(|list| {
-        let planes = (0..2 * nk).map(|plane| grid.depths()[list.entry(plane / 2, plane % 2)]);
-        !planes.is_sorted()
-    })
-}
-
-/// Margins that a column can have; the shader has the same list.
-const COLUMN_MARGINS: [f64; 8] = [0.002, 0.01, 0.03, 0.08, 0.2, 0.5, 1.0, 2.0];
-
-/// The smallest level that covers a margin with half as much again to spare.
-fn margin_level(margin: f64) -> usize {
-    let wanted = 1.5 * margin + 1e-3;
-    COLUMN_MARGINS
-        .iter()
-        .position(|m| *m >= wanted)
-        .unwrap_or(COLUMN_MARGINS.len() - 1)
-}
-
-/// How far outside the column's horizontal section, in cell widths, a point of a cell may lie: pillars
-/// that are not parallel meet a dipping layer at different depths.
-fn column_margin(grid: &Grid, column: usize) -> f64 {
-    let dims = grid.dims();
-    let (i, j) = (column % dims.ni, column / dims.ni);
-    let slopes: [DVec2; 4] = std::array::from_fn(|c| grid.pillar(i, j, c).slope());
-    let mean = slopes.iter().sum::<DVec2>() / 4.0;
-    let spread = slopes.iter().map(|s| s.distance(mean)).fold(0.0, f64::max);
-    if spread == 0.0 {
-        return 0.0;
-    }
-    let margin = |ijk: Ijk| {
-        let corners = grid.hexahedron(ijk).0;
-        let dip = |c: [usize; 4]| {
-            let depths = c.map(|c| corners[c].z);
-            depths.iter().copied().fold(f64::MIN, f64::max)
-                - depths.iter().copied().fold(f64::MAX, f64::min)
-        };
-        let width = [[0, 1], [2, 3], [0, 2], [1, 3]]
-            .iter()
-            .map(|&[a, b]| corners[a].truncate().distance(corners[b].truncate()))
-            .fold(f64::MAX, f64::min);
-        spread * dip([0, 1, 2, 3]).max(dip([4, 5, 6, 7])) / width.max(1e-9)
-    };
-    let cells = (0..dims.nk).map(|k| Ijk { i, j, k });
-    cells
-        .filter(|&c| grid.is_active(c))
-        .map(margin)
-        .fold(0.0, f64::max)
 }
 
 /// Slots column by column, layers fastest: bits of the drawn cells and the count before each word.

@@ -246,6 +246,8 @@ pub const LIST_GAPPED: u32 = 0x8000_0000;
 pub const COLUMN_FLAG: u32 = 0x4000_0000;
 /// Mask of the offset in a list reference.
 pub const LIST_OFFSET: u32 = 0x3fff_ffff;
+/// Flag of a bin where points are found only by a search of all cells.
+pub const BIN_IS_ODD: u32 = 0x8000_0000;
 /// Voxels along one side of a brick.
 pub const BRICK: u32 = 8;
 /// Voxels that a thread fills one after the other, downwards.
@@ -281,7 +283,7 @@ pub const SHEET_LAYERS: u32 = 4;
 /// Loop iterations that a point of a surface costs beside its light, about.
 pub const PAINT_WORK: u32 = 2;
 /// Counters, each of a low and a high word.
-pub const COUNTERS: u32 = 12;
+pub const COUNTERS: u32 = 14;
 /// Counter of the samples inside drawn cells.
 pub const COUNT_SAMPLES: u32 = 0;
 /// Counter of Newton iterations.
@@ -302,6 +304,14 @@ pub const COUNT_RECOVERED: u32 = 7;
 pub const COUNT_LOST: u32 = 8;
 /// Counter of rays that paused within what they were doing.
 pub const COUNT_PAUSED: u32 = 9;
+/// Counter of entries into the model.
+pub const COUNT_ENTRIES: u32 = 10;
+/// Counter of points of opaque sections that were located.
+pub const COUNT_SECTIONS: u32 = 11;
+/// Counter of cells that rays passed through.
+pub const COUNT_CROSSINGS: u32 = 12;
+/// Counter of samples inside the model that were found in no cell.
+pub const COUNT_LOST_SAMPLES: u32 = 13;
 /// Colors of faults: of named ones in turn, and of those without a name.
 pub const FAULT_COLORS: usize = crate::scene::surfaces::PALETTE.len() + 1;
 /// Clip planes at most.

@@ -1,6 +1,7 @@
 //! Everything that owns a GPU object: device, shaders, the compact grid, frames and probes.
 
 pub mod accel;
+pub mod columns;
 pub mod cones;
 pub mod device;
 pub mod extinction;

@@ -13,6 +13,7 @@ sources! {
     "layout" => "shared/layout.wgsl",
     "grid" => "shared/grid.wgsl",
     "cell" => "shared/cell.wgsl",
+    "thorough" => "shared/thorough.wgsl",
     "locate" => "shared/locate.wgsl",
     "frame" => "shared/frame.wgsl",
     "table" => "shared/table.wgsl",

@@ -67,6 +67,11 @@ pub struct StrategyTimes {
     pub newton_iterations_per_sample: f64,
     pub recovered_rays: u64,
     pub lost_rays: u64,
+    pub covered_pixels: u64,
+    pub entries: u64,
+    pub point_locations: u64,
+    pub cell_crossings: u64,
+    pub lost_samples: u64,
     pub gpu_bytes: GpuBytes,
 }
 
@@ -173,6 +178,11 @@ fn strategy(
         newton_iterations_per_sample: stats.newton_iterations as f64 / samples.max(1.0),
         recovered_rays: stats.recovered_rays,
         lost_rays: stats.lost_rays,
+        covered_pixels: stats.covered_pixels,
+        entries: stats.entries,
+        point_locations: stats.point_locations,
+        cell_crossings: stats.cell_crossings,
+        lost_samples: stats.lost_samples,
         gpu_bytes: median.bytes,
     };
     Ok((times, warm_up.light))

@@ -79,7 +79,9 @@ fn frames(bench: &Bench) -> Vec<Row> {
         "longest submission ms",
         "Msamples/s",
         "Newton/sample",
+        "cells/entry",
         "lost rays",
+        "lost samples",
         "geometry B/cell",
         "acceleration",
         "property",
@@ -101,7 +103,10 @@ fn frames(bench: &Bench) -> Vec<Row> {
             cells.extend(times.map(|ms| format!("{ms:.1}")));
             cells.push(format!("{:.2}", 1e-6 * s.samples_per_second));
             cells.push(format!("{:.2}", s.newton_iterations_per_sample));
+            let per_entry = s.cell_crossings as f64 / s.entries.max(1) as f64;
+            cells.push(format!("{per_entry:.1}"));
             cells.push(s.lost_rays.to_string());
+            cells.push(s.lost_samples.to_string());
             let bytes = &s.gpu_bytes;
             let purposes = [
                 bytes.geometry,

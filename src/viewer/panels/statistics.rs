@@ -29,6 +29,7 @@ pub fn show(ui: &mut Ui, about: &About<'_>, _actions: &mut Vec<Action>) {
         ("Samples", picture.stats.samples.to_string()),
         ("On the GPU", format!("{megabytes:.1} MB")),
         ("Lost rays", picture.stats.lost_rays.to_string()),
+        ("Lost samples", picture.stats.lost_samples.to_string()),
     ];
     egui::Grid::new("statistics").striped(true).show(ui, |ui| {
         for (name, value) in rows {
