@@ -17,7 +17,7 @@ use super::{
 };
 use crate::case::{Case, CaseError};
 use crate::gpu::volume::Shape;
-use crate::model::{CellField, Dims, FaultFaces, Grid, Ijk, Spaces};
+use crate::model::{CellField, CellIndex, Dims, FaultFaces, Grid, Ijk, Spaces};
 use crate::strategies::StrategyKind;
 use crate::transfer::{TransferFunction, presets};
 
@@ -224,8 +224,8 @@ pub(super) fn resolve_over(
     check_version(scene)?;
     let active_bounds = case.grid.bounds().ok_or(SceneError::Empty)?;
     let dims = case.grid.dims();
-    let mut cells = case.grid.active_cells().iter();
-    if !cells.any(|c| case.grid.has_thickness(dims.ijk(*c))) {
+    let has_thickness = |c: &CellIndex| case.grid.has_thickness(dims.ijk(*c));
+    if !case.grid.active_cells().iter().any(has_thickness) {
         return Err(SceneError::Flat);
     }
     let exaggeration = exaggeration(scene, active_bounds)?;
