@@ -211,7 +211,7 @@ pub struct VolumeSpec {
     pub budget_mb: Option<u32>,
     /// Voxels of the extinction volume along the grid's x, y and depth.
     pub size: Option<[u32; 3]>,
-    /// Voxels of a light volume; half of the extinction volume's each way where absent.
+    /// Voxels of a light volume; where absent an eighth of the extinction volume's, as many along the depth.
     pub light_size: Option<[u32; 3]>,
 }
 
@@ -473,8 +473,16 @@ impl Lighting {
 
     /// Voxels of a light volume.
     pub fn light_size(&self) -> [u32; 3] {
-        let half = || self.size.map(|n| n.div_ceil(2));
-        self.volume.light_size.unwrap_or_else(half)
+        let size = self.volume.light_size;
+        size.unwrap_or_else(|| Self::light_size_of(self.size))
+    }
+
+    /// Voxels of a light volume of which the scene says nothing: an eighth of those of the extinction volume of
+    /// `size`, and as many along the depth. Light changes most across gently dipping layers: voxels as high as
+    /// they are wide let the dark below a surface through in rings.
+    pub fn light_size_of([x, y, depth]: [u32; 3]) -> [u32; 3] {
+        let lateral = |n: u32| (f64::from(n) / 8.0_f64.sqrt()).ceil() as u32;
+        [lateral(x), lateral(y), depth]
     }
 
     /// Standard deviation of the finest level of the extinction pyramid, in world space: the mean edge of

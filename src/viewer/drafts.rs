@@ -9,7 +9,7 @@ use super::budget::{COARSEST, DraftBudget, DraftSize, Spent};
 use super::worker::{Picture, Wanted};
 use crate::case::Case;
 use crate::picture::Rgb8;
-use crate::scene::{LightingSpec, Scene};
+use crate::scene::{Lighting, LightingSpec, Scene};
 use crate::strategies::StrategyKind;
 
 /// Rays of a draft by LIBC that take longer, however few its pixels are, are bound by the faces it draws.
@@ -89,7 +89,7 @@ impl Side {
             let part = draft.light_part;
             let coarse = self
                 .light_size
-                .map(|s| s.map(|n| n.div_ceil(part).max(2)))
+                .map(|size| coarser(size, part))
                 .unwrap_or(FIRST_LIGHT);
             let is_whole = self.light_size.is_some() && part == 1;
             scene.lighting.volume.light_size = (!is_whole).then_some(coarse);
@@ -128,7 +128,7 @@ impl Side {
         }
         self.budget.learn(&spent(&picture), picture.is_draft);
         let whole = picture.view.lighting.size();
-        self.light_size = Some(whole.map(|n| n.div_ceil(2)));
+        self.light_size = Some(Lighting::light_size_of(whole));
         // A draft replaces what was finished before.
         self.finished = (!picture.is_draft).then(|| of.clone());
         self.drafted = Some(of);
@@ -163,6 +163,16 @@ fn strategy_of(scene: &Scene) -> StrategyKind {
     // One of another name is refused where the scene is resolved.
     let mut named = all.filter(|k| k.name() == scene.strategy);
     named.next().unwrap_or(StrategyKind::Libc)
+}
+
+/// A light volume with `part` times fewer voxels along each axis, on average: less so along the depth, where light
+/// changes most.
+fn coarser([x, y, depth]: [u32; 3], part: u32) -> [u32; 3] {
+    let fewer = |n: u32, power: f64| {
+        let fewer = f64::from(n) / f64::from(part).powf(power);
+        (fewer.ceil() as u32).max(2)
+    };
+    [fewer(x, 1.25), fewer(y, 1.25), fewer(depth, 0.5)]
 }
 
 fn is_lit(lighting: &LightingSpec) -> bool {

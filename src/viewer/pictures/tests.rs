@@ -5,7 +5,7 @@ use std::sync::{Condvar, Mutex};
 
 use super::*;
 use crate::gpu::Gpu;
-use crate::scene::{CameraSpec, FramingCamera, LightingSpec, Projection, Scene};
+use crate::scene::{CameraSpec, FramingCamera, Lighting, LightingSpec, Projection, Scene};
 use crate::viewer::budget::COARSEST;
 
 /// Longest wait for anything.
@@ -149,7 +149,7 @@ fn every_move_leads_to_a_draft_within_bounds_and_the_light_with_it() {
             }
             if light != "off" {
                 let lighting = &picture.view.lighting;
-                let whole = lighting.size().map(|n| n.div_ceil(2));
+                let whole = Lighting::light_size_of(lighting.size());
                 let voxels = |s: [u32; 3]| s.iter().product::<u32>();
                 let made = lighting.light_size();
                 assert!(voxels(made) <= voxels(whole), "{made:?} of {whole:?}");
