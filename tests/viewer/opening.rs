@@ -383,7 +383,7 @@ fn files_without_a_grid_are_added_to_the_case() {
     let mut driven = Driven::open(&[first.clone(), grid.clone()]);
     driven.wait_final();
     assert!(has(driven.harness.state(), "PERMX"));
-    assert_eq!(driven.document().with, [first.clone()]);
+    assert_eq!(driven.document().with, std::slice::from_ref(&first));
     let state = driven.document().state.clone();
     // Dropped on the case that is open: it stays as it looks.
     let file = std::sync::Arc::new(Dropped(second.clone()));
