@@ -77,7 +77,7 @@ fn a_hidden_cell_takes_no_point_from_one_that_is_drawn() {
         let (truth, all) = mean_alphas(&mut renderer, &case, &view);
         println!("layers {k:?}: reference {truth:.4}, strategies {all:.4?}");
         assert!(
-            all.iter().all(|a| (a - truth).abs() < 8e-3 * truth),
+            all.iter().all(|a| (a - truth).abs() < 1.5e-2 * truth),
             "{k:?}"
         );
         means.push(truth);
@@ -107,6 +107,6 @@ fn the_reported_grid_has_the_right_mean() {
     let (truth, all) = mean_alphas(&mut renderer, &case, &view);
     println!("reference {truth:.4}, strategies {all:.4?}");
     // What the other layer hides of this one would be nearly half.
-    assert!(all.iter().all(|a| (a - truth).abs() < 8e-3 * truth));
+    assert!(all.iter().all(|a| (a - truth).abs() < 1.5e-2 * truth));
     assert!(truth > 0.12, "{truth}");
 }

@@ -237,14 +237,16 @@ fn search_from_layer(
     let margin = column_margin(lists);
     var layer = i32(start);
     var direction = 0;
+    var is_pinched = false;
     for (var n = 0u; n < LAYER_MOVES; n++) {
         if layer < 0 || layer >= i32(grid.nk) {
-            // So near to top or bottom of the model that the last layer was tried.
-            (*result).in_doubt = true;
+            // Where edges have no length the way may have been the wrong one.
+            (*result).in_doubt = (*result).in_doubt || is_pinched;
             return false;
         }
         let top_depths = depths_at(layer_entries(lists, u32(layer), 0u));
         let bottom_depths = depths_at(layer_entries(lists, u32(layer), 1u));
+        is_pinched = is_pinched || any(abs(bottom_depths - top_depths) <= vec4f(COINCIDENT));
         let top = dot(weights, top_depths - vec4f(query.point.z)) - query.low_bits.z;
         let bottom = dot(weights, bottom_depths - vec4f(query.point.z)) - query.low_bits.z;
         let thickness = max(bottom - top, 1e-20);
