@@ -211,7 +211,7 @@ pub struct VolumeSpec {
     pub budget_mb: Option<u32>,
     /// Voxels of the extinction volume along the grid's x, y and depth.
     pub size: Option<[u32; 3]>,
-    /// Voxels of a light volume; where absent an eighth of the extinction volume's, as many along the depth.
+    /// Voxels of a light volume; where absent an eighth of the extinction volume's, in flat models more along the depth.
     pub light_size: Option<[u32; 3]>,
 }
 
@@ -443,6 +443,9 @@ impl VolumeSpec {
     }
 }
 
+/// Voxels of a light volume along the depth, where the extinction volume has as many.
+const LIGHT_DEPTH: u32 = 48;
+
 impl Lighting {
     /// True where nothing is shaded.
     pub fn is_off(&self) -> bool {
@@ -478,11 +481,13 @@ impl Lighting {
     }
 
     /// Voxels of a light volume of which the scene says nothing: an eighth of those of the extinction volume of
-    /// `size`, and as many along the depth. Light changes most across gently dipping layers: voxels as high as
-    /// they are wide let the dark below a surface through in rings.
+    /// `size`, half of them each way, but in flat models more along the depth. Light changes most across gently
+    /// dipping layers: voxels as high as they are wide let the dark below a surface through in rings.
     pub fn light_size_of([x, y, depth]: [u32; 3]) -> [u32; 3] {
-        let lateral = |n: u32| (f64::from(n) / 8.0_f64.sqrt()).ceil() as u32;
-        [lateral(x), lateral(y), depth]
+        let along = depth.div_ceil(2).max(LIGHT_DEPTH.min(depth));
+        let lateral = (f64::from(depth) / f64::from(8 * along.max(1))).sqrt();
+        let lateral = |n: u32| (lateral * f64::from(n)).ceil() as u32;
+        [lateral(x), lateral(y), along]
     }
 
     /// Standard deviation of the finest level of the extinction pyramid, in world space: the mean edge of
