@@ -11,7 +11,7 @@ use crate::model::{Grid, Hexahedron, Ijk};
 pub struct ColumnShape {
     /// Depth does not grow with the layer on some pillar, so that no search by depth works.
     pub layers_cross: bool,
-    /// Position in [`COLUMN_MARGINS`].
+    /// Position in `COLUMN_MARGINS`.
     pub margin_level: usize,
     /// Points of it are found only by a search of all cells and of all their parts.
     pub is_odd: bool,
