@@ -85,6 +85,11 @@ pub fn is_case(path: &Path) -> bool {
     own_grid(path).is_some()
 }
 
+/// True where there is something at `path`: a file, a folder, or a case of that base name.
+pub fn is_there(path: &Path) -> bool {
+    path.exists() || is_case(path)
+}
+
 /// The grid of the case that `path` names; `None` for a file that only belongs to one.
 fn own_grid(path: &Path) -> Option<GridSource> {
     let grid = find(path).ok()?.grid;

@@ -75,8 +75,7 @@ pub struct Verbosity {
 
 /// Opens the window, unless what is to be opened is not there: that is told where it was typed.
 fn open_window(cases: Vec<PathBuf>, watches: bool) -> anyhow::Result<()> {
-    let is_there = |path: &PathBuf| path.exists() || load::is_case(path);
-    if let Some(missing) = cases.iter().find(|path| !is_there(path)) {
+    if let Some(missing) = cases.iter().find(|path| !load::is_there(path)) {
         anyhow::bail!(
             "{}: there is no such file, case or command; `strataray --help` lists the commands",
             missing.display()

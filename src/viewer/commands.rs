@@ -119,13 +119,9 @@ impl Window {
         let sizes = self.sides.sizes(ctx.pixels_per_point());
         let setup = &document.state.setup;
         // A difference within the case is a property of it; one of two cases has no name on the command line.
-        let difference = match &document.case {
-            Some(case) => self
-                .difference_of_values()
-                .and_then(Result::ok)
-                .filter(|(of, _)| Arc::ptr_eq(of, case)),
-            None => None,
-        };
+        let case = document.case.as_ref();
+        let difference = self.difference_of_values().and_then(Result::ok);
+        let difference = difference.filter(|(of, _)| case.is_some_and(|c| Arc::ptr_eq(of, c)));
         let is_first = setup.comparison.is_some() && difference.is_none();
         let scene = difference.map_or_else(|| setup.scene.clone(), |d| d.1);
         let scene = Scene {

@@ -99,8 +99,8 @@ impl Window {
             return;
         }
         // What is not there says so in a tab of its own, and keeps no other case from opening.
-        let is_there = |file: &PathBuf| file.exists() || load::is_case(file);
-        let (there, missing): (Vec<_>, Vec<_>) = files.into_iter().partition(is_there);
+        let (there, missing): (Vec<_>, Vec<_>) =
+            files.into_iter().partition(|file| load::is_there(file));
         let missing = missing.into_iter().map(|path| CasePaths {
             path,
             with: Vec::new(),

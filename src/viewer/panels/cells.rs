@@ -33,7 +33,7 @@ pub fn show(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
     exaggeration(ui, about, actions);
 }
 
-/// Takes all filters away.
+/// Clears all filters.
 pub fn clear(ui: &mut Ui, filter: &mut Filter) {
     let is_set = *filter != Filter::default();
     let button = ui.add_enabled(is_set, egui::Button::new("Clear filters"));

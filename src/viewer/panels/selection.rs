@@ -2,6 +2,7 @@
 
 use eframe::egui::{self, Ui};
 
+use super::cells::clear;
 use super::controls::significant;
 use super::{About, table, values};
 use crate::case::Case;
@@ -229,11 +230,10 @@ fn buttons(ui: &mut Ui, about: &About<'_>, table: &Table, actions: &mut Vec<Acti
                 actions.push(Action::Filter(wanted));
             }
         }
-        let all = ui
-            .button("Clear filters")
-            .on_hover_text("Clears all filters");
-        if all.clicked() {
-            actions.push(Action::Filter(Filter::default()));
+        let mut kept = filter.clone();
+        clear(ui, &mut kept);
+        if kept != *filter {
+            actions.push(Action::Filter(kept));
         }
     });
 }
