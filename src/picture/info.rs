@@ -6,6 +6,7 @@ use crate::case::Weighting;
 use crate::scene::facts::Values;
 use crate::scene::{Facts, View};
 use crate::strategies::StrategyKind;
+use crate::transfer::Scale;
 
 /// Facts on what is drawn, from left to right.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -44,7 +45,9 @@ impl Info {
         items.push(cells(facts));
         if let Some(values) = &facts.values {
             let unit = case.unit(&view.property);
-            items.push(said(values, &case.heading_of(&view.property), unit));
+            let is_log = view.transfer.scale == Scale::Log;
+            let heading = case.heading_of(&view.property);
+            items.push(said(values, &heading, unit, is_log));
         }
         let doubt = case
             .property(&view.property)
@@ -175,13 +178,13 @@ fn small(value: f64) -> String {
 }
 
 /// What the values are like.
-fn said(values: &Values, property: &str, unit: &str) -> Item {
+fn said(values: &Values, property: &str, unit: &str, is_log: bool) -> Item {
     let Values { min, max, .. } = *values;
     let number = |v: f64| {
         let text = readable(v, min.abs().max(max.abs()), max - min);
         match text.parse() {
-            // What is not zero is not called so.
-            Ok(0.0) if v != 0.0 => small(v),
+            // On a log scale a small value is far from zero; elsewhere it is rounding.
+            Ok(0.0) if is_log && v != 0.0 => small(v),
             _ => text,
         }
     };
@@ -319,25 +322,37 @@ mod tests {
     fn values_are_said_plainly() {
         let pores = values(0.0231, 0.8497, Some((0.412_34, Weighting::PoreVolume)));
         assert_eq!(
-            first(&said(&pores, "SOIL", "")),
+            first(&said(&pores, "SOIL", "", false)),
             "SOIL 0.023 to 0.85, pore-volume-weighted mean 0.412"
         );
         let bulk = values(200.0, 312.5, Some((250.0, Weighting::BulkVolume)));
         assert_eq!(
-            first(&said(&bulk, "PRESSURE", "BARSA")),
+            first(&said(&bulk, "PRESSURE", "BARSA", false)),
             "PRESSURE 200 to 312.5 BARSA, volume-weighted mean 250"
         );
         let regions = values(1.0, 7.0, None);
-        assert_eq!(first(&said(&regions, "FIPNUM", "")), "FIPNUM 1 to 7");
+        assert_eq!(first(&said(&regions, "FIPNUM", "", false)), "FIPNUM 1 to 7");
         let zero = values(0.0, 0.0, Some((0.0, Weighting::BulkVolume)));
-        assert_eq!(first(&said(&zero, "SGAS", "")), "SGAS is 0 everywhere");
+        assert_eq!(
+            first(&said(&zero, "SGAS", "", false)),
+            "SGAS is 0 everywhere"
+        );
         let some = Values {
             are_all: false,
             ..values(0.3, 0.3, None)
         };
         assert_eq!(
-            first(&said(&some, "PORO", "")),
+            first(&said(&some, "PORO", "", false)),
             "PORO is 0.3 in all of them"
+        );
+        // What is left of 1 minus a saturation is rounding; a small permeability is none.
+        let saturation = values(-5.96e-8, 0.85, None);
+        let said_of = |values, name, is_log| first(&said(values, name, "", is_log));
+        assert_eq!(said_of(&saturation, "SOIL", false), "SOIL 0 to 0.85");
+        let permeability = values(1e-4, 9904.0, None);
+        assert_eq!(
+            said_of(&permeability, "PERMX", true),
+            "PERMX 0.0001 to 9904"
         );
     }
 
