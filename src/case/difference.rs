@@ -43,18 +43,22 @@ impl Case {
         Some(Difference { now, base, at })
     }
 
-    /// What a property or difference is called above a picture: `SOIL minus SOIL of 2001-06-30`.
+    /// What a property or difference is called above a picture: `SOIL change relative to 2001-06-30`.
     pub fn title_of(&self, name: &str) -> String {
         let Some(Difference { now, base, at }) = self.difference(name) else {
             let known = self.minus.as_ref().filter(|m| m.name == name);
             return known.map_or_else(|| name.to_owned(), |m| m.title.clone());
         };
         let at = at.and_then(|at| self.step(at).ok());
-        match at.and_then(|n| self.steps.get(n)) {
-            Some(step) if step.date.is_empty() => {
-                format!("{now} minus {base} of day {}", step.days)
-            }
-            Some(step) => format!("{now} minus {base} of {}", step.date),
+        let when = at.and_then(|n| self.steps.get(n));
+        let when = when.map(|step| match step.date.is_empty() {
+            true => format!("day {}", step.days),
+            false => step.date.clone(),
+        });
+        match when {
+            // The date of the step shown follows.
+            Some(when) if now == base => format!("{now} change relative to {when}"),
+            Some(when) => format!("{now} minus {base} of {when}"),
             None => format!("{now} minus {base}"),
         }
     }
@@ -315,7 +319,10 @@ mod tests {
         assert_eq!(of("SOIL-SWAT"), None);
         assert_eq!(difference_name("SWAT", "SOIL", None), "SWAT-SOIL@same");
         let title = case.title_of("SOIL-SOIL@0");
-        assert_eq!(title, format!("SOIL minus SOIL of {}", case.steps[0].date));
+        assert_eq!(
+            title,
+            format!("SOIL change relative to {}", case.steps[0].date)
+        );
         assert_eq!(case.heading_of("SOIL-SOIL@0"), "SOIL difference");
         assert_eq!(case.title_of("SWAT-SOIL@same"), "SWAT minus SOIL");
         assert_eq!(case.title_of("SOIL"), "SOIL");

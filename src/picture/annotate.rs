@@ -12,7 +12,6 @@ use super::pen::Pen;
 use super::{Image, Rgb8, axes, srgb_8bit};
 use crate::case::{Case, Step};
 use crate::scene::{Scene, SceneError, View, resolve};
-use crate::transfer::TransferFunction;
 
 /// What to write and draw.
 #[derive(Debug, Clone, Default)]
@@ -58,15 +57,11 @@ impl Annotations {
         }
     }
 
-    /// The legend of a transfer function.
-    pub fn key<'a>(
-        &'a self,
-        transfer: &'a TransferFunction,
-        unit: f64,
-        width: &'a dyn Fn(&str) -> f64,
-    ) -> Key<'a> {
+    /// The legend of a view's colors.
+    pub fn key<'a>(&'a self, view: &'a View, unit: f64, width: &'a dyn Fn(&str) -> f64) -> Key<'a> {
         Key {
-            transfer,
+            transfer: &view.transfer,
+            beyond: view.beyond,
             heading: [&self.property, &self.unit],
             has_opacity: self.has_opacity,
             unit,
@@ -153,7 +148,7 @@ impl Layout {
         let canvas = Canvas::new(view.size, &mut []);
         let width = |text: &str| canvas.text_width(text, unit);
         let annotations = Annotations::of(case, view);
-        let key = annotations.key(&view.transfer, unit, &width);
+        let key = annotations.key(view, unit, &width);
         Self::of(size, unit, &annotations.parts(&key, size.y))
     }
 }
@@ -243,7 +238,7 @@ fn beside_volume(picture: &mut Rgb8, view: &View, layout: &Layout, annotations: 
     if let Some(strip) = layout.legend {
         let legend = {
             let width = |text: &str| pen.canvas.text_width(text, unit);
-            let key = annotations.key(&view.transfer, unit, &width);
+            let key = annotations.key(view, unit, &width);
             key.laid_out(strip, layout.is_narrow)
         };
         pen.legend(&legend);
@@ -294,6 +289,7 @@ pub(super) mod tests {
             box_corners,
             subject: crate::scene::Subject::of_box(box_corners).into(),
             strategy: StrategyKind::ALL[0],
+            beyond: [false; 2],
             property: "SWAT".into(),
             step: 0,
             field: CellField::new(Vec::new()).into(),
@@ -349,11 +345,11 @@ pub(super) mod tests {
         }
     }
 
-    fn layout(size: [u32; 2], transfer: &TransferFunction, notes: &Annotations) -> Layout {
+    fn layout(size: [u32; 2], view: &View, notes: &Annotations) -> Layout {
         let unit = Pen::unit_of(size);
         let canvas = Canvas::new(size, &mut []);
         let width = |text: &str| canvas.text_width(text, unit);
-        let key = notes.key(transfer, unit, &width);
+        let key = notes.key(view, unit, &width);
         let parts = notes.parts(&key, f64::from(size[1]));
         Layout::of(DVec2::from_array(size.map(f64::from)), unit, &parts)
     }
@@ -368,7 +364,7 @@ pub(super) mod tests {
     ) -> (Layout, Rgb8) {
         let mut seen = view(size, background);
         change(&mut seen);
-        let layout = layout(size, &seen.transfer, notes);
+        let layout = layout(size, &seen, notes);
         seen = view(layout.volume_size(), background);
         change(&mut seen);
         let count = seen.size[0] as usize * seen.size[1] as usize;

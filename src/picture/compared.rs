@@ -79,7 +79,7 @@ pub fn draw_legend(part: &mut Rgb8, view: &View, annotations: &Annotations, size
     let mut pen = Pen::new(part.canvas(), view.background, unit);
     let legend = {
         let text = |text: &str| pen.canvas.text_width(text, unit);
-        let key = annotations.key(&view.transfer, unit, &text);
+        let key = annotations.key(view, unit, &text);
         let left = width - key.widths(0.85 * height).full;
         let strip = [[left, 2.0 * unit], [width, height - 2.0 * unit]].map(DVec2::from_array);
         key.laid_out(strip, false)

@@ -35,11 +35,13 @@ pub fn difference_picture(differences: &[f64], size: [u32; 2], scale: f64, title
     let mut pen = Pen::new(picture.canvas(), white, unit);
     pen.title(title);
     let largest = differences.iter().copied().fold(0.0, f64::max);
+    let beyond = largest > scale;
     let largest = format!("largest {}", label(largest, largest, 0.01 * largest));
     let low = DVec2::new(f64::from(beside), 2.2 * unit);
     let high = DVec2::from_array(framed.map(f64::from));
     let legend = Key {
         transfer: &colors(scale),
+        beyond: [false, beyond],
         heading: ["CIEDE2000", &largest],
         has_opacity: false,
         unit,

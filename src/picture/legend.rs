@@ -32,6 +32,8 @@ pub const GROUND: f64 = 0.05;
 pub struct Key<'a> {
     /// Colors and opacities.
     pub transfer: &'a TransferFunction,
+    /// Values lie below the range, and above.
+    pub beyond: [bool; 2],
     /// Name of the property, and its unit, which may be empty.
     pub heading: [&'a str; 2],
     /// The opacity counts in the picture: a curve of it stands beside the bar.
@@ -87,7 +89,7 @@ impl Key<'_> {
                 } else {
                     self.most(HIGHEST * unit)
                 };
-                let labels = marks(self.transfer, WANTED, count);
+                let labels = self.marks(WANTED, count);
                 let widest = labels.iter().map(|l| self.text_width(&l.1));
                 let opacities = if is_narrow { 0.0 } else { self.opacity_width() };
                 opacities + (BAR + TICK + GAP) * unit + widest.fold(0.0, f64::max)
@@ -171,7 +173,7 @@ impl Key<'_> {
         let most = if is_narrow { 2 } else { self.most(height) };
         let wanted = ((height / (2.4 * unit)) as usize).clamp(2, WANTED);
         let mut taken: Vec<f64> = Vec::new();
-        let mut labels = marks(self.transfer, wanted, most);
+        let mut labels = self.marks(wanted, most);
         // Where there is no room for all, the ends of the range go first.
         labels.sort_by(|a, b| (b.0 - 0.5).abs().total_cmp(&(a.0 - 0.5).abs()));
         for (position, text) in labels {
@@ -197,6 +199,20 @@ impl Key<'_> {
             );
         }
         height + unit + caption
+    }
+
+    /// What stands beside the bar, the ends marked where their colors stand for values beyond them too.
+    fn marks(&self, wanted: usize, most: usize) -> Vec<(f64, String)> {
+        let mut marks = marks(self.transfer, wanted, most);
+        let mark =
+            |(_, text): &mut (f64, String), sign: char| text.insert_str(0, &format!("{sign} "));
+        if let ([true, _], Some(first)) = (self.beyond, marks.first_mut()) {
+            mark(first, '≤');
+        }
+        if let ([_, true], Some(last)) = (self.beyond, marks.last_mut()) {
+            mark(last, '≥');
+        }
+        marks
     }
 
     /// Swatches with their numbers, from the top; the height that they take.
@@ -353,7 +369,7 @@ const WANTED: usize = 7;
 ///
 /// The true ends, and between them about `wanted` round values; where the bar has parts of one color, the limits
 /// of the bands, or every category in its middle. Of them each so many that at most `most` are left.
-pub fn marks(transfer: &TransferFunction, wanted: usize, most: usize) -> Vec<(f64, String)> {
+fn marks(transfer: &TransferFunction, wanted: usize, most: usize) -> Vec<(f64, String)> {
     let [low, high] = transfer.range;
     let placed =
         |(value, text): (f64, String)| (transfer.position(transfer.scale.shown(value, low)), text);
@@ -522,6 +538,7 @@ mod tests {
     fn laid_out(transfer: &TransferFunction, height: f64, is_narrow: bool) -> (Area, Legend) {
         let key = Key {
             transfer,
+            beyond: [false, true],
             heading: ["PRESSURE-PRESSURE@0", "BARSA"],
             has_opacity: true,
             unit: 12.0,

@@ -111,6 +111,7 @@ fn view(grid: &Grid, field: CellField, extinction: f64, sampling_step: f64) -> V
         box_corners,
         subject: crate::scene::Subject::of_box(box_corners).into(),
         strategy: StrategyKind::ALL[0],
+        beyond: [false; 2],
         property: "TEST".into(),
         step: 0,
         interpolation: Interpolation::Cell,

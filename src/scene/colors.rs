@@ -81,6 +81,25 @@ pub(super) fn resolve(asked: &Asked<'_>, field: &Arc<CellField>) -> Result<Color
     })
 }
 
+/// Part of a range, in its scale, that does not show beside the bar of a legend.
+const UNSEEN: f64 = 1e-3;
+
+/// True where defined values lie below the range of colors, and above.
+pub(super) fn beyond(transfer: &TransferFunction, field: &CellField) -> [bool; 2] {
+    let scale = &transfer.scale;
+    let is_ramp = !matches!(scale, Scale::Categories(_));
+    let Some(values) = ValueRange::of(field).filter(|_| is_ramp) else {
+        return [false; 2];
+    };
+    let [low, high] = transfer.range;
+    let unseen = UNSEEN * (high - low);
+    let has_no_logarithm = *scale == Scale::Log && values.min <= 0.0;
+    [
+        has_no_logarithm || scale.shown(values.min, low) < low - unseen,
+        scale.shown(values.max, low) > high + unseen,
+    ]
+}
+
 /// The ends of the range as true values, and what the values are like that they are taken from.
 fn ends(
     asked: &Asked<'_>,

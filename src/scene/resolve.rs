@@ -97,6 +97,8 @@ pub struct View {
     pub interpolation: Interpolation,
     /// Value to color and extinction.
     pub transfer: TransferFunction,
+    /// Values of the step shown lie below its range, and above.
+    pub beyond: [bool; 2],
     /// The numbers in which colors are shaded and blended.
     pub blending: Blending,
     /// Samples lie at distances `(n + 1/2) * sampling_step` from where rays start.
@@ -250,6 +252,7 @@ pub(super) fn resolve_over(
         field: shown,
         transfer,
     } = colors::resolve(&asked, &field)?;
+    let beyond = colors::beyond(&transfer, &field);
     let clip = clip(&scene.clip, scene.mode)?;
     let Cells {
         field,
@@ -281,6 +284,7 @@ pub(super) fn resolve_over(
         step,
         interpolation: interpolation(scene),
         transfer,
+        beyond,
         blending: scene.blending,
         sampling_step: sampling_step(scene, edges, world_bounds)?,
         early_termination: early_termination(scene)?,

@@ -59,7 +59,7 @@ pub fn laid_out(
         let (view, case) = shown.as_ref()?;
         let annotations = Annotations::of(case, view);
         let width = |text: &str| width(painter, text);
-        let key = annotations.key(&view.transfer, UNIT, &width);
+        let key = annotations.key(view, UNIT, &width);
         let height = places[0].map_or(0.0, |p| f64::from(p.height()));
         Some(annotations.parts(&key, height))
     });
@@ -213,7 +213,7 @@ fn facts(painter: &Painter, page: &Page, view: &View, [left, right]: [f64; 2], i
 
 fn legend(painter: &Painter, page: &Page, strip: Area, view: &View, annotations: &Annotations) {
     let width = |text: &str| width(painter, text);
-    let key = annotations.key(&view.transfer, UNIT, &width);
+    let key = annotations.key(view, UNIT, &width);
     draw_legend(
         painter,
         page.place,

@@ -17,6 +17,15 @@ const SHORTEST: f64 = 3.0;
 const TICK: f64 = 0.4;
 const GAP: f64 = 0.25;
 
+/// Places between the labels of an edge that are tried for its name.
+const BETWEEN: i32 = 24;
+/// Pixels by which a name is not said to be moved.
+const NOT_MOVED: f64 = 1.0;
+/// Length of a tick at most where it is not at right angles to its edge, in text heights.
+const LONGEST_TICK: f64 = 1.2;
+/// Rotation of the box on the map, in degrees, from which ticks follow the lines of the map.
+const LEAST_ROTATION: f64 = 1.0;
+
 /// How far an edge's outward direction goes to the side where the edge is upright.
 const UPRIGHT: f64 = 0.9;
 
@@ -45,6 +54,14 @@ impl Coordinate {
         match self {
             Self::Easting => "Easting",
             Self::Northing => "Northing",
+            Self::Depth => "Depth",
+        }
+    }
+
+    fn short_name(self) -> &'static str {
+        match self {
+            Self::Easting => "E",
+            Self::Northing => "N",
             Self::Depth => "Depth",
         }
     }
@@ -171,13 +188,15 @@ impl Scale {
             let point = self.ends[0].lerp(self.ends[1], (value - a) / (b - a));
             let at = view.camera.project(point, view.aspect())? * layout.paper.size;
             let half = layout.half(&text, layout.paper.unit);
-            let out = (TICK + GAP) * layout.paper.unit + half.dot(self.outward.abs());
-            let middle = at + out * self.outward;
+            let tick = self.tick(layout, view, point, at);
+            let out = GAP * layout.paper.unit + half.dot(self.outward.abs());
+            let middle = at + tick + out * self.outward;
             let area = layout.area(&text, middle);
             at.is_finite().then_some(Label {
                 is_moved: middle.distance(0.5 * (area[0] + area[1])) > 0.5,
                 text,
                 at,
+                tick,
                 area,
             })
         };
@@ -186,47 +205,88 @@ impl Scale {
         values.filter_map(at).collect()
     }
 
-    fn write(&self, layout: &mut Arrangement<'_>, labels: &[Label], length_unit: &str) {
+    /// The tick of a point on the edge, at right angles to the edge; where the box is rotated on the map, along
+    /// the line of the map that has the point's value, since the other coordinate changes along the edge too.
+    fn tick(&self, layout: &Arrangement<'_>, view: &View, point: DVec3, at: DVec2) -> DVec2 {
         let unit = layout.paper.unit;
-        let mut deepest: f64 = 0.0;
+        let right = TICK * unit * self.outward;
+        let value = |p: DVec3| self.coordinate.of(view, p);
+        let edge = self.ends[1] - self.ends[0];
+        // Horizontal steps that show in the picture and in the digits of a coordinate.
+        let step = 0.05 * edge.length();
+        let change = [DVec3::X, DVec3::Y].map(|way| value(point + step * way) - value(point));
+        let line = DVec3::new(-change[1], change[0], 0.0);
+        let (Some(line), Some(edge)) = (line.try_normalize(), edge.try_normalize()) else {
+            return right;
+        };
+        if edge.z.abs() > 0.5 || line.dot(edge).abs() < LEAST_ROTATION.to_radians() {
+            return right;
+        }
+        let beyond = view.camera.project(point + step * line, view.aspect());
+        let beyond = beyond.map(|p| p * layout.paper.size - at);
+        let Some(way) = beyond.and_then(DVec2::try_normalize) else {
+            return right;
+        };
+        let outward = way.dot(self.outward);
+        let length = (TICK * unit / outward.abs()).min(LONGEST_TICK * unit);
+        length * outward.signum() * way
+    }
+
+    fn write(&self, layout: &mut Arrangement<'_>, labels: &[Label], length_unit: &str) {
         for label in labels {
             layout.write(&label.text, label.area);
-            let tick = [label.at, label.at + TICK * unit * self.outward];
-            layout.made.strokes.push(tick);
-            let half = 0.5 * (label.area[1] - label.area[0]);
-            deepest = deepest.max(2.0 * half.dot(self.outward.abs()));
+            layout.made.strokes.push([label.at, label.at + label.tick]);
         }
-        let name = match length_unit.is_empty() {
-            true => self.coordinate.name().to_owned(),
-            false => format!("{} ({length_unit})", self.coordinate.name()),
+        let named = |name: &str| match length_unit.is_empty() {
+            true => name.to_owned(),
+            false => format!("{name} ({length_unit})"),
         };
-        let half = layout.half(&name, unit);
-        let out = (TICK + 1.5 * GAP) * unit + deepest + half.dot(self.outward.abs());
+        let names = [self.coordinate.name(), self.coordinate.short_name()].map(named);
+        let places = names.each_ref().map(|n| self.place(layout, labels, n));
+        // The short one where the other would be moved, and may come to lie on the model.
+        let is_short = places[0].is_none_or(|(moved, _)| moved > NOT_MOVED);
+        let chosen = usize::from(is_short && places[1].is_some());
+        if let Some((_, area)) = places[chosen] {
+            layout.write(&names[chosen], area);
+        }
+    }
+
+    /// Where a name goes, and how far it is moved there to be in the picture.
+    fn place(&self, layout: &Arrangement<'_>, labels: &[Label], name: &str) -> Option<(f64, Area)> {
+        let unit = layout.paper.unit;
+        let half = layout.half(name, unit);
+        let deep = |l: &Label| (l.area[1] - l.area[0]).dot(self.outward.abs());
+        let deepest = labels.iter().map(deep).fold(0.0, f64::max);
+        let near = (TICK + GAP) * unit + half.dot(self.outward.abs());
+        let out = near + 0.5 * GAP * unit + deepest;
+        let on_edge = |t: f64| self.seen[0].lerp(self.seen[1], t);
         // Beyond the labels, in the middle of the edge or as near to that as there is room; of an upright edge
-        // above or below them, where it is narrower.
-        let places = [0.5, 0.35, 0.65, 0.2, 0.8, 0.0, 1.0, -0.1, 1.1];
-        let beyond = places.map(|t| self.seen[0].lerp(self.seen[1], t) + out * self.outward);
-        let start = [DVec2::INFINITY, DVec2::NEG_INFINITY];
-        let column = labels.iter().fold(start, |[low, high], l| {
-            [low.min(l.area[0]), high.max(l.area[1])]
-        });
-        let x = match self.outward.x < 0.0 {
-            true => column[1].x - half.x,
-            false => column[0].x + half.x,
+        // above or below them, where it is narrower; else between them.
+        let beyond = [0.5, 0.35, 0.65, 0.2, 0.8, 0.0, 1.0, -0.1, 1.1];
+        let beyond = beyond.map(|t| on_edge(t) + out * self.outward);
+        let between = (0..=BETWEEN).map(|n| f64::from(n) / f64::from(BETWEEN));
+        let between = between.map(|t| on_edge(t) + near * self.outward);
+        let height = |l: &&Label| l.area[0].y;
+        let order = |a: &&Label, b: &&Label| height(a).total_cmp(&height(b));
+        let [top, bottom] = [labels.iter().min_by(order), labels.iter().max_by(order)];
+        let level = |l: &Label| match self.outward.x < 0.0 {
+            true => l.area[1].x - half.x,
+            false => l.area[0].x + half.x,
         };
-        let ends = [column[0].y - half.y, column[1].y + half.y].map(|y| DVec2::new(x, y));
+        let above = top.map(|l| DVec2::new(level(l), l.area[0].y - half.y));
+        let below = bottom.map(|l| DVec2::new(level(l), l.area[1].y + half.y));
+        let ends: Vec<DVec2> = above.into_iter().chain(below).collect();
         let mut places = [&ends[..], &beyond].concat();
         if self.outward.x.abs() < UPRIGHT {
             places.rotate_left(ends.len());
         }
-        // Where it would be moved into the picture it may come to lie on the model.
-        let moved = |(at, area): &(DVec2, Area)| at.distance(0.5 * (area[0] + area[1]));
-        let areas = places.into_iter().map(|at| (at, layout.area(&name, at)));
-        let free = areas.filter(|(_, area)| layout.is_free(area));
-        let least = free.min_by(|a, b| moved(a).round().total_cmp(&moved(b).round()));
-        if let Some((_, area)) = least {
-            layout.write(&name, area);
-        }
+        let placed = |at: DVec2| {
+            let area = layout.area(name, at);
+            (at.distance(0.5 * (area[0] + area[1])), area)
+        };
+        let all = places.into_iter().chain(between).map(placed);
+        let free = all.filter(|(_, area)| layout.is_free(area));
+        free.min_by(|a, b| a.0.round().total_cmp(&b.0.round()))
     }
 }
 
@@ -235,6 +295,8 @@ struct Label {
     text: String,
     /// Where on the edge.
     at: DVec2,
+    /// From there to the end of its tick.
+    tick: DVec2,
     area: Area,
     /// It would have been cut at the rim.
     is_moved: bool,
