@@ -36,6 +36,8 @@ pub(super) struct Asked<'a> {
 pub(super) struct Colors {
     pub field: Arc<CellField>,
     pub transfer: TransferFunction,
+    /// Values lie below the range, and above.
+    pub beyond: [bool; 2],
 }
 
 /// How values vary inside a cell: a category never passes into another, and a solid cell has one value.
@@ -77,6 +79,7 @@ pub(super) fn resolve(asked: &Asked<'_>, field: &Arc<CellField>) -> Result<Color
     };
     Ok(Colors {
         field: transfer.scale.field(field, range[0]),
+        beyond: beyond(&transfer, field),
         transfer,
     })
 }
@@ -85,7 +88,7 @@ pub(super) fn resolve(asked: &Asked<'_>, field: &Arc<CellField>) -> Result<Color
 const UNSEEN: f64 = 1e-3;
 
 /// True where defined values lie below the range of colors, and above.
-pub(super) fn beyond(transfer: &TransferFunction, field: &CellField) -> [bool; 2] {
+fn beyond(transfer: &TransferFunction, field: &CellField) -> [bool; 2] {
     let scale = &transfer.scale;
     let is_ramp = !matches!(scale, Scale::Categories(_));
     let Some(values) = ValueRange::of(field).filter(|_| is_ramp) else {

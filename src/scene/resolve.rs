@@ -251,8 +251,8 @@ pub(super) fn resolve_over(
     let Colors {
         field: shown,
         transfer,
+        beyond,
     } = colors::resolve(&asked, &field)?;
-    let beyond = colors::beyond(&transfer, &field);
     let clip = clip(&scene.clip, scene.mode)?;
     let Cells {
         field,
