@@ -224,13 +224,7 @@ pub(super) fn resolve_over(
     range: Option<[f64; 2]>,
 ) -> Result<View, SceneError> {
     check_version(scene)?;
-    let active_bounds = case.grid.bounds().ok_or(SceneError::Empty)?;
-    let dims = case.grid.dims();
-    let has_thickness = |c: &CellIndex| case.grid.has_thickness(dims.ijk(*c));
-    if !case.grid.active_cells().iter().any(has_thickness) {
-        return Err(SceneError::Flat);
-    }
-    let exaggeration = exaggeration(scene, active_bounds)?;
+    let exaggeration = exaggeration(scene, active_bounds(case)?)?;
     let spaces = Spaces::new(case.grid.map_axes(), exaggeration);
     let edges = mean_world_edges(case, exaggeration);
     let property = match &scene.property {
@@ -304,6 +298,17 @@ pub(super) fn resolve_over(
         show_legend: scene.show.legend,
         facts,
     })
+}
+
+/// The box in grid space of the cells that can be shown.
+fn active_bounds(case: &Case) -> Result<[DVec3; 2], SceneError> {
+    let grid = &case.grid;
+    let has_thickness = |c: &CellIndex| grid.has_thickness(grid.dims().ijk(*c));
+    match grid.bounds() {
+        None => Err(SceneError::Empty),
+        Some(_) if !grid.active_cells().iter().any(has_thickness) => Err(SceneError::Flat),
+        Some(bounds) => Ok(bounds),
+    }
 }
 
 fn lighting(scene: &Scene, case: &Case, corners: &[DVec3; 8]) -> Result<Lighting, SceneError> {
