@@ -1,27 +1,31 @@
 //! StrataRay: volume ray casting of corner-point reservoir grids and their simulation results.
 //!
-//! Modules in the order in which data flows:
-//! [`load`] turns files into a [`case::Case`] (a [`model`] and its results; [`save`] writes the files
-//! of synthetic ones), a [`scene`] says what to look at and is resolved against the case, [`transfer`]
-//! maps values to color and extinction, [`gpu`] holds the compact grid on the device, [`strategies`]
-//! cast the rays, a [`renderer`] remakes only what a view changes, [`picking`] finds what lies under the pointer, [`mod@reference`] does the same on
-//! the CPU in plain f64, [`metrics`] and [`mod@compare`] say how far pictures are apart, and
-//! [`picture`] turns the result into a file or a film.
+//! Each room imports only from those before it:
+//!
+//! | room | what |
+//! | --- | --- |
+//! | [`image`] | pictures as pixels, colors, and how far two pictures are apart |
+//! | [`model`] | the corner-point grid: cells, topology, faults, fields; models by formula |
+//! | [`transfer`] | values to color and extinction |
+//! | [`mod@case`] | a model with its properties and steps; from files ([`case::load`]) and into them ([`case::save`]) |
+//! | [`scene`] | what a scene file says |
+//! | [`view`] | a scene resolved against a case: what is shown, from where, and how it looks |
+//! | [`render`] | from a view to an image, on the GPU |
+//! | [`mod@reference`] | the same in plain f64 on the CPU: the truth that the others are measured against |
+//! | [`picking`] | what is seen at a place in the image |
+//! | [`picture`] | image files, legends, axes, films |
+//! | [`mod@compare`] | strategies side by side |
+//! | [`viewer`] | the window |
 
 pub mod case;
 pub mod compare;
-pub mod filming;
-pub mod gpu;
-pub mod load;
-pub mod markdown;
-pub mod metrics;
+pub mod image;
 pub mod model;
 pub mod picking;
 pub mod picture;
 pub mod reference;
-pub mod renderer;
-pub mod save;
+pub mod render;
 pub mod scene;
-pub mod strategies;
 pub mod transfer;
+pub mod view;
 pub mod viewer;

@@ -6,15 +6,16 @@ mod common;
 use common::shape::{Shape, parallelepipeds};
 use glam::DVec3;
 use strataray::case::Case;
-use strataray::gpu::{GpuGrid, probe};
+use strataray::image::Image;
 use strataray::model::VertexField;
-use strataray::picture::Image;
 use strataray::reference::{self, Locator};
-use strataray::renderer::Renderer;
+use strataray::render::Renderer;
+use strataray::render::gpu::{GpuGrid, probe};
 use strataray::scene::{
-    self, CameraSpec, FramingCamera, Interpolation, OpacitySpec, Projection, RangeSpec, Scene, View,
+    CameraSpec, FramingCamera, Interpolation, OpacitySpec, Projection, RangeSpec, Scene,
+    StrategyKind,
 };
-use strataray::strategies::StrategyKind;
+use strataray::view::{self, View};
 
 fn scene(azimuth: f64, elevation: f64, opacity: &[[f64; 2]]) -> Scene {
     let mut scene = Scene {
@@ -108,7 +109,7 @@ fn check_alphas(case: &Case, solids: &[Solid], what: &str) {
     let mut renderer = Renderer::new(gpu, &case.grid).unwrap();
     for (azimuth, elevation) in [(205.0, 35.0), (90.5, 7.0), (10.0, -50.0)] {
         let scene = scene(azimuth, elevation, &[[0.0, 0.6], [1.0, 0.6]]);
-        let view = scene::resolve(&scene, case).unwrap();
+        let view = view::resolve(&scene, case).unwrap();
         for by in all() {
             let image = picture(&mut renderer, case, &view, by);
             let name = by.map_or("reference", StrategyKind::name);
@@ -200,7 +201,7 @@ fn nothing_bleeds_across_a_fault() {
             [0.98, 0.0],
             [1.0, 0.0],
         ];
-        let view = scene::resolve(&scene(205.0, 35.0, &opacity), &case).unwrap();
+        let view = view::resolve(&scene(205.0, 35.0, &opacity), &case).unwrap();
         let mut renderer = Renderer::new(gpu.clone(), &case.grid).unwrap();
         let image = picture(&mut renderer, &case, &view, by);
         image.pixels.iter().filter(|p| p[3] > 0.0).count()

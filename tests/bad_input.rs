@@ -139,7 +139,7 @@ fn results_of_another_grid_are_named_and_the_rest_is_shown() {
         &restart[..restart.len() - 20_000],
     )
     .unwrap();
-    let case = strataray::load::open(&folder.path().join("D")).unwrap();
+    let case = strataray::case::load::open(&folder.path().join("D")).unwrap();
     assert!(case.steps.len() >= 20, "{}", case.steps.len());
     assert!(
         case.about.notes.iter().any(|n| n.contains("left out")),
@@ -151,7 +151,7 @@ fn results_of_another_grid_are_named_and_the_rest_is_shown() {
     // INTEHEAD item 12, the number of active cells.
     init[24 + 4 + 44..24 + 4 + 48].copy_from_slice(&77i32.to_be_bytes());
     std::fs::write(folder.path().join("D.INIT"), &init).unwrap();
-    let case = strataray::load::open(&folder.path().join("D.UNRST")).unwrap();
+    let case = strataray::case::load::open(&folder.path().join("D.UNRST")).unwrap();
     assert!(
         case.about
             .notes

@@ -7,7 +7,7 @@ use std::path::Path;
 use std::process::{Command, Output};
 
 use serde_json::Value;
-use strataray::strategies::StrategyKind;
+use strataray::scene::StrategyKind;
 
 fn bench(arguments: &[&str], folder: &Path) -> Output {
     let output = Command::new(env!("CARGO_BIN_EXE_strataray"))

@@ -6,17 +6,17 @@ mod common;
 use std::sync::Arc;
 
 use serde_json::{Value, json};
-use strataray::case::Case;
-use strataray::metrics::psnr_8bit;
+use strataray::case::{Case, load};
+use strataray::image::Image;
+use strataray::image::metrics::psnr_8bit;
 use strataray::model::synthetic::Recipe;
 use strataray::model::{CellField, Dims, Grid, GridInput, derivatives};
-use strataray::picture::Image;
-use strataray::renderer::Renderer;
-use strataray::scene::film::steps;
-use strataray::scene::{self, Interpolation, Scene, Sequence, View};
-use strataray::strategies::StrategyKind;
+use strataray::reference;
+use strataray::render::Renderer;
+use strataray::scene::{Interpolation, Scene, StrategyKind};
 use strataray::transfer::{Scale, boundaries};
-use strataray::{load, reference};
+use strataray::view::step::steps;
+use strataray::view::{self, Sequence, View};
 
 fn scene(fields: &Value) -> Scene {
     let mut whole = json!({
@@ -30,13 +30,11 @@ fn scene(fields: &Value) -> Scene {
 }
 
 fn view(case: &Case, fields: &Value) -> View {
-    scene::resolve(&scene(fields), case).unwrap()
+    view::resolve(&scene(fields), case).unwrap()
 }
 
 fn refusal(case: &Case, fields: &Value) -> String {
-    scene::resolve(&scene(fields), case)
-        .unwrap_err()
-        .to_string()
+    view::resolve(&scene(fields), case).unwrap_err().to_string()
 }
 
 fn psnr(a: &Image, b: &Image, view: &View) -> f64 {

@@ -9,14 +9,11 @@ use std::process::{Command, Output};
 use std::sync::Mutex;
 
 use glam::DVec3;
-use strataray::case::Case;
+use strataray::case::{Case, load};
 use strataray::compare::{Compared, Comparer, Plan, Reference, Report, Row, Setting, summary};
-use strataray::load;
-use strataray::metrics::Comparison;
-use strataray::scene::{
-    self, CameraSpec, ExplicitCamera, NamedView, Projection, Scene, TurnAxis, View, half_turns,
-};
-use strataray::strategies::StrategyKind;
+use strataray::image::metrics::Comparison;
+use strataray::scene::{CameraSpec, ExplicitCamera, Projection, Scene, StrategyKind};
+use strataray::view::{self, NamedView, TurnAxis, View, half_turns};
 
 const SIZE: [u32; 2] = [96, 72];
 const ACCURATE: Reference = Reference::Strategy(StrategyKind::accurate());
@@ -30,7 +27,7 @@ fn scene() -> Scene {
 
 fn plan(case: &Case, reference: Reference, views: usize) -> Plan {
     let scene = scene();
-    let view = scene::resolve(&scene, case).unwrap();
+    let view = view::resolve(&scene, case).unwrap();
     Plan {
         strategies: StrategyKind::ALL.to_vec(),
         reference,
@@ -75,7 +72,7 @@ fn rows_of_every_strategy_against_the_cpu() {
             let differences = outcome.differences.as_ref().unwrap();
             assert_eq!(
                 row.ciede2000_mean,
-                Some(strataray::metrics::mean(differences))
+                Some(strataray::image::metrics::mean(differences))
             );
         }
     }
@@ -223,7 +220,7 @@ fn frames_all(named: &NamedView) -> bool {
 fn the_camera_turns_at_constant_distance() {
     let case = load::open(&common::sample()).unwrap();
     let mut scene = scene();
-    let framing = scene::resolve(&scene, &case).unwrap();
+    let framing = view::resolve(&scene, &case).unwrap();
     let camera = framing.camera;
     let explicit = ExplicitCamera {
         eye: camera.eye.to_array(),
@@ -235,7 +232,7 @@ fn the_camera_turns_at_constant_distance() {
     };
     for spec in [scene.camera.clone(), CameraSpec::Explicit(explicit)] {
         scene.camera = spec;
-        let start = scene::resolve(&scene, &case).unwrap();
+        let start = view::resolve(&scene, &case).unwrap();
         let is_framing = scene.camera.framing_zoom().is_some();
         for about in [TurnAxis::X, TurnAxis::Y, TurnAxis::Z, TurnAxis::All] {
             let views = half_turns(&scene, &start, about, 9);
@@ -269,7 +266,7 @@ fn the_camera_turns_at_constant_distance() {
 fn half_turns_go_where_their_names_say() {
     let case = load::open(&common::sample()).unwrap();
     let scene = scene();
-    let start = scene::resolve(&scene, &case).unwrap();
+    let start = view::resolve(&scene, &case).unwrap();
     let towards_eye = |about, count| -> Vec<(String, DVec3)> {
         let views = half_turns(&scene, &start, about, count);
         let arm = |v: &View| (v.camera.eye - middle(v)).normalize();

@@ -6,7 +6,7 @@ mod common;
 use common::cone::{Model, Traced};
 use glam::DVec3;
 use serde_json::{Value, json};
-use strataray::gpu::cones::ConeTable;
+use strataray::render::gpu::cones::ConeTable;
 
 /// Half floats of transmittances, and the optical depth behind which cones end.
 const HALVES: f64 = 0.0008;

@@ -3,8 +3,8 @@
 
 mod common;
 
-use strataray::gpu::shader::{ENTRIES, compose};
-use strataray::gpu::{GpuError, Pipeline, tiles};
+use strataray::render::gpu::shader::{ENTRIES, compose};
+use strataray::render::gpu::{GpuError, Pipeline, tiles};
 
 /// Names and workgroup sizes of the compute entries of a shader, as its text has them.
 fn entries(shader: &str) -> Vec<(String, [u32; 3])> {

@@ -8,8 +8,9 @@ use common::shape::Shape;
 use glam::DVec3;
 use serde_json::json;
 
-use strataray::renderer::Renderer;
-use strataray::scene::{ClipSpec, CutFace, Inactive, Scene, View};
+use strataray::render::Renderer;
+use strataray::scene::{ClipSpec, CutFace, Inactive, Scene};
+use strataray::view::View;
 
 /// Opacities a length of 10: nothing, a ramp, nearly opaque.
 const OPACITY: [[f64; 2]; 4] = [[0.0, 0.0], [0.3, 0.0], [0.5, 0.35], [1.0, 0.97]];

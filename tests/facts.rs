@@ -4,11 +4,10 @@
 mod common;
 
 use common::shape::Shape;
-use strataray::case::Case;
-use strataray::case::Weighting;
-use strataray::load;
+use strataray::case::{Case, Weighting, load};
 use strataray::picture::{Annotations, Shot};
-use strataray::scene::{self, ClipSpec, CutFace, Facts, Filter, PropertyFilter, Scene};
+use strataray::scene::{self, ClipSpec, CutFace, Filter, PropertyFilter, Scene};
+use strataray::view::{self, Facts};
 use strataray_parsers::records::RecordFile;
 
 /// The arrays of a name in a file of the sample, one for each step.
@@ -75,11 +74,11 @@ impl Raw {
 }
 
 fn facts(scene: &Scene, case: &Case) -> Facts {
-    Facts::clone(&scene::resolve(scene, case).unwrap().facts.unwrap())
+    Facts::clone(&view::resolve(scene, case).unwrap().facts.unwrap())
 }
 
 fn line(scene: &Scene, case: &Case) -> String {
-    let view = scene::resolve(scene, case).unwrap();
+    let view = view::resolve(scene, case).unwrap();
     Annotations::of(case, &view).info.unwrap().whole()
 }
 
@@ -149,7 +148,7 @@ fn cells_that_are_cut_away_do_not_count() {
     let case = load::open(&common::sample()).unwrap();
     let mut scene = oil();
     let whole = facts(&scene, &case);
-    let view = scene::resolve(&scene, &case).unwrap();
+    let view = view::resolve(&scene, &case).unwrap();
     let plane = |normal: [f64; 3]| ClipSpec {
         point: view.subject.middle.to_array(),
         normal,

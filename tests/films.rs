@@ -9,16 +9,15 @@ use std::process::{Command, Output};
 use std::sync::{Arc, Mutex};
 
 use glam::DVec3;
-use strataray::case::{Case, CaseError, Source};
-use strataray::load;
-use strataray::metrics::psnr_8bit;
+use strataray::case::{Case, CaseError, Source, load};
+use strataray::image::metrics::psnr_8bit;
 use strataray::picture::{Annotations, Layout, finished};
-use strataray::renderer::Renderer;
-use strataray::scene::film::steps;
+use strataray::render::Renderer;
 use strataray::scene::{
-    CameraSpec, ExplicitCamera, FramingCamera, Projection, RangeSpec, Scene, Sequence, StepSpec,
-    Turn, View, resolve,
+    CameraSpec, ExplicitCamera, FramingCamera, Projection, RangeSpec, Scene, StepSpec,
 };
+use strataray::view::step::steps;
+use strataray::view::{Sequence, Turn, View, resolve};
 
 fn scene(property: &str) -> Scene {
     Scene {

@@ -4,22 +4,20 @@
 mod common;
 
 use serde_json::{Value, json};
-use strataray::case::Case;
-use strataray::load;
-use strataray::scene::{self, Scene, View};
+use strataray::case::{Case, load};
+use strataray::scene::Scene;
+use strataray::view::{self, View};
 
 fn scene(fields: Value) -> Scene {
     serde_json::from_value(fields).unwrap()
 }
 
 fn view(case: &Case, fields: Value) -> View {
-    scene::resolve(&scene(fields), case).unwrap()
+    view::resolve(&scene(fields), case).unwrap()
 }
 
 fn refusal(case: &Case, fields: Value) -> String {
-    scene::resolve(&scene(fields), case)
-        .unwrap_err()
-        .to_string()
+    view::resolve(&scene(fields), case).unwrap_err().to_string()
 }
 
 fn sample() -> Case {

@@ -7,12 +7,12 @@ mod common;
 
 use common::{data, gpu, sample};
 use serde_json::json;
-use strataray::case::Case;
-use strataray::load;
-use strataray::metrics::ciede2000_map;
+use strataray::case::{Case, load};
+use strataray::image::metrics::ciede2000_map;
 use strataray::model::derived::Derived;
-use strataray::renderer::Renderer;
-use strataray::scene::{self, Scene, View, look};
+use strataray::render::Renderer;
+use strataray::scene::Scene;
+use strataray::view::{self, View, look};
 
 const FIELDS: [&str; 3] = [
     "reek/REEK.EGRID",
@@ -22,7 +22,7 @@ const FIELDS: [&str; 3] = [
 
 fn opened(case: &Case, written: &serde_json::Value) -> (Scene, View) {
     let scene = look::opening(case, written).unwrap();
-    let view = scene::resolve(&scene, case).unwrap();
+    let view = view::resolve(&scene, case).unwrap();
     (scene, view)
 }
 
@@ -70,7 +70,7 @@ fn the_oil_shows() {
             transfer: Scene::default().transfer,
             ..scene
         };
-        let view = scene::resolve(&ramp, case).unwrap();
+        let view = view::resolve(&ramp, case).unwrap();
         hidden += usize::from(oil_that_shows(case, &view) < 0.95);
     }
     assert_eq!(hidden, cases.len());

@@ -6,12 +6,10 @@ mod common;
 use std::path::PathBuf;
 
 use glam::DVec2;
-use strataray::case::Case;
-use strataray::load;
+use strataray::case::{Case, load};
 use strataray::picture::Shot;
-use strataray::scene::{
-    self, CameraSpec, Filter, PropertyFilter, Scene, Sequence, StepSpec, Turn, View,
-};
+use strataray::scene::{CameraSpec, Filter, PropertyFilter, Scene, StepSpec};
+use strataray::view::{self, Sequence, Turn, View};
 
 fn scene(size: [u32; 2]) -> Scene {
     Scene {
@@ -117,7 +115,7 @@ fn a_scene_that_says_where_from_is_seen_from_there() {
     let text = r#"{"azimuth_degrees": 20, "elevation_degrees": 50}"#;
     let mut scene = scene([800, 600]);
     scene.camera = serde_json::from_str::<CameraSpec>(text).unwrap();
-    let forward = scene::resolve(&scene, &case).unwrap().camera.forward;
+    let forward = view::resolve(&scene, &case).unwrap().camera.forward;
     let azimuth = (-forward.x).atan2(-forward.y).to_degrees();
     assert!(
         (azimuth - 20.0).abs() < 1e-9 && ((-forward.z).asin().to_degrees() - 50.0).abs() < 1e-9
@@ -138,13 +136,13 @@ fn a_filter_is_framed_but_not_what_changes_with_time() {
     let mut scene = scene([800, 600]);
     scene.property = Some("SOIL".into());
     scene.show.r#box = false;
-    let whole = scene::resolve(&scene, &case).unwrap();
+    let whole = view::resolve(&scene, &case).unwrap();
     scene.filter = Filter {
         i: Some([1, 5].into()),
         j: Some([1, 5].into()),
         ..Filter::default()
     };
-    let corner = scene::resolve(&scene, &case).unwrap();
+    let corner = view::resolve(&scene, &case).unwrap();
     let [low, high] = reach(&corner, &case);
     assert!((high - low).max_element() > 0.91, "{low} {high}");
     assert!(corner.subject.points.len() < whole.subject.points.len() / 4);
@@ -159,7 +157,7 @@ fn a_filter_is_framed_but_not_what_changes_with_time() {
     };
     let cameras = [0, 10, 20].map(|step| {
         scene.step = StepSpec::Index(step);
-        let view = scene::resolve(&scene, &case).unwrap();
+        let view = view::resolve(&scene, &case).unwrap();
         (view.camera, view.drawn.iter().filter(|d| **d).count())
     });
     assert!(cameras.iter().all(|c| c.0 == whole.camera));

@@ -3,13 +3,14 @@
 
 use std::mem::{offset_of, size_of};
 
-use strataray::gpu::layout::{
+use strataray::render::gpu::layout::{
     self, BlurInfo, BricksInfo, Emitter, Found, Frame, GridInfo, LightingInfo, PaintInfo, Slab,
     Tile, VolumeInfo,
 };
-use strataray::gpu::shader;
-use strataray::scene::{lighting, surfaces};
-use wgpu::naga::{Expression, Literal, Module, TypeInner, front::wgsl};
+use strataray::render::gpu::shader;
+use strataray::view::{lighting, surfaces};
+use wgpu::naga::front::wgsl;
+use wgpu::naga::{Expression, Literal, Module, TypeInner};
 
 fn module() -> Module {
     wgsl::parse_str(&shader::compose("layout").unwrap()).unwrap()

@@ -4,16 +4,17 @@
 mod common;
 
 use glam::DVec3;
-use strataray::gpu::FrameStats;
-use strataray::metrics::psnr_8bit;
-use strataray::picture::Image;
-use strataray::renderer::Renderer;
+use strataray::case::{Case, load};
+use strataray::image::Image;
+use strataray::image::metrics::psnr_8bit;
+use strataray::reference;
+use strataray::render::Renderer;
+use strataray::render::gpu::FrameStats;
 use strataray::scene::{
-    self, CameraSpec, ExplicitCamera, FramingCamera, Integration, Interpolation, LibcSettings,
-    Projection, Scene, View,
+    CameraSpec, ExplicitCamera, FramingCamera, Integration, Interpolation, LibcSettings,
+    Projection, Scene, StrategyKind,
 };
-use strataray::strategies::StrategyKind;
-use strataray::{case::Case, load, reference};
+use strataray::view::{self, View};
 
 fn scene(azimuth: f64, elevation: f64) -> Scene {
     Scene {
@@ -56,7 +57,7 @@ fn walking_across_faults_changes_the_cost_and_not_the_picture() {
         let case = load::open(&model).unwrap();
         let mut renderer = Renderer::new(gpu.clone(), &case.grid).unwrap();
         for (azimuth, elevation) in [(205.0, 35.0), (80.0, 12.0), (0.0, 90.0)] {
-            let view = scene::resolve(&scene(azimuth, elevation), &case).unwrap();
+            let view = view::resolve(&scene(azimuth, elevation), &case).unwrap();
             let (across, walked) = render(&mut renderer, &case, &view);
             let plain = LibcSettings {
                 cross_faults: false,
@@ -93,7 +94,7 @@ fn segments_are_the_limit_of_fine_steps() {
             scene.size = [80, 60];
             scene.early_termination = 0.0;
             scene.interpolation = interpolation;
-            let view = scene::resolve(&scene, &case).unwrap();
+            let view = view::resolve(&scene, &case).unwrap();
             let fine = View {
                 sampling_step: 0.25 * view.sampling_step,
                 ..view.clone()
@@ -130,7 +131,7 @@ fn an_eye_inside_the_model_sees_what_is_ahead() {
     for model in common::models() {
         let case = load::open(&model).unwrap();
         let mut renderer = Renderer::new(gpu.clone(), &case.grid).unwrap();
-        let outside = scene::resolve(&scene(205.0, 35.0), &case).unwrap();
+        let outside = view::resolve(&scene(205.0, 35.0), &case).unwrap();
         // In the middle of the active cell halfway through the list.
         let cells = case.grid.active_cells();
         let cell = case.grid.dims().ijk(cells[cells.len() / 2]);
@@ -146,7 +147,7 @@ fn an_eye_inside_the_model_sees_what_is_ahead() {
             fovy_degrees: 70.0,
             projection: Projection::Perspective,
         });
-        let view = scene::resolve(&scene, &case).unwrap();
+        let view = view::resolve(&scene, &case).unwrap();
         let truth = reference::render(&case.grid, &view, &|_| true).unwrap();
         let (image, _) = render(&mut renderer, &case, &view);
         let db = psnr(&image, &truth, &view);

@@ -8,11 +8,11 @@ use std::cell::Cell;
 use common::light::{Block, lighting, render};
 use common::shape::boxes;
 use serde_json::{Value, json};
-use strataray::case::Case;
-use strataray::gpu::illumination::Made;
-use strataray::load;
-use strataray::renderer::Renderer;
-use strataray::scene::{self, Scene};
+use strataray::case::{Case, load};
+use strataray::render::Renderer;
+use strataray::render::gpu::illumination::Made;
+use strataray::scene::Scene;
+use strataray::view;
 
 /// Occlusion, a directional light and a spot on the sample, in small volumes.
 fn lit() -> Value {
@@ -154,7 +154,7 @@ fn a_cancelled_update_leaves_nothing_stale() {
         render(&mut renderer, &case, &first);
         assert!(volumes(&renderer) == was, "after {calls} calls");
         // Ends after so many slabs of values, pyramid and light, then goes on.
-        let view = scene::resolve(&second, &case).unwrap();
+        let view = view::resolve(&second, &case).unwrap();
         let left = Cell::new(calls);
         let progress = |_| left.replace(left.get().saturating_sub(1)) > 0;
         let frame = renderer.render(&case.grid, &view, &progress).unwrap();

@@ -6,18 +6,18 @@ mod common;
 use common::shape::Shape;
 use glam::DVec3;
 use serde_json::{Value, json};
-use strataray::case::Case;
-use strataray::gpu::volume::Volume;
-use strataray::load;
-use strataray::renderer::Renderer;
+use strataray::case::{Case, load};
+use strataray::render::Renderer;
+use strataray::render::gpu::volume::Volume;
 use strataray::scene::lighting::PRESETS;
-use strataray::scene::{self, Lighting, LightingSpec, Scene, View};
+use strataray::scene::{LightingSpec, Scene};
+use strataray::view::{self, Lighting, View};
 
 /// A scene's lighting for a case, or what is wrong with it.
 fn resolved(case: &Case, lighting: &Value) -> Result<Lighting, String> {
     let scene = json!({"property": "VALUE", "lighting": lighting});
     let scene: Scene = serde_json::from_value(scene).map_err(|e| e.to_string())?;
-    let view = scene::resolve(&scene, case).map_err(|e| e.to_string())?;
+    let view = view::resolve(&scene, case).map_err(|e| e.to_string())?;
     Ok(view.lighting)
 }
 
@@ -245,7 +245,7 @@ fn volumes_have_cubes_and_fit_their_budget() {
             ..Scene::default()
         };
         scene.lighting.volume.budget_mb = Some(budget_mb);
-        let lighting = scene::resolve(&scene, &case).unwrap().lighting;
+        let lighting = view::resolve(&scene, &case).unwrap().lighting;
         let size = lighting.size();
         let voxels: f64 = size.iter().map(|n| f64::from(*n)).product();
         // Values, extinction and pyramid in half floats.
@@ -278,7 +278,7 @@ fn for_adapters(case: &Case, volume: &Value) -> [View; 2] {
     });
     let scene: Scene = serde_json::from_value(scene).unwrap();
     [true, false].map(|is_software| {
-        let view = scene::resolve(&scene, case).unwrap();
+        let view = view::resolve(&scene, case).unwrap();
         view.for_adapter(is_software)
     })
 }

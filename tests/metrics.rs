@@ -5,8 +5,8 @@ mod common;
 
 use std::path::Path;
 
-use strataray::metrics::{Comparison, ciede2000};
-use strataray::picture::Rgb8;
+use strataray::image::Rgb8;
+use strataray::image::metrics::{Comparison, ciede2000};
 
 fn picture(path: &Path) -> Rgb8 {
     let read = image::open(path).unwrap().into_rgb8();

@@ -15,15 +15,14 @@ use std::sync::Arc;
 use common::light::{lighting, render, scene};
 use common::shape::boxes;
 use serde_json::{Value, json};
-use strataray::case::Case;
-use strataray::gpu::Gpu;
-use strataray::load;
-use strataray::metrics::ciede2000_map;
-use strataray::picture::Image;
-use strataray::reference;
-use strataray::renderer::Renderer;
+use strataray::case::{Case, load};
+use strataray::image::Image;
+use strataray::image::metrics::ciede2000_map;
+use strataray::render::Renderer;
+use strataray::render::gpu::Gpu;
 use strataray::scene::lighting::OcclusionSpec;
-use strataray::scene::{self, CameraSpec, ColorSpec, ExplicitCamera, Projection, Scene};
+use strataray::scene::{CameraSpec, ColorSpec, ExplicitCamera, Projection, Scene};
+use strataray::{reference, view};
 
 const SIZE: [u32; 2] = [48, 36];
 /// Factors on the extinction, one for all models and transfer functions.
@@ -97,7 +96,7 @@ impl Subject {
             },
         }))
         .unwrap();
-        let view = scene::resolve(&scene, &self.case).unwrap();
+        let view = view::resolve(&scene, &self.case).unwrap();
         let frame = self.renderer.render(&self.case.grid, &view, &|_| true);
         frame.unwrap().unwrap().image
     }

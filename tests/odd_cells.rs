@@ -6,10 +6,10 @@ mod common;
 use std::f64::consts::TAU;
 
 use glam::{DVec2, DVec3};
-use strataray::gpu::{Gpu, GpuGrid, probe};
-use strataray::load;
+use strataray::case::load;
 use strataray::model::{CellField, Dims, Grid, GridInput, Hexahedron};
 use strataray::reference::{Located, Locator};
+use strataray::render::gpu::{Gpu, GpuGrid, probe};
 use strataray::scene::Interpolation;
 
 /// Cells apart from each other, each with pillars of its own.

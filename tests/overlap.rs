@@ -4,14 +4,15 @@
 mod common;
 
 use common::shape::Shape;
-use strataray::case::Case;
-use strataray::picture::Image;
-use strataray::renderer::Renderer;
+use strataray::case::{Case, load};
+use strataray::image::Image;
+use strataray::reference;
+use strataray::render::Renderer;
 use strataray::scene::{
-    self, CameraSpec, FramingCamera, Interpolation, OpacitySpec, Projection, RangeSpec, Scene, View,
+    CameraSpec, FramingCamera, Interpolation, OpacitySpec, Projection, RangeSpec, Scene,
+    StrategyKind,
 };
-use strataray::strategies::StrategyKind;
-use strataray::{load, reference};
+use strataray::view::{self, View};
 
 /// Three by three columns of two layers that cross: from 1000 to 1020, and from 1010 to 1030.
 fn crossing() -> Case {
@@ -43,7 +44,7 @@ fn view_of(case: &Case, k: [usize; 2]) -> View {
     scene.filter = serde_json::from_value(serde_json::json!({ "k": k })).unwrap();
     scene.transfer.opacity = Some(OpacitySpec::Points(vec![[0.0, 0.3], [1.0, 0.3]]));
     scene.transfer.reference_length = Some(100.0);
-    scene::resolve(&scene, case).unwrap()
+    view::resolve(&scene, case).unwrap()
 }
 
 fn mean_alpha(image: &Image) -> f64 {
@@ -103,7 +104,7 @@ fn the_reported_grid_has_the_right_mean() {
     let mut renderer = Renderer::new(gpu, &case.grid).unwrap();
     let text = std::fs::read_to_string(scene).unwrap();
     let scene: Scene = serde_json::from_str(&text).unwrap();
-    let view = scene::resolve(&scene, &case).unwrap();
+    let view = view::resolve(&scene, &case).unwrap();
     let (truth, all) = mean_alphas(&mut renderer, &case, &view);
     println!("reference {truth:.4}, strategies {all:.4?}");
     // What the other layer hides of this one would be nearly half.

@@ -9,18 +9,18 @@ use std::process::{Command, Output};
 use common::shape::{Shape, boxes};
 use glam::DVec2;
 use serde_json::Value;
-use strataray::case::Case;
-use strataray::load;
-use strataray::metrics::{ciede2000, lab};
+use strataray::case::{Case, load};
+use strataray::image::Image;
+use strataray::image::metrics::{ciede2000, lab};
 use strataray::model::Ijk;
 use strataray::model::topology::Face;
 use strataray::picking::{Part, Pick, Picker};
-use strataray::picture::Image;
-use strataray::renderer::Renderer;
+use strataray::render::Renderer;
 use strataray::scene::{
-    self, CameraSpec, ClipSpec, ColorSpec, CutFace, ExplicitCamera, Filter, Hull, Inactive,
-    Interpolation, LightingSpec, OpacitySpec, Projection, RangeSpec, Scene, View, look,
+    CameraSpec, ClipSpec, ColorSpec, CutFace, ExplicitCamera, Filter, Hull, Inactive,
+    Interpolation, LightingSpec, OpacitySpec, Projection, RangeSpec, Scene,
 };
+use strataray::view::{self, View, look};
 
 /// Colors of the same kind are nearer to each other than this.
 const ALIKE: f64 = 15.0;
@@ -107,7 +107,7 @@ fn what_is_picked_has_the_color_that_is_seen() {
     let mut twin_fails = 0;
     for model in models() {
         let case = load::open(&model).unwrap();
-        let view = scene::resolve(&opening(&case), &case).unwrap();
+        let view = view::resolve(&opening(&case), &case).unwrap();
         let mut renderer = Renderer::new(gpu.clone(), &case.grid).unwrap();
         let frame = renderer.render(&case.grid, &view, &|_| true);
         let image = frame.unwrap().unwrap().image;
@@ -158,7 +158,7 @@ fn a_click_on_the_first_picture_takes_the_value_that_is_seen() {
             size: [480, 360],
             ..look::opening(&case, &serde_json::json!({})).unwrap()
         };
-        let view = scene::resolve(&scene, &case).unwrap();
+        let view = view::resolve(&scene, &case).unwrap();
         let mut renderer = Renderer::new(gpu.clone(), &case.grid).unwrap();
         let frame = renderer.render(&case.grid, &view, &|_| true);
         let image = frame.unwrap().unwrap().image;
@@ -189,7 +189,7 @@ fn a_click_on_the_first_picture_takes_the_value_that_is_seen() {
 fn stepping_along_the_line_of_sight_reaches_all_cells() {
     let Some(gpu) = common::gpu() else { return };
     let case = load::open(&common::sample()).unwrap();
-    let view = scene::resolve(&opening(&case), &case).unwrap();
+    let view = view::resolve(&opening(&case), &case).unwrap();
     let mut renderer = Renderer::new(gpu, &case.grid).unwrap();
     let mut picker = Picker::default();
     for at in [DVec2::splat(0.5), DVec2::new(0.4, 0.55)] {
@@ -249,7 +249,7 @@ fn from_west(colors: &[(f64, &str)], opacity: &[[f64; 2]]) -> Scene {
 const BLUE_TO_RED: [(f64, &str); 2] = [(0.0, "#0000ff"), (1.0, "#ff0000")];
 
 fn pick(case: &Case, scene: &Scene) -> Option<Pick> {
-    let view = scene::resolve(scene, case).unwrap();
+    let view = view::resolve(scene, case).unwrap();
     let mut renderer = Renderer::new(common::gpu()?, &case.grid).unwrap();
     let picked = Picker::default().pick(&mut renderer, case, &view, DVec2::splat(0.5));
     Some(picked.unwrap())
@@ -515,7 +515,7 @@ fn one_picker_answers_for_every_view() {
     let mut kept = Picker::default();
     let mut parts = Vec::new();
     for scene in scenes.iter().chain(scenes.iter().rev()) {
-        let view = scene::resolve(scene, &case).unwrap();
+        let view = view::resolve(scene, &case).unwrap();
         for at in [
             DVec2::new(0.5, 0.5),
             DVec2::new(0.4, 0.52),
@@ -550,7 +550,7 @@ fn the_command_gives_the_same_answer() {
     let case = load::open(&common::sample()).unwrap();
     let scene = opening(&case);
     std::fs::write(&file, serde_json::to_string(&scene).unwrap()).unwrap();
-    let view = scene::resolve(&scene, &case).unwrap();
+    let view = view::resolve(&scene, &case).unwrap();
     let mut renderer = Renderer::new(gpu, &case.grid).unwrap();
     let at = middle([230, 190], view.size);
     let pick = Picker::default()

@@ -4,17 +4,18 @@
 mod common;
 
 use glam::{DVec2, DVec3};
-use strataray::metrics::{fraction_within, psnr_8bit, ssim_8bit};
+use strataray::case::{Case, load};
+use strataray::image::Image;
+use strataray::image::metrics::{fraction_within, psnr_8bit, ssim_8bit};
 use strataray::model::CellIndex;
 use strataray::picking::Picker;
-use strataray::picture::Image;
-use strataray::renderer::Renderer;
+use strataray::reference;
+use strataray::render::Renderer;
 use strataray::scene::{
-    self, CameraSpec, ClipSpec, CutFace, FramingCamera, Inactive, Interpolation, LightMode,
-    LightingSpec, Projection, Scene, View,
+    CameraSpec, ClipSpec, CutFace, FramingCamera, Inactive, Interpolation, LightMode, LightingSpec,
+    Projection, Scene, StrategyKind,
 };
-use strataray::strategies::StrategyKind;
-use strataray::{case::Case, load, reference};
+use strataray::view::{self, View};
 
 fn scene(azimuth: f64, elevation: f64, interpolation: Interpolation) -> Scene {
     Scene {
@@ -81,7 +82,7 @@ fn strategies_agree_with_the_reference() {
             (140.0, 4.0, Interpolation::Cell),
             (0.0, 90.0, Interpolation::Vertex),
         ] {
-            let view = scene::resolve(&scene(azimuth, elevation, interpolation), &case).unwrap();
+            let view = view::resolve(&scene(azimuth, elevation, interpolation), &case).unwrap();
             let truth = reference::render(&case.grid, &view, &|_| true).unwrap();
             assert!(
                 truth.pixels.iter().any(|p| p[3] > 0.3),
@@ -117,7 +118,7 @@ fn a_shifted_camera_is_noticed() {
     let Some(gpu) = common::gpu() else { return };
     let case = load::open(&common::sample()).unwrap();
     let mut renderer = Renderer::new(gpu, &case.grid).unwrap();
-    let view = scene::resolve(&scene(205.0, 35.0, Interpolation::Vertex), &case).unwrap();
+    let view = view::resolve(&scene(205.0, 35.0, Interpolation::Vertex), &case).unwrap();
     let truth = reference::render(&case.grid, &view, &|_| true).unwrap();
     let mut shifted = view.clone();
     // About one pixel to the side.
@@ -141,12 +142,12 @@ fn filters_and_cancel_work() {
     let mut renderer = Renderer::new(gpu, &case.grid).unwrap();
     let mut scene = scene(205.0, 35.0, Interpolation::Cell);
     scene.filter.k = Some([2, 3].into());
-    let view = scene::resolve(&scene, &case).unwrap();
+    let view = view::resolve(&scene, &case).unwrap();
     let truth = reference::render(&case.grid, &view, &|_| true).unwrap();
     let image = on_gpu(&mut renderer, &case, &view, StrategyKind::Plts);
     assert!(psnr(&image, &truth, &view) >= 45.0);
     scene.filter.k = None;
-    let whole = scene::resolve(&scene, &case).unwrap();
+    let whole = view::resolve(&scene, &case).unwrap();
     assert!(
         psnr(
             &on_gpu(&mut renderer, &case, &whole, StrategyKind::Plts),
@@ -177,16 +178,16 @@ fn parallel_pictures_agree_with_the_reference() {
             (0.0, 90.0, false),
         ] {
             let mut scene = scene(azimuth, elevation, Interpolation::Vertex);
-            let perspective = scene::resolve(&scene, &case).unwrap();
+            let perspective = view::resolve(&scene, &case).unwrap();
             parallel(&mut scene);
-            let mut view = scene::resolve(&scene, &case).unwrap();
+            let mut view = view::resolve(&scene, &case).unwrap();
             let middle = 0.5 * (view.world_bounds[0] + view.world_bounds[1]);
             let ahead = |c: &DVec3| view.camera.depth(*c) > 0.0;
             assert!(view.box_corners.iter().all(ahead));
             if inside {
                 // The plane of the eye cuts the model.
                 view.camera.eye = middle;
-                view.clip = scene::resolve(
+                view.clip = view::resolve(
                     &Scene {
                         clip: vec![clip(&view, [1.0, 0.3, 0.2], CutFace::Opaque)],
                         ..scene.clone()
@@ -227,9 +228,9 @@ fn what_is_picked_in_parallel_lies_under_the_pointer() {
     let case = load::open(&common::sample()).unwrap();
     let mut renderer = Renderer::new(gpu, &case.grid).unwrap();
     let mut scene = scene(205.0, 35.0, Interpolation::Vertex);
-    let perspective = scene::resolve(&scene, &case).unwrap();
+    let perspective = view::resolve(&scene, &case).unwrap();
     parallel(&mut scene);
-    let view = scene::resolve(&scene, &case).unwrap();
+    let view = view::resolve(&scene, &case).unwrap();
     let mut hits = 0;
     for at in [
         [0.6, 0.5],
@@ -282,15 +283,15 @@ fn occlusion_in_parallel_agrees_with_the_reference() {
         // Rays start where cones do: what is compared is where they go.
         scene.lighting.rays_gap = occlusion.gap;
         scene.lighting.rays = 14;
-        let perspective = scene::resolve(&scene, &case).unwrap();
+        let perspective = view::resolve(&scene, &case).unwrap();
         parallel(&mut scene);
-        let mut view = scene::resolve(&scene, &case).unwrap();
+        let mut view = view::resolve(&scene, &case).unwrap();
         if inside {
             view.camera.eye = 0.5 * (view.world_bounds[0] + view.world_bounds[1]);
         }
         let truth = reference::render(&case.grid, &view, &|_| true).unwrap();
         let dark = View {
-            lighting: scene::resolve(
+            lighting: view::resolve(
                 &Scene {
                     lighting: LightingSpec::default(),
                     ..scene
@@ -341,13 +342,13 @@ fn clip_planes_and_their_sections_agree_with_the_reference() {
         let mut renderer = Renderer::new(gpu.clone(), &case.grid).unwrap();
         let mut scene = scene(205.0, 35.0, Interpolation::Vertex);
         scene.vertical_exaggeration = Some(8.0);
-        let whole = scene::resolve(&scene, &case).unwrap();
+        let whole = view::resolve(&scene, &case).unwrap();
         for face in [CutFace::Open, CutFace::Opaque] {
             scene.clip = vec![
                 clip(&whole, [0.1, 1.0, 0.0], face),
                 clip(&whole, [1.0, 0.0, 0.3], CutFace::Open),
             ];
-            let view = scene::resolve(&scene, &case).unwrap();
+            let view = view::resolve(&scene, &case).unwrap();
             let truth = reference::render(&case.grid, &view, &|_| true).unwrap();
             let opaque = truth.pixels.iter().filter(|p| p[3] == 1.0).count();
             assert_eq!(opaque > 30, face == CutFace::Opaque, "{}", case.about.name);
@@ -386,9 +387,9 @@ fn ghosts_of_inactive_cells_agree_with_the_reference() {
         let mut renderer = Renderer::new(gpu.clone(), &case.grid).unwrap();
         for interpolation in [Interpolation::Vertex, Interpolation::Cell] {
             let mut scene = scene(205.0, 35.0, interpolation);
-            let without = scene::resolve(&scene, &case).unwrap();
+            let without = view::resolve(&scene, &case).unwrap();
             scene.show.inactive = Inactive::Ghost;
-            let view = scene::resolve(&scene, &case).unwrap();
+            let view = view::resolve(&scene, &case).unwrap();
             // The same camera for both, so that only the ghosts differ.
             let without = View {
                 camera: view.camera,

@@ -5,11 +5,10 @@ mod common;
 
 use common::shape::Shape;
 use glam::DVec3;
-use strataray::case::Case;
-use strataray::gpu::{Gpu, GpuGrid, probe};
-use strataray::load;
+use strataray::case::{Case, load};
 use strataray::model::{CellField, Dims, Grid, GridInput, VertexField};
 use strataray::reference::{self, Located, Locator};
+use strataray::render::gpu::{Gpu, GpuGrid, probe};
 use strataray::scene::Interpolation;
 
 const POINTS: usize = 100_000;

@@ -8,11 +8,11 @@ use common::shape::boxes;
 use glam::DVec3;
 use serde_json::{Value, json};
 use strataray::case::Case;
-use strataray::picture::Image;
+use strataray::image::Image;
 use strataray::reference::Ray;
-use strataray::renderer::Renderer;
-use strataray::scene::{CameraSpec, ColorSpec, FramingCamera, Projection, View};
-use strataray::strategies::StrategyKind;
+use strataray::render::Renderer;
+use strataray::scene::{CameraSpec, ColorSpec, FramingCamera, Projection, StrategyKind};
+use strataray::view::View;
 
 /// The bar's corners and the floor's height, in world space.
 const BAR: [DVec3; 2] = [

@@ -14,26 +14,27 @@ use common::shape::{Shape, parallelepipeds};
 use glam::DVec3;
 use half::f16;
 use rayon::prelude::*;
-use strataray::case::Case;
-use strataray::gpu::layout::RUN;
-use strataray::gpu::pyramids::{Bricks, PyramidMaker};
-use strataray::gpu::resample::{Resampler, VOXEL_WORK};
-use strataray::gpu::slabs::Slabs;
-use strataray::gpu::tiles::Pace;
-use strataray::gpu::volume::{self, Volume, Voxel};
-use strataray::gpu::{Gpu, GpuGrid};
-use strataray::load;
-use strataray::metrics::{Comparison, psnr_8bit};
+use strataray::case::{Case, load};
+use strataray::image::metrics::{Comparison, psnr_8bit};
+use strataray::image::{Image, Rgb8};
 use strataray::model::{CellField, Grid, VertexField};
-use strataray::picture::{Image, Rgb8};
 use strataray::reference::{self, Locator};
-use strataray::renderer::{Frame, Renderer};
+use strataray::render::gpu::layout::RUN;
+use strataray::render::gpu::pyramids::{Bricks, PyramidMaker};
+use strataray::render::gpu::resample::{Resampler, VOXEL_WORK};
+use strataray::render::gpu::slabs::Slabs;
+use strataray::render::gpu::strategies::srg::Srg;
+use strataray::render::gpu::strategy::{Preparation, RenderStrategy};
+use strataray::render::gpu::tiles::Pace;
+use strataray::render::gpu::volume::Volume;
+use strataray::render::gpu::{Gpu, GpuGrid};
+use strataray::render::{Frame, Renderer};
 use strataray::scene::{
     self, CameraSpec, ClipSpec, CutFace, ExplicitCamera, FramingCamera, Inactive, Interpolation,
-    OpacitySpec, Projection, RangeSpec, Scene, SrgSettings, View,
+    OpacitySpec, Projection, RangeSpec, Scene, SrgSettings, StrategyKind,
 };
-use strataray::strategies::srg::Srg;
-use strataray::strategies::{Preparation, RenderStrategy, StrategyKind};
+use strataray::view::voxels::{self, Voxel};
+use strataray::view::{self, View};
 
 /// No switch is on.
 const PLAIN: SrgSettings = SrgSettings {
@@ -107,7 +108,7 @@ fn volume_of(
     on_device
         .show(gpu, grid, field, &drawn, interpolation)
         .unwrap();
-    let volume = Volume::new(gpu, volume::Shape::of(grid.dims(), factor, false));
+    let volume = Volume::new(gpu, voxels::Shape::of(grid.dims(), factor, false));
     let mut slabs = Slabs {
         gpu,
         pace: &mut Pace::default(),
@@ -273,7 +274,7 @@ fn the_volume_is_filled_anew_when_it_must_and_only_then() {
     let view = |change: &dyn Fn(&mut Scene)| {
         let mut scene = base.clone();
         change(&mut scene);
-        scene::resolve(&scene, &case).unwrap()
+        view::resolve(&scene, &case).unwrap()
     };
     let first = view(&|_| ());
     let mut bench = Bench::new(&gpu, &case);
@@ -342,7 +343,7 @@ fn a_fill_is_split_into_parts_that_the_pace_allows() {
     on_device
         .show(&gpu, &case.grid, &field, &drawn, Interpolation::Cell)
         .unwrap();
-    let volume = Volume::new(&gpu, volume::Shape::of(case.grid.dims(), 4.0, false));
+    let volume = Volume::new(&gpu, voxels::Shape::of(case.grid.dims(), 4.0, false));
     let [width, height, depth] = volume.shape.size.map(u64::from);
     let voxels = width * height * depth;
     let mut resampler = Resampler::new(&gpu, false).unwrap();
@@ -400,7 +401,7 @@ fn the_volume_fits_its_budget_or_has_its_factor() {
         let case = load::open(&model).unwrap();
         let mut renderer = Renderer::new(gpu.clone(), &case.grid).unwrap();
         let mut bytes = |settings| {
-            let view = scene::resolve(&scene([20, 15], settings), &case).unwrap();
+            let view = view::resolve(&scene([20, 15], settings), &case).unwrap();
             render(&mut renderer, &case, &view).bytes.resampled
         };
         for megabytes in [1, 3, 10] {
@@ -454,7 +455,7 @@ fn each_switch_stays_within_its_error_of_the_plain_march() {
         let mut renderer = Renderer::new(gpu.clone(), &case.grid).unwrap();
         let mut scene = scene([200, 150], PLAIN);
         scene.transfer.opacity = Some(OpacitySpec::Points(UPPER_HALF.to_vec()));
-        let view = scene::resolve(&scene, &case).unwrap();
+        let view = view::resolve(&scene, &case).unwrap();
         // A switch, the least PSNR in dB and the most steps that it may take, and its twin that is too
         // coarse to stay within either error.
         let rows: [(&str, Change, [f64; 2], Change); 4] = [
@@ -498,7 +499,7 @@ fn dividing_by_presence_comes_nearer_to_the_reference() {
     for model in common::models() {
         let case = load::open(&model).unwrap();
         let mut renderer = Renderer::new(gpu.clone(), &case.grid).unwrap();
-        let view = scene::resolve(&scene([120, 90], PLAIN), &case).unwrap();
+        let view = view::resolve(&scene([120, 90], PLAIN), &case).unwrap();
         let truth = reference::render(&case.grid, &view, &|_| true).unwrap();
         let weighted = SrgSettings {
             weighted: true,
@@ -524,7 +525,7 @@ fn roulette_is_unbiased() {
     let mut scene = scene([160, 120], PLAIN);
     scene.early_termination = 0.0;
     scene.transfer.opacity = Some(OpacitySpec::Points(vec![[0.0, 0.3], [1.0, 0.9]]));
-    let view = scene::resolve(&scene, &case).unwrap();
+    let view = view::resolve(&scene, &case).unwrap();
     let plain = render(&mut renderer, &case, &view).image;
     // Mean difference of all channels of the pixels that differ, in standard errors.
     let mut bias = |view: &View| {
@@ -568,7 +569,7 @@ fn quality_grows_with_the_factor() {
     let Some(gpu) = common::gpu() else { return };
     let case = load::open(&common::sample()).unwrap();
     let mut renderer = Renderer::new(gpu, &case.grid).unwrap();
-    let view = scene::resolve(&scene([120, 90], SrgSettings::default()), &case).unwrap();
+    let view = view::resolve(&scene([120, 90], SrgSettings::default()), &case).unwrap();
     let truth = reference::render(&case.grid, &view, &|_| true).unwrap();
     let mut before = 0.0;
     for factor in [1.0, 2.0, 3.0, 4.0, 6.0, 8.0] {
@@ -605,7 +606,7 @@ fn averages_are_means_of_an_odd_number_of_voxels_too() {
     let maker = PyramidMaker::new(&gpu).unwrap();
     let mut random = fastrand::Rng::with_seed(5);
     for size in [[3, 5, 7], [7, 3, 5], [6, 9, 1], [4, 8, 16]] {
-        let shape = volume::Shape {
+        let shape = voxels::Shape {
             size,
             levels: 3,
             voxel: Voxel::Pair,
@@ -665,7 +666,7 @@ fn clip_planes_cut_and_show_exact_sections() {
     let mut renderer = Renderer::new(gpu, &case.grid).unwrap();
     let mut scene = scene([120, 90], SrgSettings::default());
     scene.vertical_exaggeration = Some(8.0);
-    let whole = scene::resolve(&scene, &case).unwrap();
+    let whole = view::resolve(&scene, &case).unwrap();
     let middle = 0.5 * (whole.world_bounds[0] + whole.world_bounds[1]);
     let uncut = render(&mut renderer, &case, &whole).image;
     for face in [CutFace::Open, CutFace::Opaque] {
@@ -674,7 +675,7 @@ fn clip_planes_cut_and_show_exact_sections() {
             normal: [0.1, 1.0, 0.0],
             face,
         }];
-        let view = scene::resolve(&scene, &case).unwrap();
+        let view = view::resolve(&scene, &case).unwrap();
         let truth = reference::render(&case.grid, &view, &|_| true).unwrap();
         let image = render(&mut renderer, &case, &view).image;
         let [cut, twin] = [&image, &uncut].map(|i| psnr(i, &truth, &view));
@@ -701,7 +702,7 @@ fn an_eye_inside_the_model_sees_what_is_ahead() {
     let case = load::open(&common::sample()).unwrap();
     let mut renderer = Renderer::new(gpu, &case.grid).unwrap();
     let mut scene = scene([120, 90], SrgSettings::default());
-    let outside = scene::resolve(&scene, &case).unwrap();
+    let outside = view::resolve(&scene, &case).unwrap();
     let [low, high] = outside.world_bounds;
     let middle = 0.5 * (low + high);
     let mut look_at = |target: DVec3| {
@@ -712,7 +713,7 @@ fn an_eye_inside_the_model_sees_what_is_ahead() {
             fovy_degrees: 60.0,
             projection: Projection::Perspective,
         });
-        scene::resolve(&scene, &case).unwrap()
+        view::resolve(&scene, &case).unwrap()
     };
     let view = look_at(DVec3::new(high.x, high.y, middle.z));
     let truth = reference::render(&case.grid, &view, &|_| true).unwrap();
@@ -734,9 +735,9 @@ fn ghosts_are_resampled_beside_the_field() {
     let mut scene = scene([120, 90], SrgSettings::default());
     scene.transfer.opacity = Some(OpacitySpec::Points(vec![[0.0, 0.0], [1.0, 0.0]]));
     scene.transfer.reference_length = Some(2.0);
-    let hidden = scene::resolve(&scene, &case).unwrap();
+    let hidden = view::resolve(&scene, &case).unwrap();
     scene.show.inactive = Inactive::Ghost;
-    let view = scene::resolve(&scene, &case).unwrap();
+    let view = view::resolve(&scene, &case).unwrap();
     let truth = reference::render(&case.grid, &view, &|_| true).unwrap();
     let [found, twin] = [&view, &hidden].map(|v| {
         let image = render(&mut renderer, &case, v).image;
@@ -759,11 +760,11 @@ fn undefined_values_and_hidden_cells_leave_holes() {
     scene.property = Some("VALUE".into());
     scene.transfer.opacity = Some(OpacitySpec::Points(vec![[0.0, 0.9], [1.0, 0.9]]));
     let mut renderer = Renderer::new(gpu, &case.grid).unwrap();
-    let view = scene::resolve(&scene, &case).unwrap();
+    let view = view::resolve(&scene, &case).unwrap();
     let truth = reference::render(&case.grid, &view, &|_| true).unwrap();
     let db = psnr(&render(&mut renderer, &case, &view).image, &truth, &view);
     scene.filter.i = Some([1, 2].into());
-    let half = scene::resolve(&scene, &case).unwrap();
+    let half = view::resolve(&scene, &case).unwrap();
     let twin = psnr(&render(&mut renderer, &case, &half).image, &truth, &view);
     println!("{db:.1} dB, {twin:.1} dB where half of the cells are hidden");
     assert!(db > 35.0 && twin < 25.0);
@@ -778,7 +779,7 @@ fn err_settings_out_of_range_are_named() {
             srg: settings,
             ..Scene::default()
         };
-        scene::resolve(&scene, &case).map_err(|e| e.to_string())
+        view::resolve(&scene, &case).map_err(|e| e.to_string())
     };
     for (text, word) in [
         (r#"{"budget_mb": 0}"#, "srg.budget_mb"),
@@ -820,7 +821,7 @@ fn table_of_factors() {
     for model in common::models() {
         let case = load::open(&model).unwrap();
         let mut renderer = Renderer::new(gpu.clone(), &case.grid).unwrap();
-        let view = scene::resolve(&scene([240, 180], SrgSettings::default()), &case).unwrap();
+        let view = view::resolve(&scene([240, 180], SrgSettings::default()), &case).unwrap();
         let truth = reference::render(&case.grid, &view, &|_| true).unwrap();
         // The first fill compiles shaders.
         render(&mut renderer, &case, &view);
@@ -873,7 +874,7 @@ fn table_of_switches() {
         for (upper, curve) in [None, Some(UPPER_HALF.to_vec())].into_iter().enumerate() {
             let mut scene = scene([400, 300], PLAIN);
             scene.transfer.opacity = curve.map(OpacitySpec::Points);
-            let view = scene::resolve(&scene, &case).unwrap();
+            let view = view::resolve(&scene, &case).unwrap();
             let plain = render(&mut renderer, &case, &view);
             let time = cpu_time(&mut renderer, &case, &view);
             for (at, (name, change)) in switches.iter().enumerate() {

@@ -4,13 +4,12 @@
 mod common;
 
 use common::shape::Shape;
-use strataray::case::Case;
-use strataray::gpu::FrameStats;
-use strataray::load;
+use strataray::case::{Case, load};
 use strataray::reference::{Locator, Ray};
-use strataray::renderer::Renderer;
-use strataray::scene::{self, CameraSpec, FramingCamera, OpacitySpec, Projection, Scene, View};
-use strataray::strategies::StrategyKind;
+use strataray::render::Renderer;
+use strataray::render::gpu::FrameStats;
+use strataray::scene::{CameraSpec, FramingCamera, OpacitySpec, Projection, Scene, StrategyKind};
+use strataray::view::{self, View};
 
 fn view_of(case: &Case) -> View {
     let mut scene = Scene {
@@ -25,7 +24,7 @@ fn view_of(case: &Case) -> View {
         ..Scene::default()
     };
     scene.transfer.opacity = Some(OpacitySpec::Points(vec![[0.0, 0.1], [1.0, 0.1]]));
-    scene::resolve(&scene, case).unwrap()
+    view::resolve(&scene, case).unwrap()
 }
 
 /// What rays meet by f64.

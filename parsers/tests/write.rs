@@ -7,9 +7,8 @@
     reason = "tests"
 )]
 
-use std::fs;
-use std::io;
 use std::path::PathBuf;
+use std::{fs, io};
 
 use strataray_parsers::cells::Head;
 use strataray_parsers::deck::{DeckWriter, Grdecl, GridText, GridUnit};

@@ -1,4 +1,4 @@
-// Lines along the edges of cells, as wide at any distance (`Surfaces` in scene/surfaces.rs says how).
+// Lines along the edges of cells, as wide at any distance (`Surfaces` in view/surfaces.rs says how).
 #import layout
 
 override CELL_EDGES: bool = false;

@@ -1,4 +1,4 @@
-// What light makes of a sample's color (`Lighting` in scene/lighting.rs says how).
+// What light makes of a sample's color (`Lighting` in view/lighting.rs says how).
 #import cones
 #import frame
 #import cone_rays
@@ -50,7 +50,7 @@ fn shade(color: vec3f, point: vec3f, is_ghost: bool) -> vec3f {
     return color * light + highlight;
 }
 
-// What the lamp beside the viewer leaves of the color of a surface (`Surfaces` in scene/surfaces.rs says how), by
+// What the lamp beside the viewer leaves of the color of a surface (`Surfaces` in view/surfaces.rs says how), by
 // its normal of any length and sense, and the ray's direction: grid space.
 fn headlight(normal: vec3f, direction: vec3f) -> f32 {
     if EXACT_COLORS {

@@ -1,6 +1,6 @@
 // Layers of surface points that rays meet, blended between the samples. They lie behind the states of the
 // rays, nearest first, for each pixel of the part of the picture that the tile lies in (`Surfaces` in
-// scene/surfaces.rs says what is seen).
+// view/surfaces.rs says what is seen).
 #import frame
 #import grid
 #import transfer

@@ -297,7 +297,7 @@ mod tests {
     use std::path::Path;
 
     use super::*;
-    use crate::load;
+    use crate::case::load;
 
     fn sample() -> Arc<Case> {
         let file = "samples/scissor/SCISSOR.EGRID";

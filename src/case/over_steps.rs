@@ -7,8 +7,7 @@ use rayon::prelude::*;
 
 use super::weights::{Extent, Weights};
 use super::{Case, CaseError};
-use crate::model::CellField;
-use crate::model::derivatives;
+use crate::model::{CellField, derivatives};
 use crate::transfer::Scale;
 use crate::transfer::boundaries::{self, Boundary};
 use crate::transfer::opacity::Opacity;

@@ -4,10 +4,11 @@ use std::path::PathBuf;
 
 use anyhow::{Context, ensure};
 use strataray::case::Case;
-use strataray::filming::shoot;
 use strataray::picture::film::{Film, FilmFormat, FilmShape};
-use strataray::renderer::Renderer;
-use strataray::scene::{Scene, Sequence, Turn, film};
+use strataray::picture::filming::shoot;
+use strataray::render::Renderer;
+use strataray::scene::Scene;
+use strataray::view::{Sequence, Turn, step};
 
 use super::Verbosity;
 use super::progress::Reporter;
@@ -139,7 +140,7 @@ fn sequence(
     match arguments.over {
         Over::Steps => {
             let every = arguments.every.unwrap_or(1) as usize;
-            let steps = film::steps(case, arguments.steps.as_deref(), every)?;
+            let steps = step::steps(case, arguments.steps.as_deref(), every)?;
             let found = reporter.bar("range of the steps", |progress| {
                 Sequence::over_steps(scene, case, &steps, &|f| progress(f))
             });

@@ -1,7 +1,8 @@
 //! Ctrl-C: asks work that can be cancelled to stop, and ends the program where there is none.
 
 use std::sync::Once;
-use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use std::sync::atomic::AtomicBool;
+use std::sync::atomic::Ordering::Relaxed;
 
 /// Exit code of a program that Ctrl-C ended.
 const INTERRUPTED: i32 = 130;

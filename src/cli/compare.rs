@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use anyhow::{Context, ensure};
 use strataray::case::Case;
 use strataray::compare::{Comparer, Plan, Reference, Report, Setting, summary};
-use strataray::scene::{self, NamedView, Scene, TurnAxis, half_turns};
-use strataray::strategies::StrategyKind;
+use strataray::scene::{Scene, StrategyKind};
+use strataray::view::{self, NamedView, TurnAxis, half_turns};
 
 use super::Verbosity;
 use super::progress::Reporter;
@@ -140,7 +140,7 @@ fn views(
     case: &Case,
     is_software: bool,
 ) -> anyhow::Result<Vec<NamedView>> {
-    let view = scene::resolve(scene, case)?.for_adapter(is_software);
+    let view = view::resolve(scene, case)?.for_adapter(is_software);
     Ok(match arguments.views {
         Some(count) => {
             let about = arguments.turn.unwrap_or(TurnAxis::All);

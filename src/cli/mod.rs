@@ -17,7 +17,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
-use strataray::load;
+use strataray::case::load;
 
 const EXAMPLES: &str = "Examples:
   strataray info samples/scissor/SCISSOR.EGRID

@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 use strataray::case::Case;
 use strataray::picking::{CellOnRay, Fault, Hit, Part, Pick, Picker};
 use strataray::picture::{Shot, short_unit};
-use strataray::renderer::Renderer;
+use strataray::render::Renderer;
 
 use super::Verbosity;
 use super::progress::Reporter;

@@ -6,9 +6,9 @@ use std::path::PathBuf;
 use anyhow::Context;
 use glam::DVec3;
 use strataray::case::Case;
-use strataray::gpu::{Gpu, GpuGrid, probe};
 use strataray::model::{CellField, Ijk, Spaces, VertexField};
 use strataray::reference::{self, Locator};
+use strataray::render::gpu::{Gpu, GpuGrid, probe};
 use strataray::scene::Interpolation;
 
 use super::Verbosity;

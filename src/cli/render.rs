@@ -7,11 +7,12 @@ use std::time::{Duration, Instant};
 use anyhow::Context;
 use serde_json::json;
 use strataray::case::Case;
-use strataray::gpu::Gpu;
-use strataray::gpu::illumination::LightTimes;
-use strataray::picture::{self, Image, Shot};
+use strataray::image::Image;
+use strataray::picture::{self, Shot};
 use strataray::reference;
-use strataray::renderer::{Frame, Renderer};
+use strataray::render::gpu::Gpu;
+use strataray::render::gpu::illumination::LightTimes;
+use strataray::render::{Frame, Renderer};
 
 use super::Verbosity;
 use super::process::cpu_time;

@@ -3,9 +3,9 @@
 use std::path::PathBuf;
 
 use anyhow::Context;
+use strataray::case::save;
 use strataray::model::Dims;
 use strataray::model::synthetic::{RECIPES, Recipe};
-use strataray::save;
 
 use super::Verbosity;
 use super::progress::Reporter;

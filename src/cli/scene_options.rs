@@ -4,15 +4,14 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use anyhow::Context;
-use strataray::case::Case;
-use strataray::gpu::Gpu;
-use strataray::load;
+use strataray::case::{Case, load};
+use strataray::render::gpu::Gpu;
 use strataray::scene::lighting::PRESETS;
-use strataray::scene::look;
 use strataray::scene::{
     CameraSpec, FramingCamera, Interpolation, LightMode, LightingSpec, Mode, Projection, Scene,
     StepSpec,
 };
+use strataray::view::look;
 
 use super::progress::Reporter;
 

@@ -3,6 +3,7 @@
 //! A [`Plan`] says what is compared, a [`Comparer`] makes the pictures and figures of one view after
 //! another, and a [`Report`] writes them into a folder for people and for programs.
 
+pub mod markdown;
 mod plots;
 mod report;
 mod row;
@@ -12,14 +13,14 @@ mod tables;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use crate::gpu::{Gpu, GpuError};
-use crate::metrics::{Comparison, ciede2000_map};
+use crate::image::metrics::{Comparison, ciede2000_map};
+use crate::image::{Image, Rgb8};
 use crate::model::Grid;
-use crate::picture::{Image, Rgb8};
 use crate::reference;
-use crate::renderer::{Frame, Renderer};
-use crate::scene::{NamedView, View};
-use crate::strategies::StrategyKind;
+use crate::render::gpu::{Gpu, GpuError};
+use crate::render::{Frame, Renderer};
+use crate::scene::StrategyKind;
+use crate::view::{NamedView, View};
 
 pub use report::{Report, ReportError, Setting};
 pub use row::Row;

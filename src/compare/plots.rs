@@ -2,8 +2,9 @@
 
 use super::{Plan, Row};
 use crate::case::Case;
-use crate::picture::{Plot, Rgb8, Series};
-use crate::strategies::StrategyKind;
+use crate::image::Rgb8;
+use crate::picture::{Plot, Series};
+use crate::scene::StrategyKind;
 
 /// Width and height of the plots.
 const SIZE: [u32; 2] = [900, 420];

@@ -1,14 +1,14 @@
 //! A comparison as files: pictures, difference maps, contact sheet, plots and tables.
 
-use std::fs;
-use std::io;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
+use std::{fs, io};
 
 use super::sheet::Sheet;
 use super::{Compared, Outcome, Plan, Row, plots, tables};
 use crate::case::Case;
-use crate::picture::{PictureError, Rgb8, SheetError, difference_picture, write_png};
+use crate::image::Rgb8;
+use crate::picture::{PictureError, SheetError, difference_picture, write_png};
 
 /// Files that stand for all views.
 pub(super) const SHEET: &str = "sheet.png";

@@ -5,9 +5,9 @@ use std::time::Duration;
 use serde::Serialize;
 
 use super::Reference;
-use crate::metrics::Comparison;
-use crate::renderer::Frame;
-use crate::strategies::StrategyKind;
+use crate::image::metrics::Comparison;
+use crate::render::Frame;
+use crate::scene::StrategyKind;
 
 /// Figures of a strategy's picture of a view; those that could not be had are absent, `null` in JSON.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
@@ -34,9 +34,9 @@ pub struct Row {
     pub prepare_ms: Option<f64>,
     /// Bytes on the device for all purposes together.
     pub gpu_bytes: Option<u64>,
-    /// See [`crate::gpu::FrameStats::recovered_rays`].
+    /// See [`crate::render::gpu::FrameStats::recovered_rays`].
     pub recovered_rays: Option<u64>,
-    /// See [`crate::gpu::FrameStats::lost_rays`].
+    /// See [`crate::render::gpu::FrameStats::lost_rays`].
     pub lost_rays: Option<u64>,
     /// File of the picture.
     pub picture: Option<String>,

@@ -2,7 +2,8 @@
 
 use super::tables::{figure, with_unit};
 use super::{Compared, Outcome, Plan, Row};
-use crate::picture::{Rgb8, SheetError, Tile, contact_sheet, difference_colors};
+use crate::image::Rgb8;
+use crate::picture::{SheetError, Tile, contact_sheet, difference_colors};
 
 /// Width of the pictures on the sheet at most.
 const WIDEST: u32 = 360;

@@ -7,8 +7,9 @@ use super::report::{SHEET, Setting};
 use super::row::ms;
 use super::{Plan, Reference, Row};
 use crate::case::Case;
-use crate::markdown::{self, row, table};
-use crate::scene::{Interpolation, View};
+use crate::compare::markdown::{self, row, table};
+use crate::scene::Interpolation;
+use crate::view::View;
 
 /// What the rows of a strategy come to.
 struct Digest {
@@ -38,7 +39,8 @@ impl Digest {
             is_reference: own.iter().any(|r| r.is_reference()),
             worst_psnr_db: all(|r| r.psnr_db).min_by(f64::total_cmp),
             worst_ssim: all(|r| r.ssim).min_by(f64::total_cmp),
-            mean_ciede2000: Some(crate::metrics::mean(&differences)).filter(|m| m.is_finite()),
+            mean_ciede2000: Some(crate::image::metrics::mean(&differences))
+                .filter(|m| m.is_finite()),
             worst_ciede2000_p99: all(|r| r.ciede2000_p99).max_by(f64::total_cmp),
             median_ms: times.get(times.len() / 2).copied(),
             prepare_ms: all(|r| r.prepare_ms).next(),

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use super::gather::{Gathered, Source};
-use crate::metrics::{ciede2000, lab};
+use crate::image::metrics::{ciede2000, lab};
 use crate::model::Ijk;
 
 /// CIEDE2000 at which a color counts little as that of the pixel.

@@ -6,8 +6,9 @@ use glam::DVec3;
 
 use super::Part;
 use super::surfaces::Met;
+use crate::image::Blending;
 use crate::model::Ijk;
-use crate::scene::{Blending, View};
+use crate::view::View;
 
 /// A sample of the volume, or a point of a surface: what a ray passes in one step.
 #[derive(Debug, Clone)]

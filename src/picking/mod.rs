@@ -28,11 +28,11 @@ mod surfaces;
 use glam::{DVec2, DVec3};
 
 use crate::case::{Case, CaseError};
-use crate::gpu::GpuError;
 use crate::model::topology::{Behind, Face};
 use crate::model::{Grid, Ijk};
-use crate::renderer::Renderer;
-use crate::scene::View;
+use crate::render::Renderer;
+use crate::render::gpu::GpuError;
+use crate::view::View;
 
 use gather::{Gathered, Passed, Source};
 use ray::Ray;

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use glam::{DVec2, DVec3};
 
-use crate::scene::View;
+use crate::view::View;
 
 /// Samples of a ray, at most; where a picture has more, these lie farther apart.
 const MOST_SAMPLES: f64 = 20_000.0;

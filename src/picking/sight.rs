@@ -7,11 +7,12 @@ use super::ray::{Ray, Span};
 use super::surfaces::Met;
 use super::{Part, fault_of};
 use crate::case::Case;
-use crate::gpu::probe::Located;
 use crate::model::Ijk;
-use crate::scene::ghosts::{self, shown_grid};
-use crate::scene::surfaces::{SHEET_OPACITY, fault_color};
-use crate::scene::{Hull, View};
+use crate::render::gpu::probe::Located;
+use crate::scene::Hull;
+use crate::view::View;
+use crate::view::ghosts::{self, shown_grid};
+use crate::view::surfaces::{SHEET_OPACITY, fault_color};
 
 /// How far beside a surface its cell is located, as a part of the sampling step.
 const BESIDE: f64 = 1e-3;

@@ -8,10 +8,11 @@ use rayon::prelude::*;
 
 use super::ray::{Ray, is_kept};
 use crate::case::Case;
-use crate::gpu::layout::SHEET_LAYERS;
 use crate::model::topology::Face;
 use crate::model::{CellIndex, FaultFaces, Grid, Ijk};
-use crate::scene::{Hull, View};
+use crate::render::gpu::layout::SHEET_LAYERS;
+use crate::scene::Hull;
+use crate::view::View;
 
 /// Part of a box's size by which it is wider than what is in it: a ray along a side must not miss it.
 const SLACK: f64 = 1e-9;
@@ -61,7 +62,7 @@ impl Shown {
 }
 
 impl SurfaceFaces {
-    /// The points of the surfaces that a ray sees, as [`crate::scene::Surfaces`] defines them: the nearest one
+    /// The points of the surfaces that a ray sees, as [`crate::view::Surfaces`] defines them: the nearest one
     /// of the hull, or the nearest fault sheets.
     pub fn seen(&mut self, case: &Case, view: &View, ray: &Ray) -> Vec<Met> {
         // A faint hull is there for orientation, and is never what one clicks on.

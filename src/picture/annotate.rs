@@ -2,6 +2,7 @@
 
 use glam::DVec2;
 
+use super::axes;
 use super::canvas::Canvas;
 use super::info::Info;
 use super::layout::{LINE, Layout, Length, Parts};
@@ -9,9 +10,10 @@ use super::legend::Key;
 use super::marks::mark_cells;
 use super::orientation::{Area, Orientation, Paper};
 use super::pen::Pen;
-use super::{Image, Rgb8, axes, srgb_8bit};
 use crate::case::{Case, Step};
-use crate::scene::{Scene, SceneError, View, resolve};
+use crate::image::{Image, Rgb8, srgb_8bit};
+use crate::scene::Scene;
+use crate::view::{SceneError, View, resolve};
 
 /// What to write and draw.
 #[derive(Debug, Clone, Default)]
@@ -265,9 +267,9 @@ pub(super) mod tests {
 
     use super::*;
     use crate::model::{CellField, Spaces};
-    use crate::scene::{Camera, Interpolation, Projection};
-    use crate::strategies::StrategyKind;
+    use crate::scene::{Interpolation, Projection, StrategyKind};
     use crate::transfer::{TransferFunction, presets};
+    use crate::view::Camera;
 
     /// A view from the southwest on a box of 10 by 9 by 4.
     pub fn view(size: [u32; 2], background: f64) -> View {
@@ -287,7 +289,7 @@ pub(super) mod tests {
             vertical_exaggeration: 2.0,
             world_bounds: [DVec3::new(0.0, 0.0, -4.0), DVec3::new(10.0, 9.0, 0.0)],
             box_corners,
-            subject: crate::scene::Subject::of_box(box_corners).into(),
+            subject: crate::view::Subject::of_box(box_corners).into(),
             strategy: StrategyKind::ALL[0],
             beyond: [false; 2],
             property: "SWAT".into(),
@@ -302,17 +304,17 @@ pub(super) mod tests {
                 bands: None,
                 reference_length: 1.0,
             },
-            blending: crate::scene::Blending::Linear,
+            blending: crate::image::Blending::Linear,
             sampling_step: 1.0,
             early_termination: 0.0,
-            surfaces: crate::scene::Surfaces::default(),
+            surfaces: crate::view::Surfaces::default(),
             connections: std::sync::Arc::default(),
             named_faults: std::sync::Arc::default(),
             chosen_faults: None,
             drawn: Vec::new().into(),
             clip: Vec::new(),
             ghosts: None,
-            lighting: crate::scene::lighting::resolve(
+            lighting: crate::view::lighting::resolve(
                 &crate::scene::LightingSpec::default(),
                 DVec3::ONE,
                 1,
@@ -432,7 +434,7 @@ pub(super) mod tests {
                 view.camera.right *= odd;
                 let mut corners = view.box_corners;
                 corners[3].x = odd;
-                view.subject = crate::scene::Subject::of_box(corners).into();
+                view.subject = crate::view::Subject::of_box(corners).into();
                 view.transfer.range = [odd, 1.0];
                 view.transfer.opacity = vec![(0.0, odd)];
                 view.vertical_exaggeration = odd;

@@ -2,10 +2,10 @@
 
 use glam::DVec2;
 
-use super::Image;
 use super::orientation::{Arrow, Orientation, on_screen};
 use super::pen::Pen;
-use crate::scene::View;
+use crate::image::Image;
+use crate::view::View;
 
 /// Color of the lines between cells of non-neighbor connections.
 pub const CONNECTION: [u8; 3] = [225, 30, 170];

@@ -2,12 +2,21 @@
 
 use ab_glyph::{Font, FontRef, PxScale, ScaleFont};
 
+use crate::image::Rgb8;
+
 /// Pixels being drawn on.
 pub struct Canvas<'a> {
     /// Width and height.
     pub size: [u32; 2],
     pixels: &'a mut [[u8; 3]],
     font: Option<FontRef<'static>>,
+}
+
+impl Rgb8 {
+    /// To draw on.
+    pub(super) fn canvas(&mut self) -> Canvas<'_> {
+        Canvas::new(self.size, &mut self.pixels)
+    }
 }
 
 impl<'a> Canvas<'a> {

@@ -2,11 +2,11 @@
 
 use glam::DVec2;
 
-use super::Rgb8;
 use super::annotate::{Annotations, when};
 use super::pen::Pen;
 use crate::case::Case;
-use crate::scene::View;
+use crate::image::Rgb8;
+use crate::view::View;
 
 /// Pixels between pictures that stand beside each other, and of a wipe's line.
 const GAP: u32 = 2;

@@ -5,7 +5,7 @@ use glam::DVec2;
 use super::legend::Key;
 use super::pen::Pen;
 use super::ticks::label;
-use super::{Rgb8, srgb_8bit};
+use crate::image::{Rgb8, srgb_8bit};
 use crate::transfer::{TransferFunction, presets};
 
 /// CIEDE2000 differences as colors, from black for none to pale yellow for `scale` and more.

@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use image::error::{ParameterError, ParameterErrorKind};
 
-use super::Image;
 use super::draft::Draft;
+use crate::image::Image;
 
 /// Why a picture or film could not be written.
 #[derive(Debug, thiserror::Error)]
@@ -145,7 +145,7 @@ fn whole(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::Blending;
+    use crate::image::Blending;
 
     #[test]
     fn ok_exr_gives_back_the_same_floats() {

@@ -1,12 +1,11 @@
 //! The line below a picture: what is drawn, in numbers and words.
 
 use super::ticks::{short_label, shortened};
-use crate::case::Case;
-use crate::case::Weighting;
-use crate::scene::facts::Values;
-use crate::scene::{Facts, View};
-use crate::strategies::StrategyKind;
+use crate::case::{Case, Weighting};
+use crate::scene::StrategyKind;
 use crate::transfer::Scale;
+use crate::view::facts::Values;
+use crate::view::{Facts, View};
 
 /// Facts on what is drawn, from left to right.
 #[derive(Debug, Clone, Default, PartialEq)]

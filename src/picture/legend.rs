@@ -6,8 +6,8 @@ use glam::DVec2;
 
 use super::layout::{LINE, LegendWidths};
 use super::orientation::{Area, Text};
-use super::srgb_8bit;
 use super::ticks::{label, labels, log_labels, short_label};
+use crate::image::srgb_8bit;
 use crate::transfer::{Scale, TransferFunction};
 
 /// A legend on a ground of its own.

@@ -2,12 +2,13 @@
 
 use glam::DVec2;
 
+use super::canvas::Canvas;
 use super::orientation::on_screen;
 use super::pen::Pen;
-use super::{Canvas, Rgb8};
+use crate::image::Rgb8;
 use crate::model::{Grid, Ijk};
-use crate::scene::View;
-use crate::scene::surfaces::PALETTE;
+use crate::view::View;
+use crate::view::surfaces::PALETTE;
 
 /// Color of the selected cell at a place in the list, 8-bit sRGB.
 pub fn mark_color(n: usize) -> [u8; 3] {

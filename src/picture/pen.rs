@@ -3,8 +3,8 @@
 use super::canvas::Canvas;
 use super::legend::{GROUND, Legend};
 use super::orientation::Text;
-use super::srgb_8bit;
-use crate::transfer::function::linear_from_srgb;
+use crate::image::color::linear_from_srgb;
+use crate::image::srgb_8bit;
 
 /// A canvas with the color and sizes that suit its picture.
 pub struct Pen<'a> {

@@ -2,7 +2,7 @@
 
 use super::pen::Pen;
 use super::ticks::{labels, log_labels};
-use super::{Rgb8, srgb_8bit};
+use crate::image::{Rgb8, srgb_8bit};
 
 /// A named line of a plot.
 #[derive(Debug, Clone, Default, PartialEq)]

@@ -1,7 +1,7 @@
 //! Contact sheets: pictures side by side, each with a caption.
 
 use super::pen::Pen;
-use super::{Rgb8, srgb_8bit};
+use crate::image::{Rgb8, srgb_8bit};
 
 /// A picture on a contact sheet.
 #[derive(Debug, Clone, Copy)]

@@ -5,8 +5,8 @@ use std::f64::consts::TAU;
 use glam::DVec3;
 
 use super::integrate::{Integrator, Ray};
-use crate::scene::Lighting;
-use crate::scene::lighting::Cone;
+use crate::view::Lighting;
+use crate::view::lighting::Cone;
 
 /// Transmittance at which a ray over a cone ends.
 const OPAQUE: f64 = 1e-3;

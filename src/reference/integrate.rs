@@ -6,8 +6,9 @@ use super::locate::{Located, Locator};
 use super::surfaces::SurfaceFaces;
 use crate::model::corner_point::weights;
 use crate::model::{CellField, Grid, VertexField};
-use crate::scene::ghosts::{self, shown_grid};
-use crate::scene::{ClipPlane, Interpolation, View};
+use crate::scene::Interpolation;
+use crate::view::ghosts::{self, shown_grid};
+use crate::view::{ClipPlane, View};
 
 /// A ray in world space.
 #[derive(Debug, Clone, Copy, PartialEq)]

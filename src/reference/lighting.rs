@@ -1,4 +1,4 @@
-//! The color of a sample in a view's light, as [`crate::scene::Lighting`] defines it.
+//! The color of a sample in a view's light, as [`crate::view::Lighting`] defines it.
 
 use glam::DVec3;
 
@@ -6,8 +6,8 @@ use super::integrate::{Integrator, Sample};
 use super::locate::Located;
 use crate::model::Hexahedron;
 use crate::scene::LightMode;
-use crate::scene::lighting::{GRADIENT_FADE, Light, SHININESS, SPECULAR, SPOT_EDGE, Source};
-use crate::scene::surfaces::{HEADLIGHT_AMBIENT, HEADLIGHT_ASIDE};
+use crate::view::lighting::{GRADIENT_FADE, Light, SHININESS, SPECULAR, SPOT_EDGE, Source};
+use crate::view::surfaces::{HEADLIGHT_AMBIENT, HEADLIGHT_ASIDE};
 
 /// What a light is from a point.
 struct Incident {

@@ -5,9 +5,9 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use rayon::prelude::*;
 
 use super::integrate::{Integrator, Ray};
+use crate::image::Image;
 use crate::model::Grid;
-use crate::picture::Image;
-use crate::scene::View;
+use crate::view::View;
 
 /// Renders a view in f64; `None` when `progress` asked to stop.
 ///

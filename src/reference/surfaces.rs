@@ -1,4 +1,4 @@
-//! Points of surfaces on a ray, as [`crate::scene::Surfaces`] defines them.
+//! Points of surfaces on a ray, as [`crate::view::Surfaces`] defines them.
 
 use glam::{DMat3, DVec2, DVec3};
 use rayon::prelude::*;
@@ -9,11 +9,12 @@ use super::locate::Located;
 use super::tree::Tree;
 use crate::model::topology::Face;
 use crate::model::{Grid, Ijk};
-use crate::scene::surfaces::{
+use crate::scene::Hull;
+use crate::view::surfaces::{
     EDGE_DARKNESS, EDGE_FADE, EDGE_WIDTH, FAINT_BEHIND, FAINT_FRONT, SHEET_OPACITY, faint_color,
     fault_color,
 };
-use crate::scene::{ClipPlane, Hull, View};
+use crate::view::{ClipPlane, View};
 
 /// Barycentric coordinates below zero by less than this still count as inside.
 const ON_EDGE: f64 = 1e-12;

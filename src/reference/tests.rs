@@ -8,12 +8,12 @@ use glam::{DAffine3, DVec2, DVec3};
 
 use super::integrate::Sample;
 use super::{Integrator, Located, Locator, Ray, render, value_at};
-use crate::metrics::fraction_within;
+use crate::image::metrics::fraction_within;
 use crate::model::{CellField, Dims, Grid, GridInput, Ijk, MapAxes, Spaces, VertexField};
-use crate::scene::lighting::{self as scene_lighting, LightSpec, VolumeSpec};
-use crate::scene::{Camera, Interpolation, LightingSpec, View};
-use crate::strategies::StrategyKind;
+use crate::scene::lighting::{LightSpec, VolumeSpec};
+use crate::scene::{Interpolation, LightingSpec, StrategyKind};
 use crate::transfer::TransferFunction;
+use crate::view::{Camera, View, lighting};
 
 /// A grid whose pillars and depths are functions of their place.
 struct Shape<'a> {
@@ -96,7 +96,7 @@ fn view(grid: &Grid, field: CellField, extinction: f64, sampling_step: f64) -> V
     let world_bounds = [a.min(b), a.max(b)];
     let center = 0.5 * (a + b);
     let eye = center - 100.0 * DVec3::X;
-    let srgb = [0.25, 0.5, 1.0].map(crate::transfer::function::srgb_from_linear);
+    let srgb = [0.25, 0.5, 1.0].map(crate::image::color::srgb_from_linear);
     let box_corners = std::array::from_fn(|c| {
         let pick = |axis: usize| world_bounds[c >> axis & 1][axis];
         DVec3::new(pick(0), pick(1), pick(2))
@@ -109,7 +109,7 @@ fn view(grid: &Grid, field: CellField, extinction: f64, sampling_step: f64) -> V
         vertical_exaggeration: 2.0,
         world_bounds,
         box_corners,
-        subject: crate::scene::Subject::of_box(box_corners).into(),
+        subject: crate::view::Subject::of_box(box_corners).into(),
         strategy: StrategyKind::ALL[0],
         beyond: [false; 2],
         property: "TEST".into(),
@@ -123,17 +123,17 @@ fn view(grid: &Grid, field: CellField, extinction: f64, sampling_step: f64) -> V
             bands: None,
             reference_length: 1.0,
         },
-        blending: crate::scene::Blending::Linear,
+        blending: crate::image::Blending::Linear,
         sampling_step,
         early_termination: 0.0,
-        surfaces: crate::scene::Surfaces::default(),
+        surfaces: crate::view::Surfaces::default(),
         connections: std::sync::Arc::default(),
         named_faults: std::sync::Arc::default(),
         chosen_faults: None,
         drawn: vec![true; grid.active_cells().len()].into(),
         clip: Vec::new(),
         ghosts: None,
-        lighting: scene_lighting::resolve(&LightingSpec::default(), DVec3::ONE, 1).unwrap(),
+        lighting: lighting::resolve(&LightingSpec::default(), DVec3::ONE, 1).unwrap(),
         libc: crate::scene::LibcSettings::default(),
         srg: crate::scene::SrgSettings::default(),
         field: field.into(),
@@ -152,7 +152,7 @@ fn light(view: &mut View, spec: LightingSpec, voxel: DVec3) {
         ..spec.volume
     };
     let spec = LightingSpec { volume, ..spec };
-    view.lighting = scene_lighting::resolve(&spec, extent, view.drawn.len()).unwrap();
+    view.lighting = lighting::resolve(&spec, extent, view.drawn.len()).unwrap();
 }
 
 /// A white light with sharp shadows that shines along `direction`.

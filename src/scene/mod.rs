@@ -1,39 +1,26 @@
 //! The scene file: what to look at and how, as JSON. Every field has a default.
 
-mod blending;
-pub mod camera;
-mod colors;
-pub mod facts;
-pub mod film;
+mod camera;
 mod filter;
-mod fit;
-pub mod framing;
-pub mod ghosts;
-mod half_turns;
 pub mod lighting;
-pub mod look;
-pub mod resolve;
 mod settings;
-pub mod surfaces;
+mod strategy;
+mod surfaces;
 pub mod transfer;
 
 use serde::{Deserialize, Serialize};
 
-pub use blending::Blending;
-pub use camera::{Camera, Projection};
-pub use facts::Facts;
-pub use film::{Sequence, Turn};
+pub use camera::{AutomaticCamera, CameraSpec, ExplicitCamera, FramingCamera, Projection};
 pub use filter::{Filter, Indices, PropertyFilter};
-pub use framing::{Direction, Extents, Subject};
-pub use half_turns::{NamedView, TurnAxis, half_turns};
-pub use lighting::{LightMode, Lighting, LightingSpec};
-pub use look::default_property;
-pub use resolve::{ClipPlane, SceneError, View, model_corners, resolve};
+pub use lighting::{LightMode, LightingSpec};
 pub use settings::{ClipSpec, CutFace, Integration, LibcSettings, SrgSettings};
-pub use surfaces::{Hull, ShownFaults, Surfaces};
+pub use strategy::StrategyKind;
+pub use surfaces::{Hull, ShownFaults};
 pub use transfer::{
     ColorSpec, Coloring, FoundOpacity, OpacitySpec, OwnRange, RangeSpec, ScaleSpec, TransferSpec,
 };
+
+use crate::image::Blending;
 
 /// A scene as users write it. Unknown fields are errors; absent ones have defaults.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -119,115 +106,6 @@ impl Scene {
             "the scene asks for wells (\"show\": {\"wells\": true}), which are not drawn yet";
         self.show.wells.then_some(sentence)
     }
-}
-
-/// A camera in world coordinates, or one that frames what is drawn.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(
-    untagged,
-    expecting = "camera must have azimuth_degrees, elevation_degrees and zoom, or eye, target and up"
-)]
-pub enum CameraSpec {
-    /// Explicit position.
-    Explicit(ExplicitCamera),
-    /// Direction only; position and distance frame what is drawn.
-    Framing(FramingCamera),
-    /// The same from the direction that suits the shape of what is drawn.
-    Automatic(AutomaticCamera),
-}
-
-/// A camera placed in world coordinates.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct ExplicitCamera {
-    /// Position.
-    pub eye: [f64; 3],
-    /// Point in the middle of the picture.
-    pub target: [f64; 3],
-    /// Direction that is up in the picture.
-    #[serde(default = "z_up")]
-    pub up: [f64; 3],
-    /// Vertical field of view.
-    #[serde(default = "default_fovy")]
-    pub fovy_degrees: f64,
-    /// A parallel picture is as high as the field of view is at the target, so that switching keeps the size
-    /// of what is there. Nothing behind the plane through the eye is seen.
-    #[serde(default, skip_serializing_if = "Projection::is_default")]
-    pub projection: Projection,
-}
-
-/// A camera that frames what is drawn from a direction.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct FramingCamera {
-    /// Compass direction in which the camera stands as seen from the model: 0 north, 90 east.
-    pub azimuth_degrees: f64,
-    /// Height above the horizon.
-    pub elevation_degrees: f64,
-    /// Above 1 comes closer.
-    #[serde(default = "one")]
-    pub zoom: f64,
-    /// Perspective or parallel; either frames what is drawn.
-    #[serde(default, skip_serializing_if = "Projection::is_default")]
-    pub projection: Projection,
-}
-
-/// A camera that frames what is drawn from the direction that suits its shape; see [`Extents::direction`].
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct AutomaticCamera {
-    /// Above 1 comes closer.
-    pub zoom: f64,
-    /// Perspective or parallel.
-    #[serde(skip_serializing_if = "Projection::is_default")]
-    pub projection: Projection,
-}
-
-impl Default for AutomaticCamera {
-    fn default() -> Self {
-        Self {
-            zoom: 1.0,
-            projection: Projection::Perspective,
-        }
-    }
-}
-
-impl CameraSpec {
-    /// Its projection.
-    pub fn projection(&self) -> Projection {
-        match self {
-            Self::Explicit(camera) => camera.projection,
-            Self::Framing(camera) => camera.projection,
-            Self::Automatic(camera) => camera.projection,
-        }
-    }
-
-    /// Its zoom where it frames what is drawn; `None` of an explicit camera.
-    pub fn framing_zoom(&self) -> Option<f64> {
-        match self {
-            Self::Explicit(_) => None,
-            Self::Framing(camera) => Some(camera.zoom),
-            Self::Automatic(camera) => Some(camera.zoom),
-        }
-    }
-}
-
-impl Default for CameraSpec {
-    fn default() -> Self {
-        Self::Automatic(AutomaticCamera::default())
-    }
-}
-
-fn z_up() -> [f64; 3] {
-    [0.0, 0.0, 1.0]
-}
-
-fn default_fovy() -> f64 {
-    30.0
-}
-
-fn one() -> f64 {
-    1.0
 }
 
 /// A time step by number, date or name.

@@ -97,7 +97,7 @@ pub fn parts(colors: &[[f64; 3]]) -> Curve<[f64; 3]> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::metrics::ciede2000_map;
+    use crate::image::metrics::ciede2000_map;
 
     #[test]
     fn colors_of_the_palette_are_far_apart() {

@@ -11,7 +11,8 @@ use super::subject::same_date;
 use super::window::Window;
 use super::worker::Wanted;
 use crate::case::Case;
-use crate::scene::{Scene, ShownFaults, model_corners};
+use crate::scene::{Scene, ShownFaults};
+use crate::view::model_corners;
 
 /// What the reader was asked for last.
 #[derive(Default, PartialEq)]

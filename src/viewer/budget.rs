@@ -1,7 +1,7 @@
 //! How large a draft may be. Pictures tell what they cost, and the size of the next draft and of its light
 //! volume follow from that, on a fast machine as on a slow one.
 
-use crate::strategies::StrategyKind;
+use crate::scene::StrategyKind;
 
 /// Milliseconds that a draft may take while something moves: 30 images per second.
 pub const TURN_MS: f64 = 30.0;

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use crate::load;
+use crate::case::load;
 
 /// What a path means.
 #[derive(Debug, Clone, PartialEq, Eq)]

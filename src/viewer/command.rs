@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::load::CasePaths;
+use crate::case::load::CasePaths;
 use crate::scene::Scene;
 
 /// Writes a scene as JSON.

@@ -12,7 +12,7 @@ use super::spread::Spread;
 use super::state::State;
 use super::watch::Watch;
 use crate::case::Case;
-use crate::load::CasePaths;
+use crate::case::load::CasePaths;
 use crate::picking::Pick;
 use crate::scene::{CameraSpec, StepSpec};
 

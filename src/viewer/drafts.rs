@@ -8,9 +8,9 @@ use eframe::egui::{ColorImage, Context, TextureHandle, TextureOptions};
 use super::budget::{COARSEST, DraftBudget, DraftSize, Spent};
 use super::worker::{Picture, Wanted};
 use crate::case::Case;
-use crate::picture::Rgb8;
-use crate::scene::{Lighting, LightingSpec, Scene};
-use crate::strategies::StrategyKind;
+use crate::image::Rgb8;
+use crate::scene::{LightingSpec, Scene, StrategyKind};
+use crate::view::Lighting;
 
 /// Rays of a draft by LIBC that take longer, however few its pixels are, are bound by the faces it draws.
 const TOO_SLOW_MS: f64 = 150.0;

@@ -10,11 +10,12 @@ use super::state::Layout;
 use super::still::still;
 use super::window::Window;
 use crate::case::Case;
-use crate::filming::shoot;
-use crate::gpu::Gpu;
 use crate::picture::film::{Film, FilmFormat, FilmShape};
-use crate::renderer::Renderer;
-use crate::scene::{Scene, Sequence, Turn, film};
+use crate::picture::filming::shoot;
+use crate::render::Renderer;
+use crate::render::gpu::Gpu;
+use crate::scene::Scene;
+use crate::view::{Sequence, Turn, step};
 
 /// What is to be made.
 #[derive(Clone)]
@@ -168,7 +169,7 @@ fn make(spec: &ExportSpec, path: &Path, progress: &dyn Fn(f64) -> bool) -> Falli
     let (fps, sequence) = match spec.kind {
         Kind::Still => return still(spec, path, progress),
         Kind::Steps { fps } => {
-            let steps = film::steps(case, None, 1)?;
+            let steps = step::steps(case, None, 1)?;
             // Looking at all values is a small part of the work.
             let looks = |part: f64| progress(0.05 * part);
             let Some(sequence) = Sequence::over_steps(&spec.scene, case, &steps, &looks)? else {
@@ -224,7 +225,7 @@ mod tests {
     fn spec(kind: Kind) -> ExportSpec {
         let sample = Path::new(env!("CARGO_MANIFEST_DIR")).join("samples/scissor/SCISSOR.EGRID");
         ExportSpec {
-            case: Arc::new(crate::load::open(&sample).unwrap()),
+            case: Arc::new(crate::case::load::open(&sample).unwrap()),
             scene: Scene {
                 size: [64, 48],
                 ..Scene::default()

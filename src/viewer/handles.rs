@@ -3,7 +3,8 @@
 use eframe::egui::{self, Color32, Pos2, Rect, Sense, Stroke, Ui, pos2, vec2};
 use glam::DVec3;
 
-use crate::scene::{ClipSpec, Scene, View};
+use crate::scene::{ClipSpec, Scene};
+use crate::view::View;
 
 /// Half the side of a handle, in points.
 const HANDLE: f32 = 7.0;

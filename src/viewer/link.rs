@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
-use crate::scene::camera::middle;
 use crate::scene::{CameraSpec, ExplicitCamera};
+use crate::view::camera::middle;
 
 /// From the world of one case to that of another: the same world where the models overlap on the map, else the
 /// middle of one model on that of the other, as large as that.

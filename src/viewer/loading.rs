@@ -5,9 +5,9 @@ use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::case::Case;
-use crate::load::{self, CasePaths};
+use crate::case::load::{self, CasePaths};
 use crate::scene::Scene;
-use crate::scene::look;
+use crate::view::look;
 
 /// A case, and what of it is shown at first.
 pub struct Opened {

@@ -9,8 +9,9 @@ use super::orbit;
 use super::window::Window;
 use crate::case::Case;
 use crate::model::Ijk;
-use crate::scene::camera::middle;
-use crate::scene::{CameraSpec, View};
+use crate::scene::CameraSpec;
+use crate::view::View;
+use crate::view::camera::middle;
 
 /// A change of the camera.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

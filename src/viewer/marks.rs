@@ -5,7 +5,8 @@ use glam::DVec2;
 
 use crate::case::Case;
 use crate::picture::{cell_edges, mark_color};
-use crate::scene::{Scene, View};
+use crate::scene::Scene;
+use crate::view::View;
 
 /// Color of the selected cell at a place in the list.
 pub fn color(n: usize) -> Color32 {

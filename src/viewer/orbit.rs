@@ -2,10 +2,9 @@
 
 use glam::{DQuat, DVec2, DVec3};
 
-use crate::scene::camera::middle;
-use crate::scene::{
-    AutomaticCamera, Camera, CameraSpec, ExplicitCamera, FramingCamera, Projection, View,
-};
+use crate::scene::{AutomaticCamera, CameraSpec, ExplicitCamera, FramingCamera, Projection};
+use crate::view::camera::middle;
+use crate::view::{Camera, View};
 
 /// Radians that a drag across the height of the picture turns.
 const TURN: f64 = 3.0;
@@ -175,7 +174,7 @@ mod tests {
         let mut view = crate::picture::test_view([300, 200], 1.0);
         view.spaces = crate::model::Spaces::new(None, 2.0);
         view.box_corners = view.corners_of(BOUNDS);
-        view.subject = crate::scene::Subject::of_box(view.box_corners).into();
+        view.subject = crate::view::Subject::of_box(view.box_corners).into();
         view.seen_from(spec, [300, 200]).unwrap()
     }
 

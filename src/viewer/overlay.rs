@@ -5,7 +5,7 @@ use glam::DVec2;
 
 use super::worker::Picture;
 use crate::picture::{Annotations, Arrow, CONNECTION, Orientation, Paper, Text, on_screen};
-use crate::scene::View;
+use crate::view::View;
 
 /// Height of letters in and beside pictures, in points.
 pub const TEXT: f32 = 13.0;

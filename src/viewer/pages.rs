@@ -11,7 +11,8 @@ use crate::case::Case;
 use crate::picture::{
     Annotations, Area, GROUND, Info, LINE, Layout, Legend, LegendWidths, Length, Parts, cut,
 };
-use crate::scene::{Show, View};
+use crate::scene::Show;
+use crate::view::View;
 
 /// Text height; the unit of the layout.
 const UNIT: f64 = TEXT as f64;

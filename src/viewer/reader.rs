@@ -7,7 +7,7 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use super::spread::Spread;
 use crate::case::{Case, Property};
 use crate::model::CellIndex;
-use crate::scene::look::{Look, look_of};
+use crate::view::look::{Look, look_of};
 
 /// Cells of a case, by I, J, K from 1.
 #[derive(Clone)]

@@ -6,20 +6,21 @@ use eframe::egui::{self, Context, Rect, Sense, Ui, UiBuilder, pos2, vec2};
 use glam::DVec2;
 
 use super::action::Action;
+use super::keys::Command;
 use super::pages::{self, Page};
-use super::panels;
 use super::state::{Comparison, Layout};
 use super::studio::difference_title;
 use super::viewport::{self, Touched, Viewport};
 use super::welcome::{self, Answer, Asked};
 use super::window::Window;
 use super::worker::{Wanted, Why};
-use super::{handles, keys::Command, marks, overlay};
+use super::{handles, marks, overlay, panels};
 use crate::case::Case;
 use crate::picking::Pick;
 use crate::picture::Annotations;
 use crate::picture::compared::differing;
-use crate::scene::{CameraSpec, Scene, Show, View};
+use crate::scene::{CameraSpec, Scene, Show};
+use crate::view::View;
 
 /// Where the pictures are, and what the pointer is on.
 #[derive(Default)]

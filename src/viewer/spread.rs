@@ -115,7 +115,7 @@ mod tests {
     use std::path::Path;
 
     use super::*;
-    use crate::load;
+    use crate::case::load;
     use crate::model::CellField;
 
     fn total(counts: &Counts) -> u32 {

@@ -7,9 +7,8 @@ use serde::{Deserialize, Serialize};
 
 use super::slices::Slicing;
 use crate::case::{Case, difference_name};
-use crate::scene::look::Look;
-use crate::scene::{Scene, StepSpec};
-use crate::strategies::StrategyKind;
+use crate::scene::{Scene, StepSpec, StrategyKind};
+use crate::view::look::Look;
 
 /// All that the user has set in a tab.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]

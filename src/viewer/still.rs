@@ -7,17 +7,17 @@ use super::export::{Compared, ExportSpec, Fallible};
 use super::state::Layout;
 use super::studio::{DIFFERENCE_SCALE, difference_title};
 use crate::case::Case;
-use crate::gpu::Gpu;
-use crate::metrics::{Comparison, ciede2000_map};
+use crate::image::metrics::{Comparison, ciede2000_map};
+use crate::image::{Image, Rgb8};
 use crate::model::Grid;
 use crate::picture::compared::{
     beside, cropped, differing, draw_legend, halves, wipe, write_own, write_title,
 };
-use crate::picture::{
-    Annotations, Format, Image, Rgb8, Shot, difference_colors, write_exr, write_png,
-};
-use crate::renderer::Renderer;
-use crate::scene::{Scene, View};
+use crate::picture::{Annotations, Format, Shot, difference_colors, write_exr, write_png};
+use crate::render::Renderer;
+use crate::render::gpu::Gpu;
+use crate::scene::Scene;
+use crate::view::View;
 
 /// Makes one picture; false where it was canceled.
 pub fn still(spec: &ExportSpec, path: &Path, progress: &dyn Fn(f64) -> bool) -> Fallible<bool> {
@@ -212,7 +212,7 @@ mod tests {
     fn spec() -> ExportSpec {
         let sample = Path::new(env!("CARGO_MANIFEST_DIR")).join("samples/scissor/SCISSOR.EGRID");
         ExportSpec {
-            case: Arc::new(crate::load::open(&sample).unwrap()),
+            case: Arc::new(crate::case::load::open(&sample).unwrap()),
             scene: Scene {
                 size: SIZE,
                 ..Scene::default()

@@ -9,13 +9,15 @@ use glam::DVec2;
 
 use super::worker::{Answer, Difference, Job, Picture, Wanted};
 use crate::case::Case;
-use crate::gpu::Gpu;
-use crate::metrics::{Comparison, ciede2000_map};
+use crate::image::Rgb8;
+use crate::image::metrics::{Comparison, ciede2000_map};
 use crate::model::Grid;
 use crate::picking::{Pick, PickError, Picker};
-use crate::picture::{self, Rgb8};
-use crate::renderer::Renderer;
-use crate::scene::{self, CameraSpec, Scene, View};
+use crate::picture;
+use crate::render::Renderer;
+use crate::render::gpu::Gpu;
+use crate::scene::{CameraSpec, Scene};
+use crate::view::{self, View};
 
 /// CIEDE2000 that has the last color of a difference map.
 pub const DIFFERENCE_SCALE: f64 = 20.0;
@@ -216,7 +218,7 @@ impl Side {
     /// The scene resolved for the device; where only camera and size differ from a known one, without reading
     /// values.
     fn view(&mut self, wanted: &Wanted, is_software: bool) -> Result<Arc<View>, Failure> {
-        let of_scene = |e: scene::SceneError| Failure {
+        let of_scene = |e: view::SceneError| Failure {
             sentence: e.to_string(),
             is_device: false,
         };
@@ -234,8 +236,9 @@ impl Side {
             .position(|(known, _)| *known == without_camera);
         let view = match known.and_then(|n| self.resolved.remove(n)) {
             Some((_, view)) => view.seen_from(&wanted.scene.camera, wanted.scene.size),
-            None => scene::resolve(&wanted.scene, &wanted.case)
-                .map(|view| view.for_adapter(is_software)),
+            None => {
+                view::resolve(&wanted.scene, &wanted.case).map(|view| view.for_adapter(is_software))
+            }
         };
         let view = Arc::new(view.map_err(of_scene)?);
         self.resolved.push_front((without_camera, view.clone()));
@@ -284,7 +287,7 @@ mod tests {
             return;
         };
         let sample = Path::new(env!("CARGO_MANIFEST_DIR")).join("samples/scissor/SCISSOR.EGRID");
-        let case = Arc::new(crate::load::open(&sample).unwrap());
+        let case = Arc::new(crate::case::load::open(&sample).unwrap());
         let mut picture = || {
             let wanted = Wanted {
                 case: case.clone(),

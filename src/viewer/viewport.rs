@@ -13,7 +13,8 @@ use super::{orbit, overlay};
 use crate::case::Case;
 use crate::model::Grid;
 use crate::picture::Annotations;
-use crate::scene::{Camera, CameraSpec, Scene, View};
+use crate::scene::{CameraSpec, Scene};
+use crate::view::{Camera, View};
 
 /// What the viewport keeps from frame to frame.
 #[derive(Default)]

@@ -22,7 +22,7 @@ use super::state::State;
 use super::subject::CaseDifference;
 use super::worker::{Difference, Picture};
 use super::{bar, keys};
-use crate::load::{self, CasePaths};
+use crate::case::load::{self, CasePaths};
 use crate::picking::Pick;
 
 /// The window's state.

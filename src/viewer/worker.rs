@@ -11,13 +11,14 @@ use glam::DVec2;
 
 use super::studio::Studio;
 use crate::case::Case;
-use crate::gpu::illumination::LightTimes;
-use crate::gpu::{FrameStats, GpuBytes};
-use crate::metrics::Comparison;
+use crate::image::Rgb8;
+use crate::image::metrics::Comparison;
 use crate::model::Grid;
 use crate::picking::Pick;
-use crate::picture::Rgb8;
-use crate::scene::{Scene, View};
+use crate::render::gpu::illumination::LightTimes;
+use crate::render::gpu::{FrameStats, GpuBytes};
+use crate::scene::Scene;
+use crate::view::View;
 
 /// A case and how it looks.
 #[derive(Clone)]
@@ -89,7 +90,7 @@ pub struct Picture {
     pub stats: FrameStats,
     /// What was prepared, and of it light.
     pub prepare: Duration,
-    /// See [`crate::renderer::Frame`].
+    /// See [`crate::render::Frame`].
     pub light: LightTimes,
     /// Bytes on the device.
     pub bytes: GpuBytes,

@@ -5,10 +5,10 @@ use std::f64::consts::TAU;
 use glam::{DVec2, DVec3};
 use serde_json::{Value, json};
 use strataray::case::Case;
-use strataray::gpu::cones::ConeTable;
-use strataray::renderer::Renderer;
-use strataray::scene::lighting::Cone;
+use strataray::render::Renderer;
+use strataray::render::gpu::cones::ConeTable;
 use strataray::scene::{CameraSpec, ExplicitCamera, Projection, Scene};
+use strataray::view::lighting::Cone;
 
 use super::light::{Block, Space, lighting, render, scene};
 use super::shape::boxes;

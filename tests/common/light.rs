@@ -3,10 +3,11 @@
 use glam::DVec3;
 use half::f16;
 use strataray::case::Case;
-use strataray::gpu::Gpu;
-use strataray::gpu::volume::Volume;
-use strataray::renderer::{Frame, Renderer};
-use strataray::scene::{self, Interpolation, LightingSpec, OpacitySpec, RangeSpec, Scene, View};
+use strataray::render::gpu::Gpu;
+use strataray::render::gpu::volume::Volume;
+use strataray::render::{Frame, Renderer};
+use strataray::scene::{Interpolation, LightingSpec, OpacitySpec, RangeSpec, Scene};
+use strataray::view::{self, View};
 
 /// A scene of the property `VALUE` from 0 to 1 whose picture is as small as possible; opacities are per
 /// world-space length `reference_length`.
@@ -32,7 +33,7 @@ pub fn lighting(json: serde_json::Value) -> LightingSpec {
 
 /// Renders a scene, so that its light is there.
 pub fn render(renderer: &mut Renderer, case: &Case, scene: &Scene) -> (View, Frame) {
-    let view = scene::resolve(scene, case).unwrap();
+    let view = view::resolve(scene, case).unwrap();
     let frame = renderer.render(&case.grid, &view, &|_| true).unwrap();
     (view, frame.unwrap())
 }

@@ -16,7 +16,7 @@ pub mod tiny;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use strataray::gpu::Gpu;
+use strataray::render::gpu::Gpu;
 
 /// The folder of real models, or `None` with a sentence where it is absent.
 pub fn data(file: &str) -> Option<PathBuf> {

@@ -2,8 +2,7 @@
 
 use std::fmt::Write;
 
-use strataray::case::Case;
-use strataray::load;
+use strataray::case::{Case, load};
 
 /// A grid by formula; points are (x, y, depth).
 pub struct Shape<'a> {

@@ -106,7 +106,10 @@ fn f14_geometry_of_another_file() {
     }
     let failure = |text: String| {
         let path = tiny::write(folder.path(), "B.DATA", text);
-        strataray::load::open(&path).err().unwrap().to_string()
+        strataray::case::load::open(&path)
+            .err()
+            .unwrap()
+            .to_string()
     };
     let gone = failure(deck("GONE.EGRID"));
     assert!(

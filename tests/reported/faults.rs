@@ -2,7 +2,8 @@
 
 use std::path::PathBuf;
 
-use strataray::scene::{self, Scene, Show};
+use strataray::scene::{Scene, Show};
+use strataray::view;
 
 use super::common::{self, tiny};
 use super::{info, inputs, open, run};
@@ -29,7 +30,7 @@ fn f11_faces_of_named_faults_are_found_whatever_their_throw() {
             },
             ..Scene::default()
         };
-        let view = scene::resolve(&scene, &case).unwrap();
+        let view = view::resolve(&scene, &case).unwrap();
         let faces = view.fault_faces(&case.grid);
         // Each of the 20 is there once for the cell on either side.
         assert_eq!(faces.len(), 40);

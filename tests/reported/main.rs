@@ -21,8 +21,7 @@ mod units;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-use strataray::case::Case;
-use strataray::load;
+use strataray::case::{Case, load};
 
 /// The input built in a folder, and the reported one where it is at hand.
 fn inputs(reported: &str, built: PathBuf) -> Vec<PathBuf> {

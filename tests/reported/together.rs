@@ -4,7 +4,7 @@ use std::ffi::OsString;
 use std::path::PathBuf;
 use std::process::Command;
 
-use strataray::load::{self, CasePaths};
+use strataray::case::load::{self, CasePaths};
 
 use super::common::{self, tiny};
 use super::{info, inputs, names, near, open, run, stats};

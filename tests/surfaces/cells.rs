@@ -19,7 +19,7 @@ fn the_hull_of_a_box_has_the_color_of_its_values_in_the_headlight() {
     for (exact_colors, surfaces) in [(false, HULL), (true, HULL), (false, CELLS)] {
         let mut scene = plain(camera(205.0, 35.0, 1.0), 0.3);
         scene.lighting.exact_colors = exact_colors;
-        let view = scene::resolve(&scene, &case).unwrap();
+        let view = view::resolve(&scene, &case).unwrap();
         let view = with(
             &view,
             Surfaces {
@@ -79,7 +79,7 @@ fn values_are_read_off_faces_and_shapes_off_their_light() {
         scene.range = RangeSpec::Fixed([0.0, 1.0]);
         let mut colors = |camera: &CameraSpec| {
             scene.camera = camera.clone();
-            let view = scene::resolve(&scene, &case).unwrap();
+            let view = view::resolve(&scene, &case).unwrap();
             let image = picture(&mut renderer, &case, &view, Some(StrategyKind::Plts));
             (view.clone(), image.over_background_8bit(view.background))
         };
@@ -131,9 +131,9 @@ fn cells_agree_with_the_reference() {
             scene.show.inactive = inactive;
             scene.show.faults = faults.into();
             if is_cut {
-                scene.clip = vec![cut(&scene::resolve(&scene, &case).unwrap(), CutFace::Open)];
+                scene.clip = vec![cut(&view::resolve(&scene, &case).unwrap(), CutFace::Open)];
             }
-            let view = scene::resolve(&scene, &case).unwrap();
+            let view = view::resolve(&scene, &case).unwrap();
             let truth = picture(&mut renderer, &case, &view, None);
             // The twins: without the headlight, and without edges.
             let mut dark = view.clone();
@@ -186,7 +186,7 @@ fn cells_are_solid_whatever_the_opacity_and_cast_no_ray() {
         let mut made = |scene: &Scene| {
             let view = View {
                 strategy,
-                ..scene::resolve(scene, &case).unwrap()
+                ..view::resolve(scene, &case).unwrap()
             };
             renderer
                 .render(&case.grid, &view, &|_| true)

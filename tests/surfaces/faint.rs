@@ -23,7 +23,7 @@ fn a_faint_hull_has_a_front_and_a_ground() {
     let case = one_box();
     let mut renderer = Renderer::new(gpu, &case.grid).unwrap();
     let scene = plain(camera(205.0, 35.0, 1.0), 0.0);
-    let view = with(&scene::resolve(&scene, &case).unwrap(), FAINT);
+    let view = with(&view::resolve(&scene, &case).unwrap(), FAINT);
     let gray = blended(&view, faint_color(view.background)).x;
     for by in all() {
         let image = picture(&mut renderer, &case, &view, by);
@@ -80,7 +80,7 @@ fn what_is_drawn_is_never_taken_for_the_background() {
             if is_empty {
                 scene.transfer.opacity = Some(OpacitySpec::Points(vec![[0.0, 0.0], [1.0, 0.0]]));
             }
-            let view = scene::resolve(&scene, &case).unwrap();
+            let view = view::resolve(&scene, &case).unwrap();
             let mut least = |hull: Surfaces| {
                 let view = with(&view, hull);
                 let image = picture(&mut renderer, &case, &view, Some(StrategyKind::Libc));

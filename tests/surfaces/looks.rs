@@ -140,9 +140,9 @@ impl Look {
         };
         (self.change)(&mut scene);
         if let Some(face) = self.cut {
-            scene.clip = vec![cut(&scene::resolve(&scene, case).unwrap(), face)];
+            scene.clip = vec![cut(&view::resolve(&scene, case).unwrap(), face)];
         }
-        with(&scene::resolve(&scene, case).unwrap(), self.shown)
+        with(&view::resolve(&scene, case).unwrap(), self.shown)
     }
 }
 
@@ -204,7 +204,7 @@ fn light_falls_on_surfaces_as_on_samples() {
             camera: camera(205.0, 35.0, 1.2),
             ..Scene::default()
         };
-        let dark = with(&scene::resolve(&scene, &case).unwrap(), surfaces);
+        let dark = with(&view::resolve(&scene, &case).unwrap(), surfaces);
         scene.lighting = LightingSpec::preset("strong").unwrap();
         let occlusion = scene.lighting.occlusion.as_mut().unwrap();
         (occlusion.attenuation, occlusion.strength) = (0.8, 1.0);
@@ -214,7 +214,7 @@ fn light_falls_on_surfaces_as_on_samples() {
         scene.lighting.rays_gap = scene.lighting.shadows.gap;
         scene.lighting.rays = 14;
         scene.lighting.lights = vec![low.clone()];
-        let lit = with(&scene::resolve(&scene, &case).unwrap(), surfaces);
+        let lit = with(&view::resolve(&scene, &case).unwrap(), surfaces);
         let truth = picture(&mut renderer, &case, &lit, None);
         let other = psnr(&picture(&mut renderer, &case, &dark, None), &truth, &lit);
         for strategy in StrategyKind::ALL {

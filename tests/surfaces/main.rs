@@ -10,22 +10,21 @@ mod sheets;
 
 use common::shape::{Shape, boxes};
 use glam::DVec3;
-use strataray::case::Case;
-use strataray::metrics::ciede2000_map;
-use strataray::metrics::psnr_8bit;
-use strataray::picture::Image;
-use strataray::renderer::Renderer;
+use strataray::case::{Case, load};
+use strataray::image::metrics::{ciede2000_map, psnr_8bit};
+use strataray::image::{Blending, Image};
+use strataray::reference;
+use strataray::render::Renderer;
 use strataray::scene::lighting::LightSpec;
-use strataray::scene::surfaces::{
+use strataray::scene::{
+    CameraSpec, ClipSpec, CutFace, FramingCamera, Hull, Inactive, Interpolation, LightMode,
+    LightingSpec, Mode, OpacitySpec, Projection, RangeSpec, Scene, StrategyKind,
+};
+use strataray::view::surfaces::{
     EDGE_DARKNESS, EDGE_WIDTH, FAINT_BEHIND, FAINT_FRONT, HEADLIGHT_AMBIENT, HEADLIGHT_ASIDE,
     PALETTE, SHEET_OPACITY, UNNAMED, faint_color,
 };
-use strataray::scene::{
-    self, Blending, CameraSpec, ClipSpec, CutFace, FramingCamera, Hull, Inactive, Interpolation,
-    LightMode, LightingSpec, Mode, OpacitySpec, Projection, RangeSpec, Scene, Surfaces, View,
-};
-use strataray::strategies::StrategyKind;
-use strataray::{load, reference};
+use strataray::view::{self, Surfaces, View};
 
 const NONE: Surfaces = Surfaces {
     hull: Hull::Hidden,
@@ -204,7 +203,7 @@ fn edges_are_as_wide_at_any_distance() {
         // So large that lines do not fade.
         scene.size = [160, 120];
         scene.clip.extend(clip);
-        let view = scene::resolve(&scene, &case).unwrap();
+        let view = view::resolve(&scene, &case).unwrap();
         let on = |cell_edges| Surfaces {
             cell_edges,
             ..if is_section { NONE } else { HULL }
@@ -250,7 +249,7 @@ fn what_is_not_shown_leaves_no_trace() {
         camera: camera(205.0, 35.0, 1.0),
         ..Scene::default()
     };
-    let view = scene::resolve(&scene, &case).unwrap();
+    let view = view::resolve(&scene, &case).unwrap();
     for strategy in StrategyKind::ALL {
         let [before, hull, faults, after] = [NONE, edges(HULL), FAULTS, NONE]
             .map(|shown| picture(&mut renderer, &case, &with(&view, shown), Some(strategy)));
@@ -278,13 +277,13 @@ fn scenes_say_what_is_shown() {
     let case = blocks(30.0, "");
     let resolved = |show: &str| {
         let scene: Scene = serde_json::from_str(&format!("{{\"show\": {show}}}")).ok()?;
-        Some(scene::resolve(&scene, &case).unwrap().surfaces)
+        Some(view::resolve(&scene, &case).unwrap().surfaces)
     };
     let cells = |rest: &str| {
         let text = format!(
             "{{\"mode\": \"cells\", \"clip\": [{{\"point\": [50, 50, -1050], \"normal\": [1, 0, 0]}}]{rest}}}"
         );
-        scene::resolve(&serde_json::from_str(&text).unwrap(), &case).unwrap()
+        view::resolve(&serde_json::from_str(&text).unwrap(), &case).unwrap()
     };
     let view = cells("");
     assert_eq!(view.surfaces, CELLS);

@@ -33,7 +33,7 @@ fn a_sheet_is_blended_between_what_is_before_and_behind_it() {
         let case = blocks(30.0, keywords);
         let mut renderer = Renderer::new(gpu.clone(), &case.grid).unwrap();
         // From the west, so that rays cross the fault.
-        let view = scene::resolve(&plain(camera(270.0, 3.0, 1.0), 0.6), &case).unwrap();
+        let view = view::resolve(&plain(camera(270.0, 3.0, 1.0), 0.6), &case).unwrap();
         let view = with(&view, FAULTS);
         for by in all() {
             let image = picture(&mut renderer, &case, &view, by);
@@ -69,7 +69,7 @@ fn sheets_beyond_the_fourth_are_left_out() {
     }
     .case();
     let mut renderer = Renderer::new(gpu, &case.grid).unwrap();
-    let view = scene::resolve(&plain(camera(270.0, 0.0, 1.0), 0.0), &case).unwrap();
+    let view = view::resolve(&plain(camera(270.0, 0.0, 1.0), 0.0), &case).unwrap();
     let view = with(&view, FAULTS);
     for by in all() {
         let sheets = if by.is_some() { 4 } else { 6 };

@@ -1,7 +1,8 @@
 //! Comparing: two pictures from one camera.
 
 use eframe::egui::{Key, Modifiers, vec2};
-use strataray::scene::{RangeSpec, StepSpec, View};
+use strataray::scene::{RangeSpec, StepSpec};
+use strataray::view::View;
 use strataray::viewer::{Action, Comparison, Layout, Picture};
 
 use super::common::{copy_of_sample, data, gpu, sample};

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use eframe::egui::{self, Key, Modifiers, Pos2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use strataray::picture::Rgb8;
+use strataray::image::Rgb8;
 use strataray::scene::Scene;
 use strataray::transfer::presets::parse_color;
 use strataray::viewer::{Document, Settings, Window};

@@ -3,7 +3,7 @@
 use eframe::egui::accesskit::Action as Asked;
 use eframe::egui::{Key, Modifiers};
 use egui_kittest::kittest::{NodeT, Queryable};
-use strataray::metrics::Comparison as Apart;
+use strataray::image::metrics::Comparison as Apart;
 use strataray::picture::film::FilmFormat;
 use strataray::scene::{Scene, StepSpec};
 use strataray::viewer::{Action, Comparison, Layout, Settings, State};

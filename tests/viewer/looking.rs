@@ -2,7 +2,8 @@
 
 use eframe::egui::{self, Key, Modifiers, vec2};
 use glam::DVec3;
-use strataray::scene::{Camera, CameraSpec, Filter};
+use strataray::scene::{CameraSpec, Filter};
+use strataray::view::Camera;
 use strataray::viewer::Action;
 
 use super::common::{gpu, sample};

@@ -3,7 +3,7 @@
 use eframe::egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable;
 use glam::DVec3;
-use strataray::metrics::Comparison;
+use strataray::image::metrics::Comparison;
 use strataray::scene::lighting::LightSpec;
 use strataray::scene::{Hull, OpacitySpec, StepSpec};
 

@@ -8,10 +8,11 @@ use std::time::{Duration, Instant};
 use anyhow::Context;
 use serde::Serialize;
 use strataray::case::Case;
-use strataray::gpu::illumination::LightTimes;
-use strataray::gpu::{Gpu, GpuBytes};
-use strataray::renderer::{Frame, Renderer};
-use strataray::scene::{self, Scene, View};
+use strataray::render::gpu::illumination::LightTimes;
+use strataray::render::gpu::{Gpu, GpuBytes};
+use strataray::render::{Frame, Renderer};
+use strataray::scene::Scene;
+use strataray::view::{self, View};
 
 use crate::cli::process::{cpu_time, forget_peak, peak_memory};
 use crate::cli::progress::Reporter;
@@ -89,7 +90,7 @@ pub fn case(
     let model = case.about.load_times.model;
     let (_, topology) = timed(|| case.grid.fault_faces());
     let first = scenes.first().context("there is no strategy to time")?;
-    let (view, read) = timed(|| scene::resolve(first, &case));
+    let (view, read) = timed(|| view::resolve(first, &case));
     let View { property, step, .. } = view?;
     let (field, property_time) = timed(|| case.field(&property, step));
     field?;
@@ -98,7 +99,7 @@ pub fn case(
     let mut strategies = Vec::new();
     let mut light = None;
     for scene in scenes {
-        let view = scene::resolve(scene, &case)?.for_adapter(gpu.is_software());
+        let view = view::resolve(scene, &case)?.for_adapter(gpu.is_software());
         let times = strategy(&mut renderer, &case, &view, frames, reporter);
         let what = || format!("{} by {}", case.about.name, view.strategy.name());
         let (times, light_times) = times.with_context(what)?;

@@ -8,10 +8,9 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Context;
 use serde::Serialize;
+use strataray::case::save;
 use strataray::model::synthetic::Recipe;
-use strataray::save;
-use strataray::scene::Scene;
-use strataray::strategies::StrategyKind;
+use strataray::scene::{Scene, StrategyKind};
 
 use super::Verbosity;
 use super::progress::Reporter;

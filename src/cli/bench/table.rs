@@ -1,6 +1,6 @@
 //! The figures for people: one table for loading, one for the strategies.
 
-use strataray::markdown::{Row, row, table};
+use strataray::compare::markdown::{Row, row, table};
 
 use super::{Bench, turning};
 

@@ -6,8 +6,9 @@ use std::time::Duration;
 
 use anyhow::anyhow;
 use serde::Serialize;
-use strataray::markdown::{Row, row};
-use strataray::scene::{LightingSpec, Scene, look};
+use strataray::compare::markdown::{Row, row};
+use strataray::scene::{LightingSpec, Scene};
+use strataray::view::look;
 use strataray::viewer::{Turned, turn};
 
 use crate::cli::progress::Reporter;

@@ -6,7 +6,7 @@ use image::AnimationDecoder;
 use image::codecs::png::PngDecoder;
 
 use super::*;
-use crate::metrics::psnr_8bit;
+use crate::image::metrics::psnr_8bit;
 
 const SIZE: [u32; 2] = [23, 17];
 

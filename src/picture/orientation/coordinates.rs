@@ -6,8 +6,8 @@ use super::edges::{self, Edge};
 use super::{Area, Arrangement, overlap};
 use crate::picture::annotate::short_unit;
 use crate::picture::ticks::plain_labels;
-use crate::scene::View;
-use crate::scene::camera::middle;
+use crate::view::View;
+use crate::view::camera::middle;
 
 /// Labels that an edge has at most, and at least if any.
 const LABELS: [usize; 2] = [6, 2];

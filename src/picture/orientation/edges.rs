@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::scene::{Camera, View};
+use crate::view::{Camera, View};
 
 /// An edge of the box.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -11,8 +11,8 @@ use glam::DVec2;
 pub use edges::on_screen;
 
 use super::ticks::shortened;
-use crate::scene::View;
-use crate::scene::camera::middle;
+use crate::view::View;
+use crate::view::camera::middle;
 
 /// Upper left and lower right corner of a part of the picture.
 pub type Area = [DVec2; 2];
@@ -210,7 +210,8 @@ mod tests {
 
     use super::*;
     use crate::picture::annotate::tests::view;
-    use crate::scene::{Camera, Projection};
+    use crate::scene::Projection;
+    use crate::view::Camera;
 
     /// A view from a direction on a box of 1000 by 900 by 200 (400 exaggerated) at map coordinates of seven
     /// digits.
@@ -218,7 +219,7 @@ mod tests {
         let mut view = view([800, 600], 1.0);
         let origin = DVec3::new(460_000.0, 5_930_000.0, -4000.0);
         view.box_corners = view.box_corners.map(|c| origin + 100.0 * c);
-        view.subject = crate::scene::Subject::of_box(view.box_corners).into();
+        view.subject = crate::view::Subject::of_box(view.box_corners).into();
         let [azimuth, elevation] = [azimuth, elevation].map(f64::to_radians);
         let aspect = view.aspect();
         view.camera = Camera::framing(

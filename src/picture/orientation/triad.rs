@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3};
 
 use super::{Arrangement, Arrow, Text};
-use crate::scene::Camera;
+use crate::view::Camera;
 
 /// A direction of the world.
 struct Direction {

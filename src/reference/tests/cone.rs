@@ -6,8 +6,10 @@ use glam::DVec3;
 
 use super::{Integrator, Shape, constant, light, view};
 use crate::model::Grid;
-use crate::scene::lighting::{Cone, OcclusionSpec};
-use crate::scene::{ClipPlane, LightingSpec, View};
+use crate::scene::LightingSpec;
+use crate::scene::lighting::OcclusionSpec;
+use crate::view::lighting::Cone;
+use crate::view::{ClipPlane, View};
 
 /// Cells side by side with faces at these places of x; in world space 200 wide along y and z, from the
 /// middle (0, -100).
@@ -102,7 +104,7 @@ fn rays_start_by_the_voxels_that_the_view_decided_on() {
             ..LightingSpec::default()
         };
         // So many cells that the budget alone decides.
-        view.lighting = crate::scene::lighting::resolve(&spec, extent, 10_000_000).unwrap();
+        view.lighting = crate::view::lighting::resolve(&spec, extent, 10_000_000).unwrap();
         let view = view.for_adapter(is_software);
         let integrator = Integrator::new(&grid, &view);
         let found = transmittance(&integrator, 100.0, DVec3::X, &cone(20.0, 35.0), 1);

@@ -4,9 +4,11 @@ use glam::DVec3;
 
 use super::{Shape, central_ray, constant, directional, light, view};
 use crate::model::Grid;
-use crate::scene::lighting::{LightSpec, SPOT_EDGE, ShadowSpec};
-use crate::scene::surfaces::{HEADLIGHT_AMBIENT, HEADLIGHT_ASIDE};
-use crate::scene::{ClipPlane, LightMode, LightingSpec, View};
+use crate::scene::lighting::{LightSpec, ShadowSpec};
+use crate::scene::{LightMode, LightingSpec};
+use crate::view::lighting::SPOT_EDGE;
+use crate::view::surfaces::{HEADLIGHT_AMBIENT, HEADLIGHT_ASIDE};
+use crate::view::{ClipPlane, View};
 
 /// What the central ray meets in [`stage`].
 const MET: DVec3 = DVec3::new(21.25, 30.0, -203.0);

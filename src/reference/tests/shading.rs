@@ -6,9 +6,11 @@ use super::{
     Integrator, Sample, Shape, central_ray, constant, directional, light, render, skewed, view,
 };
 use crate::model::{CellField, Grid};
-use crate::scene::ghosts::Ghosts;
-use crate::scene::lighting::{GRADIENT_FADE, OcclusionSpec, SHININESS, SPECULAR, ShadowSpec};
-use crate::scene::{Interpolation, LightMode, LightingSpec, View};
+use crate::scene::lighting::{OcclusionSpec, ShadowSpec};
+use crate::scene::{Interpolation, LightMode, LightingSpec};
+use crate::view::View;
+use crate::view::ghosts::Ghosts;
+use crate::view::lighting::{GRADIENT_FADE, SHININESS, SPECULAR};
 
 #[test]
 fn gradients_are_those_of_the_interpolated_value() {

@@ -5,8 +5,9 @@ use eframe::egui::{self, Ui};
 use glam::DVec3;
 
 use super::About;
-use crate::scene::resolve::MAX_CLIP_PLANES;
-use crate::scene::{ClipSpec, CutFace, View};
+use crate::scene::{ClipSpec, CutFace};
+use crate::view::View;
+use crate::view::clip::MAX_CLIP_PLANES;
 use crate::viewer::action::Action;
 
 pub fn show(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {

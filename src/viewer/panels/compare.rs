@@ -4,8 +4,7 @@ use eframe::egui::Ui;
 
 use super::About;
 use super::controls::list;
-use crate::scene::StepSpec;
-use crate::strategies::StrategyKind;
+use crate::scene::{StepSpec, StrategyKind};
 use crate::viewer::action::Action;
 use crate::viewer::state::{Comparison, Layout};
 

@@ -8,7 +8,7 @@ use eframe::egui::{
 
 use super::controls::significant;
 use crate::model::CellField;
-use crate::scene::View;
+use crate::view::View;
 use crate::viewer::overlay;
 
 const BINS: usize = 64;

@@ -6,7 +6,7 @@ use super::About;
 use super::controls::significant;
 use crate::picture::short_unit;
 use crate::scene::ShownFaults;
-use crate::scene::surfaces::fault_color;
+use crate::view::surfaces::fault_color;
 use crate::viewer::action::Action;
 
 /// Height of the list, in points.

@@ -8,7 +8,7 @@ use eframe::egui::{self, Ui};
 use super::About;
 use super::controls::significant;
 use crate::model::{CellField, Summary};
-use crate::scene::View;
+use crate::view::View;
 use crate::viewer::action::Action;
 use crate::viewer::worker::Picture;
 

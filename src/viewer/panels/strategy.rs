@@ -4,8 +4,7 @@ use eframe::egui::{self, Ui};
 
 use super::About;
 use super::controls::slider;
-use crate::scene::Integration;
-use crate::strategies::StrategyKind;
+use crate::scene::{Integration, StrategyKind};
 use crate::viewer::action::Action;
 
 pub fn show(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {

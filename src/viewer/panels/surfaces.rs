@@ -4,8 +4,9 @@ use eframe::egui::{self, Ui};
 
 use super::About;
 use super::controls::one_of;
-use crate::scene::{CutFace, Hull, Inactive, Mode, Show, ShownFaults, Surfaces};
+use crate::scene::{CutFace, Hull, Inactive, Mode, Show, ShownFaults};
 use crate::transfer::presets::parse_color;
+use crate::view::Surfaces;
 use crate::viewer::action::Action;
 
 pub fn show(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {

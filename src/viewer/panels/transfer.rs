@@ -5,12 +5,12 @@ use eframe::egui::{Rect, Ui, vec2};
 use super::controls::{list, number, one_of};
 use super::{About, curve};
 use crate::model::derivatives;
-use crate::scene::ghosts::shown_grid;
-use crate::scene::look::look_of;
 use crate::scene::transfer::BANDS;
 use crate::scene::{ColorSpec, Coloring, OpacitySpec, RangeSpec, ScaleSpec, TransferSpec};
 use crate::transfer::function::color_at;
 use crate::transfer::{boundaries, presets};
+use crate::view::ghosts::shown_grid;
+use crate::view::look::look_of;
 use crate::viewer::action::Action;
 use crate::viewer::overlay;
 

@@ -4,8 +4,9 @@ use std::path::Path;
 use std::sync::{Condvar, Mutex};
 
 use super::*;
-use crate::gpu::Gpu;
-use crate::scene::{CameraSpec, FramingCamera, Lighting, LightingSpec, Projection, Scene};
+use crate::render::gpu::Gpu;
+use crate::scene::{CameraSpec, FramingCamera, LightingSpec, Projection, Scene};
+use crate::view::Lighting;
 use crate::viewer::budget::COARSEST;
 
 /// Longest wait for anything.
@@ -53,7 +54,7 @@ fn turning(light: &str) -> Option<Turning> {
         ctx: Context::default(),
         pictures: Pictures::new(move || passed.pass()),
         gate,
-        case: Arc::new(crate::load::open(&sample).unwrap()),
+        case: Arc::new(crate::case::load::open(&sample).unwrap()),
         lighting: LightingSpec::preset(light).unwrap(),
     })
 }
@@ -175,7 +176,7 @@ fn a_case_that_is_closed_is_let_go() {
     let case = Arc::downgrade(&turning.case);
     turning.pictures.forget(&turning.case);
     let sample = Path::new(env!("CARGO_MANIFEST_DIR")).join("samples/scissor/SCISSOR.EGRID");
-    turning.case = Arc::new(crate::load::open(&sample).unwrap());
+    turning.case = Arc::new(crate::case::load::open(&sample).unwrap());
     let start = Instant::now();
     while case.strong_count() > 0 {
         turning.pictures.listen(&turning.ctx);

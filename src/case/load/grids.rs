@@ -1,0 +1,348 @@
+//! The grid of a case with what else its files say: EGRID or a deck, and text that was added.
+
+use std::path::Path;
+use std::time::Instant;
+
+use strataray_parsers::case::{CaseFiles, GridSource};
+use strataray_parsers::deck::{DeckCells, DeckProperty, FaultFaces as DeckFault, Grdecl};
+use strataray_parsers::egrid::{Egrid, PorosityModel};
+use strataray_parsers::units::{LengthUnit, UnitSystem};
+use strataray_parsers::{At, ParseError, Warnings};
+
+use super::slots::CellFlags;
+use crate::case::{About, LoadTimes, LocalGrid, NamedFault};
+use crate::model::topology::Face;
+use crate::model::{
+    CellIndex, Dims, FaultFaces, Grid, GridInput, Ijk, MapAxes, MapUnit, ModelError,
+};
+
+fn model_error(path: &Path, error: &ModelError) -> ParseError {
+    ParseError::new(path, At::File, "", error.to_string())
+}
+
+/// What the files of the grid give.
+pub struct Loaded {
+    pub grid: Grid,
+    pub flags: CellFlags,
+    /// Arrays of decks and other text.
+    pub texts: Vec<DeckProperty>,
+    pub connections: Vec<[Ijk; 2]>,
+    pub fault_faces: FaultFaces,
+    /// What a deck's RUNSPEC says.
+    pub units: Option<UnitSystem>,
+    pub phases: i32,
+    /// MINPV.
+    pub min_pore_volume: Option<f64>,
+    pub is_deck: bool,
+    map: MapKeywords,
+}
+
+/// Where a grid lies in the map, and the units, as its file says.
+struct MapKeywords {
+    axes: Option<[f64; 6]>,
+    unit: Option<String>,
+    /// GRIDUNIT.
+    length: Option<String>,
+    /// True where coordinates are map coordinates already.
+    is_map: bool,
+}
+
+impl Loaded {
+    /// Settles the length unit, from GRIDUNIT or else the results' unit system or the deck's, and with it the map axes.
+    pub fn settle_units(&mut self, results: Option<UnitSystem>, about: &mut About) -> LengthUnit {
+        let system = results.or(self.units);
+        let implied = system.map_or(LengthUnit::Metre, UnitSystem::length);
+        let named = self.map.length.as_deref().filter(|name| !name.is_empty());
+        let length = named.map_or(Some(implied), LengthUnit::from_name);
+        let length = length.unwrap_or_else(|| {
+            about.notes.push(format!(
+                "GRIDUNIT {} is not known: lengths are taken as {}",
+                named.unwrap_or_default(),
+                implied.name()
+            ));
+            implied
+        });
+        // Without MAPUNITS, and where coordinates are those of the map, everything is in one unit.
+        let map = self.map.unit.as_deref().filter(|_| !self.map.is_map);
+        let map = map.and_then(LengthUnit::from_name).unwrap_or(length);
+        let axes = self.map.axes.and_then(MapAxes::from_keyword);
+        let axes = axes.filter(|_| !self.map.is_map);
+        self.grid.set_map_axes(axes.map(|axes| match map == length {
+            true => axes,
+            false => axes.in_unit(MapUnit {
+                name: map.name(),
+                length: map.metres() / length.metres(),
+            }),
+        }));
+        about.length_unit = length.name().to_owned();
+        about.map_unit = map.name().to_owned();
+        length
+    }
+}
+
+/// Reads the grid; what else its files say goes into `about`.
+pub fn read(
+    files: &CaseFiles,
+    about: &mut About,
+    warnings: &mut Warnings,
+) -> Result<Loaded, ParseError> {
+    match &files.grid {
+        GridSource::Egrid(path) => {
+            let mut loaded = read_egrid(path, about, warnings)?;
+            add_texts(&mut loaded, files, about, warnings)?;
+            Ok(loaded)
+        }
+        GridSource::Deck(path) => {
+            let deck = Grdecl::read_with(path, &files.added, warnings)?;
+            read_deck(path, deck, about)
+        }
+    }
+}
+
+fn read_egrid(
+    path: &Path,
+    about: &mut About,
+    warnings: &mut Warnings,
+) -> Result<Loaded, ParseError> {
+    let egrid = Egrid::read(path, warnings)?;
+    let start = Instant::now();
+    let grid = Grid::new(&GridInput {
+        dims: dims(egrid.dims),
+        coord: &egrid.coord,
+        zcorn: &egrid.zcorn,
+        actnum: egrid.actnum.as_deref(),
+        map_axes: None,
+    })
+    .map_err(|e| model_error(path, &e))?;
+    about.load_times = LoadTimes {
+        model: start.elapsed(),
+    };
+    about.files.push(path.to_owned());
+    about.map_axes = egrid.map_axes;
+    about.nnc = egrid.nnc.len();
+    about.porosity_model = match egrid.porosity_model {
+        PorosityModel::Single => "single",
+        PorosityModel::Dual => "dual porosity",
+        PorosityModel::DualPermeability => "dual permeability",
+    }
+    .into();
+    if egrid.porosity_model != PorosityModel::Single {
+        about.notes.push(format!(
+            "the case is of {}: the values of the matrix are shown, those of the fractures are not",
+            about.porosity_model
+        ));
+    }
+    for local in &egrid.local_grids {
+        about.notes.push(format!(
+            "local grid {} ({} x {} x {}) is not shown; its place shows the host cells",
+            local.name, local.dims[0], local.dims[1], local.dims[2]
+        ));
+    }
+    about.local_grids = egrid
+        .local_grids
+        .into_iter()
+        .map(|l| LocalGrid {
+            name: l.name,
+            dims: l.dims,
+            active: l.active,
+        })
+        .collect();
+    let connections = connections(&egrid.nnc, grid.dims());
+    let unit = egrid.grid_unit;
+    Ok(Loaded {
+        grid,
+        flags: CellFlags::new(egrid.actnum, egrid.coarse, egrid.porosity_model),
+        texts: Vec::new(),
+        connections,
+        fault_faces: FaultFaces::default(),
+        units: None,
+        phases: 0,
+        min_pore_volume: None,
+        is_deck: false,
+        map: MapKeywords {
+            axes: egrid.map_axes,
+            unit: egrid.map_units,
+            is_map: unit.as_ref().is_some_and(|u| u.is_map),
+            length: unit.map(|u| u.length),
+        },
+    })
+}
+
+fn read_deck(path: &Path, deck: Grdecl, about: &mut About) -> Result<Loaded, ParseError> {
+    let start = Instant::now();
+    let grid = Grid::new(&GridInput {
+        dims: dims(deck.dims),
+        coord: &deck.coord,
+        zcorn: &deck.zcorn,
+        actnum: deck.actnum.as_deref(),
+        map_axes: None,
+    })
+    .map_err(|e| model_error(path, &e))?;
+    about.load_times = LoadTimes {
+        model: start.elapsed(),
+    };
+    about.files.extend(deck.files);
+    about.map_axes = deck.map_axes;
+    about.porosity_model = "single".into();
+    about.named_faults = named_faults(&deck.faults);
+    let fault_faces = fault_faces(&deck.faults, &about.named_faults);
+    Ok(Loaded {
+        grid,
+        flags: CellFlags::default(),
+        texts: deck.properties,
+        connections: Vec::new(),
+        fault_faces,
+        units: deck.unit_system,
+        phases: deck.phases,
+        min_pore_volume: deck.min_pore_volume,
+        is_deck: true,
+        map: MapKeywords {
+            axes: deck.map_axes,
+            unit: deck.map_units,
+            is_map: deck.grid_unit.as_ref().is_some_and(|u| u.is_map),
+            length: deck.grid_unit.map(|u| u.name),
+        },
+    })
+}
+
+/// Faults of the deck beside an EGRID file, and all that was added by hand.
+fn add_texts(
+    loaded: &mut Loaded,
+    files: &CaseFiles,
+    about: &mut About,
+    warnings: &mut Warnings,
+) -> Result<(), ParseError> {
+    let Dims { ni, nj, nk } = loaded.grid.dims();
+    let added = DeckCells::read(&files.added, [ni, nj, nk], warnings)?;
+    about.files.extend(added.files);
+    loaded.texts = added.properties;
+    loaded.units = added.unit_system;
+    loaded.phases = added.phases;
+    let faults = match &files.deck {
+        Some(deck) if added.faults.is_empty() => {
+            deck_faults(deck, loaded.grid.dims(), about, warnings)
+        }
+        _ => added.faults,
+    };
+    about.named_faults = named_faults(&faults);
+    loaded.fault_faces = fault_faces(&faults, &about.named_faults);
+    Ok(())
+}
+
+/// Pairs of cells by their numbers in the file, which count from 1; pairs of cells outside the grid are
+/// left out.
+fn connections(pairs: &[[i32; 2]], dims: Dims) -> Vec<[Ijk; 2]> {
+    let cell = |number: i32| {
+        let index = u32::try_from(number).ok()?.checked_sub(1)?;
+        ((index as usize) < dims.cells()).then(|| dims.ijk(CellIndex(index)))
+    };
+    let pair = |[a, b]: &[i32; 2]| Some([cell(*a)?, cell(*b)?]);
+    pairs.iter().filter_map(pair).collect()
+}
+
+/// The named faults of a deck beside an EGRID file.
+fn deck_faults(
+    path: &Path,
+    dims: Dims,
+    about: &mut About,
+    warnings: &mut Warnings,
+) -> Vec<DeckFault> {
+    match Grdecl::read_faults(path, [dims.ni, dims.nj, dims.nk], warnings) {
+        Ok(faults) => {
+            if !faults.is_empty() {
+                about.files.push(path.to_owned());
+            }
+            faults
+        }
+        Err(error) => {
+            let note = format!("names of faults were not read: {error}");
+            about.notes.push(note);
+            Vec::new()
+        }
+    }
+}
+
+/// The faults of a deck in the order of their names' first use.
+fn named_faults(faults: &[DeckFault]) -> Vec<NamedFault> {
+    let mut named: Vec<NamedFault> = Vec::new();
+    for fault in faults {
+        let span = |[a, b]: [usize; 2]| b.saturating_sub(a) + 1;
+        let faces = span(fault.i) * span(fault.j) * span(fault.k);
+        match named.iter_mut().find(|f| f.name == fault.name) {
+            Some(known) => known.faces += faces,
+            None => named.push(NamedFault {
+                name: fault.name.clone(),
+                faces,
+                multiplier: fault.multiplier,
+            }),
+        }
+    }
+    named
+}
+
+/// Which faces lie on which of the named faults.
+fn fault_faces(faults: &[DeckFault], named: &[NamedFault]) -> FaultFaces {
+    let mut faces = FaultFaces::default();
+    for fault in faults {
+        let number = named.iter().position(|f| f.name == fault.name);
+        if let (Some(number), Some(face)) = (number, lateral_face(&fault.face)) {
+            // Files count from 1.
+            let cells = [fault.i, fault.j, fault.k].map(|[a, b]| a - 1..=b - 1);
+            faces.add(number, cells, face);
+        }
+    }
+    faces
+}
+
+/// The lateral face that FAULTS calls `I`, `X-`, `J+` and so on; `None` for upper and lower ones.
+fn lateral_face(name: &str) -> Option<Face> {
+    let is_minus = name.ends_with('-');
+    Some(match (name.chars().next()?, is_minus) {
+        ('X' | 'I', true) => Face::IMinus,
+        ('X' | 'I', false) => Face::IPlus,
+        ('Y' | 'J', true) => Face::JMinus,
+        ('Y' | 'J', false) => Face::JPlus,
+        _ => return None,
+    })
+}
+
+fn dims([ni, nj, nk]: [usize; 3]) -> Dims {
+    Dims { ni, nj, nk }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "tests")]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_deck_beside_an_egrid_names_its_faults() {
+        let sample = Path::new(env!("CARGO_MANIFEST_DIR")).join("samples/scissor");
+        let folder = tempfile::tempdir().unwrap();
+        let case = folder.path().join("SCISSOR.EGRID");
+        std::fs::copy(sample.join("SCISSOR.EGRID"), &case).unwrap();
+        let names = |case: &crate::case::Case| -> Vec<String> {
+            let faults = case.about.named_faults.iter();
+            faults.map(|f| f.name.clone()).collect()
+        };
+        let without = crate::case::load::open(&case).unwrap();
+        assert!(names(&without).is_empty());
+        // The deck includes a file that is not there: its names are missing, and a note says so.
+        std::fs::copy(
+            sample.join("SCISSOR.DATA"),
+            folder.path().join("SCISSOR.DATA"),
+        )
+        .unwrap();
+        let incomplete = crate::case::load::open(&case).unwrap();
+        assert!(names(&incomplete).is_empty());
+        let told = |note: &String| note.starts_with("names of faults were not read");
+        assert!(incomplete.about.notes.iter().any(told));
+        let whole = crate::case::load::open(&sample.join("SCISSOR.EGRID")).unwrap();
+        assert_eq!(names(&whole), ["F1", "F2", "F3"]);
+        // F2 lies between columns 24 and 25, counted from 1.
+        let cell = Ijk { i: 23, j: 3, k: 0 };
+        assert_eq!(whole.fault_faces.fault_of(cell, Face::IPlus), Some(1));
+        assert_eq!(whole.fault_faces.fault_of(cell, Face::JPlus), None);
+        assert!(!whole.about.notes.iter().any(told));
+    }
+}

@@ -1,0 +1,55 @@
+//! From a case and a sequence of views to a film in a file.
+
+use crate::case::Case;
+use crate::picture::film::Film;
+use crate::picture::{Layout, PictureError, finished};
+use crate::render::Renderer;
+use crate::render::gpu::GpuError;
+use crate::view::{SceneError, Sequence};
+
+/// Why there is no film.
+#[derive(Debug, thiserror::Error)]
+pub enum FilmingError {
+    /// A view cannot be shown.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// The device cannot make a picture.
+    #[error(transparent)]
+    Gpu(#[from] GpuError),
+    /// The file cannot be written.
+    #[error(transparent)]
+    Picture(#[from] PictureError),
+}
+
+/// Makes the pictures of a sequence, whose size is that of the film, and writes them; with what stands beside and
+/// over the volume unless `plain`, at the same places in all. False where `progress`, which is told the fraction
+/// done, returned false: nothing was written then.
+///
+/// # Errors
+/// When a view cannot be shown, a picture cannot be made or the film cannot be written.
+pub fn shoot(
+    renderer: &mut Renderer,
+    case: &Case,
+    sequence: &Sequence,
+    mut film: Film,
+    plain: bool,
+    progress: &dyn Fn(f64) -> bool,
+) -> Result<bool, FilmingError> {
+    let layout = Layout::of_picture(case, &sequence.view(0, case)?, plain);
+    let sequence = sequence.clone().sized(layout.volume_size())?;
+    let count = sequence.count() as f64;
+    for n in 0..sequence.count() {
+        let done = |f: f64| progress((n as f64 + f) / count);
+        let view = sequence.view(n, case)?;
+        let view = view.for_adapter(renderer.gpu().is_software());
+        let Some(frame) = renderer.render(&case.grid, &view, &done)? else {
+            return Ok(false);
+        };
+        film.add(&finished(&frame.image, case, &view, &layout).pixels)?;
+        if !done(1.0) {
+            return Ok(false);
+        }
+    }
+    film.finish()?;
+    Ok(true)
+}

@@ -1,0 +1,354 @@
+//! The pyramid of representative extinction: opacities blurred by Gaussians, each level twice as wide as the
+//! one below (campagnolo-2021, 3.2.1 and 3.2.3).
+//!
+//! The paper blurs each level from the one below. Here it is blurred from means of the opacities: what a
+//! blur spreads beyond the box is kept nowhere, so that a thin model would all but vanish from upper levels.
+
+use glam::DVec3;
+
+use super::device::{Gpu, GpuError};
+use super::layout::{BlurInfo, MAX_CLIP_PLANES};
+use super::pipeline::{Pipeline, flag};
+use super::slabs::Slabs;
+use super::volume::Volume;
+use crate::transfer::TransferFunction;
+use crate::view::voxels::Shape;
+
+/// What a pyramid is made from.
+#[derive(Clone, Copy)]
+pub struct Source<'a> {
+    /// Values, in packed voxels; shaders find them in bind group 2.
+    pub values: &'a Volume,
+    /// Number of their filling.
+    pub number: u64,
+    /// Transfer-function position of a value: offset, and factor on the part of the range.
+    pub position: [f32; 2],
+    /// Standard deviation of the finest level in world space.
+    pub sigma: f64,
+    /// Extinction of inactive cells.
+    pub ghost: f32,
+    /// Clip planes in grid space relative to the origin.
+    pub clip_planes: [[f32; 4]; MAX_CLIP_PLANES],
+    /// How many of them count.
+    pub clip_count: u32,
+    /// Box of the volume relative to the origin.
+    pub bounds: [DVec3; 2],
+    /// Its edges in world space.
+    pub extent: DVec3,
+}
+
+/// The pyramid, and what it was made from.
+pub struct Pyramid {
+    /// Optical depth of a length of one standard deviation of the finest level, level by level.
+    pub volume: Volume,
+    of: Of,
+}
+
+#[derive(Clone, PartialEq)]
+struct Of {
+    size: [u32; 3],
+    values: u64,
+    position: [f32; 2],
+    sigma: f64,
+    ghost: f32,
+    clip_planes: [[f32; 4]; MAX_CLIP_PLANES],
+    clip_count: u32,
+    extent: DVec3,
+    transfer: TransferFunction,
+}
+
+impl Of {
+    fn new(source: &Source<'_>, transfer: &TransferFunction) -> Self {
+        Self {
+            size: source.values.shape.size,
+            values: source.number,
+            position: source.position,
+            sigma: source.sigma,
+            ghost: source.ghost,
+            clip_planes: source.clip_planes,
+            clip_count: source.clip_count,
+            extent: source.extent,
+            transfer: transfer.clone(),
+        }
+    }
+}
+
+impl Pyramid {
+    /// True where it is what would be made.
+    pub fn is_of(&self, source: &Source<'_>, transfer: &TransferFunction) -> bool {
+        self.of == Of::new(source, transfer)
+    }
+
+    fn new(
+        gpu: &Gpu,
+        shape: Shape,
+        source: &Source<'_>,
+        transfer: &TransferFunction,
+        before: Option<Self>,
+    ) -> Self {
+        let volume = match before.filter(|p| p.volume.shape == shape) {
+            Some(before) => before.volume,
+            None => Volume::new(gpu, shape),
+        };
+        Self {
+            volume,
+            of: Of::new(source, transfer),
+        }
+    }
+
+    /// Number of levels.
+    pub fn levels(&self) -> u32 {
+        self.volume.shape.levels
+    }
+}
+
+/// What a pass does and writes; its constants.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Pass {
+    work: Work,
+    writes_depths: bool,
+    clips: bool,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Work {
+    /// Opacities from values.
+    Values,
+    /// A Gaussian of opacities.
+    Gaussian,
+    /// Means of opacities.
+    Mean,
+}
+
+/// How opacities are filtered along all axes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Filter {
+    /// Their means in larger voxels.
+    Mean,
+    /// By the Gaussian of a level.
+    Gaussian(u32),
+}
+
+/// Along which axis a pass blurs, how many voxels there are along it before and after, and how wide the
+/// Gaussian is, in voxels before.
+#[derive(Debug, Clone, Copy)]
+struct Line {
+    axis: u32,
+    counts: [u32; 2],
+    deviation: f64,
+}
+
+/// The shaders of the blur, compiled as they are asked for.
+#[derive(Default)]
+pub struct Blurs(Vec<(Pass, Pipeline)>);
+
+/// Loop iterations that a voxel of a pass costs, about.
+const BLUR_WORK: u64 = 8;
+/// Levels at most: 2^11 voxels along an axis have no more.
+const MOST_LEVELS: u32 = 12;
+
+impl Blurs {
+    /// Makes a pyramid in the place of an existing one; `None` where it was cancelled.
+    ///
+    /// `group` is bind group 2 with transfer function and values.
+    ///
+    /// # Errors
+    /// When the device reports an error.
+    pub fn make(
+        &mut self,
+        slabs: &mut Slabs<'_>,
+        source: &Source<'_>,
+        transfer: &TransferFunction,
+        group: &wgpu::BindGroup,
+        before: Option<Pyramid>,
+    ) -> Result<Option<Pyramid>, GpuError> {
+        let size = source.values.shape.size;
+        let shape = Shape::single(size, MOST_LEVELS);
+        let made = Pyramid::new(slabs.gpu, shape, source, transfer, before);
+        let mut below = Volume::new(slabs.gpu, Shape::single(size, 1));
+        if !self.opacities(slabs, source, group, &below)? {
+            return Ok(None);
+        }
+        for level in 0..shape.levels {
+            if level > 1 {
+                // Blurred from means of what nothing has blurred: what a level loses beyond the box is not
+                // lost to those above.
+                let means = Volume::new(slabs.gpu, Shape::single(shape.at(level - 1), 1));
+                let filter = Filter::Mean;
+                if !self.filtered(slabs, source, group, filter, &below, (&means, 0))? {
+                    return Ok(None);
+                }
+                below = means;
+            }
+            let filter = Filter::Gaussian(level);
+            let target = (&made.volume, level);
+            if !self.filtered(slabs, source, group, filter, &below, target)? {
+                return Ok(None);
+            }
+        }
+        Ok(Some(made))
+    }
+
+    /// Makes the opacities of a unit of length alone, without any blur; otherwise as [`Self::make`].
+    ///
+    /// # Errors
+    /// When the device reports an error.
+    pub fn make_sharp(
+        &mut self,
+        slabs: &mut Slabs<'_>,
+        source: &Source<'_>,
+        transfer: &TransferFunction,
+        group: &wgpu::BindGroup,
+        before: Option<Pyramid>,
+    ) -> Result<Option<Pyramid>, GpuError> {
+        let shape = Shape::single(source.values.shape.size, 1);
+        let made = Pyramid::new(slabs.gpu, shape, source, transfer, before);
+        let done = self.opacities(slabs, source, group, &made.volume)?;
+        Ok(done.then_some(made))
+    }
+
+    /// Opacities of a unit of length from the values.
+    fn opacities(
+        &mut self,
+        slabs: &mut Slabs<'_>,
+        source: &Source<'_>,
+        group: &wgpu::BindGroup,
+        target: &Volume,
+    ) -> Result<bool, GpuError> {
+        let pass = Pass {
+            work: Work::Values,
+            writes_depths: false,
+            clips: source.clip_count > 0,
+        };
+        let line = Line {
+            axis: 0,
+            counts: [target.shape.size[0]; 2],
+            deviation: 0.0,
+        };
+        // Values come from the bind group; this is only there to be bound.
+        let read = Volume::new(slabs.gpu, Shape::single([1; 3], 1)).level(0);
+        self.pass(slabs, source, group, pass, line, &read, (target, 0))
+    }
+
+    /// Filters opacities along x, y and depth in turn: into a level of the pyramid, or into their means.
+    fn filtered(
+        &mut self,
+        slabs: &mut Slabs<'_>,
+        source: &Source<'_>,
+        group: &wgpu::BindGroup,
+        filter: Filter,
+        below: &Volume,
+        (target, level): (&Volume, u32),
+    ) -> Result<bool, GpuError> {
+        let before = below.shape.size;
+        let after = target.shape.at(level);
+        let partly =
+            |axes: usize| std::array::from_fn(|a| if a < axes { after[a] } else { before[a] });
+        let between = [1, 2].map(|axes| Volume::new(slabs.gpu, Shape::single(partly(axes), 1)));
+        for axis in 0..3 {
+            let read = match axis {
+                0 => below.level(0),
+                _ => between[axis - 1].level(0),
+            };
+            let (work, deviation) = match filter {
+                Filter::Mean => (Work::Mean, 0.0),
+                Filter::Gaussian(level) => {
+                    (Work::Gaussian, source.deviation(axis, before[axis], level))
+                }
+            };
+            let pass = Pass {
+                work,
+                writes_depths: axis == 2 && work == Work::Gaussian,
+                clips: false,
+            };
+            let line = Line {
+                axis: axis as u32,
+                counts: [before[axis], after[axis]],
+                deviation,
+            };
+            let to = between.get(axis).map_or((target, level), |v| (v, 0));
+            if !self.pass(slabs, source, group, pass, line, &read, to)? {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
+
+    #[allow(clippy::too_many_arguments, reason = "what one pass reads and writes")]
+    fn pass(
+        &mut self,
+        slabs: &mut Slabs<'_>,
+        source: &Source<'_>,
+        group: &wgpu::BindGroup,
+        pass: Pass,
+        line: Line,
+        read: &wgpu::TextureView,
+        (target, level): (&Volume, u32),
+    ) -> Result<bool, GpuError> {
+        let gpu = slabs.gpu;
+        let info = gpu.uniform("blur", &source.info(line));
+        let pipeline = self.pipeline(gpu, pass)?;
+        target.make_level(slabs, level, BLUR_WORK, &|encoder, slab, voxels| {
+            let slab_info = gpu.uniform("slab", slab);
+            let own = [
+                info.as_entire_binding(),
+                slab_info.as_entire_binding(),
+                wgpu::BindingResource::TextureView(read),
+                voxels.as_entire_binding(),
+            ];
+            let groups = [(2, group), (3, &gpu.bind(&pipeline.own, &own))];
+            let [width, height, depth] = slab.size;
+            pipeline.dispatch(encoder, &groups, [width.div_ceil(2), height, depth]);
+        })
+    }
+
+    fn pipeline(&mut self, gpu: &Gpu, pass: Pass) -> Result<&Pipeline, GpuError> {
+        let at = match self.0.iter().position(|(p, _)| *p == pass) {
+            Some(at) => at,
+            None => {
+                let constants = [
+                    ("WORK", f64::from(pass.work as u32)),
+                    ("WRITES_DEPTHS", flag(pass.writes_depths)),
+                    ("CLIPS", flag(pass.clips)),
+                ];
+                let pipeline = Pipeline::variant(gpu, "extinction", "main", &constants)?;
+                self.0.push((pass, pipeline));
+                self.0.len() - 1
+            }
+        };
+        Ok(&self.0[at].1)
+    }
+}
+
+impl Source<'_> {
+    /// Width of the Gaussian along an axis that makes a level from means over all of the volume's voxels in
+    /// `count` parts, in these parts: variances add up, and a mean has one already.
+    fn deviation(&self, axis: usize, count: u32, level: u32) -> f64 {
+        let voxels = f64::from(self.values.shape.size[axis]);
+        let edge = self.extent[axis] / voxels;
+        let in_a_part = voxels / f64::from(count);
+        let wanted = (self.sigma * f64::from(level).exp2()).powi(2);
+        let had = (in_a_part.powi(2) - 1.0) / 12.0 * edge.powi(2);
+        (wanted - had).max(0.0).sqrt() / (in_a_part * edge)
+    }
+
+    fn info(&self, line: Line) -> BlurInfo {
+        let [low, high] = self.bounds;
+        let size = DVec3::from_array(self.values.shape.size.map(f64::from));
+        BlurInfo {
+            axis: line.axis,
+            source_count: line.counts[0],
+            made_count: line.counts[1],
+            deviation: line.deviation as f32,
+            box_low: low.as_vec3().to_array(),
+            position_low: self.position[0],
+            spacing: ((high - low) / size).as_vec3().to_array(),
+            position_scale: self.position[1],
+            sigma: self.sigma as f32,
+            ghost: self.ghost,
+            clip_count: self.clip_count,
+            reserved: 0,
+            clip_planes: self.clip_planes,
+        }
+    }
+}

@@ -1,0 +1,503 @@
+//! One frame: uniforms, transfer table, tiles, readback, statistics.
+
+use std::time::{Duration, Instant};
+
+use bytemuck::Zeroable;
+use glam::DVec3;
+
+use super::device::{Gpu, GpuError};
+use super::grid_upload::GpuGrid;
+use super::layout::{self, Frame, MAX_CLIP_PLANES, Tile};
+use super::round::Round;
+use super::surfaces::SurfacePainter;
+use super::target;
+use super::tiles::{self, Pace, Rect};
+use crate::image::Image;
+use crate::render::gpu::strategy::RenderStrategy;
+use crate::view::surfaces::HEADLIGHT_ASIDE;
+use crate::view::{View, ghosts};
+
+/// What a frame cost.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct FrameStats {
+    /// Time of the rays: by the adapter's clock where it has one, else by the host's.
+    pub frame: Duration,
+    /// Wall time of the frame with readback.
+    pub wall: Duration,
+    /// CPU time of the process meanwhile, filled in by who measures it.
+    pub cpu: Duration,
+    /// Longest single submission.
+    pub longest_submission: Duration,
+    /// Lattice samples inside drawn cells.
+    pub samples: u64,
+    /// Newton iterations.
+    pub newton_iterations: u64,
+    /// Steps from a cell to its neighbor.
+    pub topological_steps: u64,
+    /// Point locations through the acceleration grid.
+    pub grid_fallbacks: u64,
+    /// Pixels whose alpha is not zero.
+    pub covered_pixels: u64,
+    /// Times that rays came into the drawn model. PLTS: first samples inside, at the start of the ray or behind one
+    /// outside. LIBC: boundary faces through which rays began to walk, and rays that start inside; faces of faults
+    /// count where rays are set not to walk across. SRG: rays that meet the model, once each. None where cells are
+    /// solid, for there no ray is cast.
+    pub entries: u64,
+    /// Lookups of a point without a cell to start from: those of `grid_fallbacks`, which are all of PLTS's that no
+    /// neighbor answers and those that set LIBC's rays right, and points of opaque sections. SRG looks up no others,
+    /// for its samples come from the volume.
+    pub point_locations: u64,
+    /// Cells that rays passed through, each time. PLTS: in which they have samples; LIBC: all, down to those between
+    /// two samples. None by SRG, whose rays know no cells, nor where cells are solid.
+    pub cell_crossings: u64,
+    /// Lattice samples that lie inside a drawn cell and were found in none.
+    ///
+    /// PLTS: the faces of a cell enclose the sample. Asked are the cell of the last sample before those that are not
+    /// found, that of the first one after them, and each one that a thorough search has tried; in a cell that
+    /// encloses a point, winding around it, the trilinear map takes it. Holes, faults that gape and hidden cells are
+    /// thus not counted, nor what is within a thousandth of a cell of its faces.
+    /// LIBC: samples are found by the segments that they lie on, so that only a ray that lost its way can lose one:
+    /// it is counted where neither walk nor point location go on and the last cell encloses the next sample.
+    /// SRG: none, for samples come from the volume; nor where cells are solid.
+    pub lost_samples: u64,
+    /// Rays that have reached their end.
+    pub finished_rays: u64,
+    /// Entries into the model of the ray that has most of them.
+    pub peels: u64,
+    /// Rays that lost their way at an edge or vertex and were set right by point location.
+    pub recovered_rays: u64,
+    /// Rays that could not be set right.
+    pub lost_rays: u64,
+    /// Loop iterations of all rays and surface points, about.
+    pub work: u64,
+    /// Times that a ray paused within what it was doing.
+    pub pauses: u64,
+    /// Number of submissions.
+    pub submissions: u32,
+    /// Bytes of the picture on the device.
+    pub target_bytes: u64,
+}
+
+/// What a frame is made with.
+pub struct Drawing<'a> {
+    /// Bind group 2: transfer function and light.
+    pub light: wgpu::BindGroup,
+    /// What finds the surfaces, where some are shown.
+    pub surfaces: Option<&'a mut SurfacePainter>,
+    /// What casts the rays.
+    pub strategy: &'a mut dyn RenderStrategy,
+}
+
+/// Makes frames with one strategy.
+#[derive(Default)]
+pub struct FrameRenderer {
+    pace: Pace,
+    /// How much of surfaces' colors fits into a submission.
+    painting: Pace,
+}
+
+/// Loop iterations after which a ray pauses at the latest: on software adapters within what llvmpipe
+/// allows a group of eight rays.
+const WORK_LIMIT: [u32; 2] = [6_000, 100_000];
+/// Loop iterations that rasterizing the surfaces costs a pixel, about; it is done at once for a part of the
+/// picture that a submission has room for.
+const PART_WORK: u64 = 2;
+/// Bytes of the shader's counters: low and high words.
+const COUNTERS: u64 = 8 * layout::COUNTERS as u64;
+/// Bytes of a surface point: distance and color.
+const LAYER_BYTES: u64 = 16;
+/// Bytes of two timestamps, in front of the counters in the staging buffer.
+const TICKS: u64 = 16;
+
+/// Objects of one frame.
+struct Bound<'a> {
+    gpu: &'a Gpu,
+    groups: [wgpu::BindGroup; 3],
+    tile: wgpu::Buffer,
+    counters: wgpu::Buffer,
+    staging: wgpu::Buffer,
+    queries: Option<(wgpu::QuerySet, wgpu::Buffer)>,
+}
+
+impl FrameRenderer {
+    /// Renders a view; `None` where `progress` cancelled it.
+    ///
+    /// # Errors
+    /// When the picture is too large for the adapter or the device reports an error.
+    pub fn render(
+        &mut self,
+        gpu: &Gpu,
+        grid: &GpuGrid,
+        drawing: Drawing<'_>,
+        view: &View,
+        progress: &dyn Fn(f64) -> bool,
+    ) -> Result<Option<(Image, FrameStats)>, GpuError> {
+        let start = Instant::now();
+        let Drawing {
+            light,
+            mut surfaces,
+            strategy,
+        } = drawing;
+        let limit = gpu.device.limits().max_texture_dimension_2d;
+        if view.size.iter().any(|&n| n > limit) {
+            return Err(GpuError::Unsuitable {
+                adapter: gpu.info.name.clone(),
+                reason: format!("images are limited to {limit} pixels in each direction"),
+            });
+        }
+        let target = target::create(gpu, view.size);
+        let counters = gpu.scratch("counters", COUNTERS);
+        let pixels = u64::from(view.size[0]) * u64::from(view.size[1]);
+        let layers = surfaces.as_ref().map_or(0, |s| s.layers());
+        let room = Room::of(gpu, pixels, strategy.ray_state_bytes(), layers);
+        let states = gpu.scratch("ray states", room.rays + room.layers);
+        let frame = gpu.uniform("frame", &frame_uniform(grid, view));
+        let tile = gpu.uniform("tile", &Tile::zeroed());
+        let texture = target.create_view(&wgpu::TextureViewDescriptor::default());
+        let frame_resources = [
+            frame.as_entire_binding(),
+            tile.as_entire_binding(),
+            wgpu::BindingResource::TextureView(&texture),
+            counters.as_entire_binding(),
+            states.as_entire_binding(),
+        ];
+        let bound = Bound {
+            gpu,
+            groups: [
+                gpu.bind(gpu.layouts.group(0), &frame_resources),
+                grid.bind(gpu),
+                light,
+            ],
+            tile,
+            counters,
+            staging: gpu.staging(TICKS + COUNTERS),
+            queries: queries(gpu),
+        };
+        let mut stats = FrameStats {
+            target_bytes: 16 * pixels + states.size(),
+            ..FrameStats::default()
+        };
+        let least_work = strategy.least_work();
+        let mut done = 0;
+        let most = self.painting.area(PART_WORK).min(room.pixels);
+        for part in bound.parts(view.size, surfaces.is_some(), most) {
+            let part = Part {
+                rect: part,
+                layers: (room.rays / LAYER_BYTES) as u32,
+            };
+            if let Some(surfaces) = &mut surfaces {
+                bound.find_surfaces(surfaces, part, &mut self.painting, &mut stats)?;
+            }
+            let draw = |rect, pace: &mut Pace| {
+                bound.draw(&mut *strategy, part.tile(rect), pace, &mut stats)
+            };
+            let area = part.rect.area();
+            let so_far =
+                |fraction| progress((done as f64 + fraction * area as f64) / pixels as f64);
+            if !tiles::cover(part.rect, &mut self.pace, least_work, draw, &so_far)? {
+                return Ok(None);
+            }
+            done += area;
+        }
+        let pixels = target::read(gpu, &target, view.size)?;
+        stats.covered_pixels = pixels.iter().filter(|pixel| pixel[3] != 0.0).count() as u64;
+        stats.wall = start.elapsed();
+        Ok(Some((
+            Image {
+                size: view.size,
+                blending: view.blending,
+                pixels,
+            },
+            stats,
+        )))
+    }
+}
+
+/// What is kept on the device of the rays of a part of the picture.
+struct Room {
+    /// Pixels of the part at most.
+    pixels: u64,
+    /// Bytes of the rays' states.
+    rays: u64,
+    /// Bytes of their layers of surfaces.
+    layers: u64,
+}
+
+impl Room {
+    /// Room for rays with a state of `state` bytes and so many layers, in one binding.
+    fn of(gpu: &Gpu, pixels: u64, state: u64, layers: u32) -> Self {
+        let layers = LAYER_BYTES * u64::from(layers);
+        let limit = gpu.device.limits().max_storage_buffer_binding_size;
+        let most = tiles::MAX_AREA.min(limit / (state + layers).max(1));
+        let pixels = pixels.min(most);
+        Self {
+            pixels,
+            rays: state * pixels,
+            layers: layers * pixels,
+        }
+    }
+}
+
+/// A part of the picture whose surfaces are found at once.
+#[derive(Clone, Copy)]
+struct Part {
+    rect: Rect,
+    /// Position of its layers in the ray states.
+    layers: u32,
+}
+
+impl Part {
+    /// A tile of it.
+    fn tile(self, rect: Rect) -> Tile {
+        Tile {
+            origin: rect.origin,
+            size: rect.size,
+            layers: self.layers,
+            part_width: self.rect.size[0],
+            part_origin: self.rect.origin,
+            ..Tile::zeroed()
+        }
+    }
+}
+
+impl Bound<'_> {
+    /// The parts of a picture, of at most so many pixels: all of it at once where no surfaces are to be found.
+    fn parts(&self, size: [u32; 2], has_surfaces: bool, most: u64) -> Vec<Rect> {
+        let whole = Rect {
+            origin: [0, 0],
+            size,
+        };
+        match has_surfaces {
+            true => tiles::parts(whole, most),
+            false => vec![whole],
+        }
+    }
+
+    /// Finds the surface points of a part, and then their colors in as many submissions as these need.
+    fn find_surfaces(
+        &self,
+        surfaces: &mut SurfacePainter,
+        part: Part,
+        pace: &mut Pace,
+        stats: &mut FrameStats,
+    ) -> Result<(), GpuError> {
+        let uniform = part.tile(part.rect);
+        let round = self.round(&uniform, 0);
+        self.submit(&uniform, |encoder| surfaces.peel(&round, encoder), stats)?;
+        let [width, height] = part.rect.size;
+        let row = u64::from(width) * surfaces.work();
+        for layer in 0..surfaces.layers() {
+            let mut next = 0;
+            while next < height {
+                let count = pace.pieces(row).clamp(1, u64::from(height - next)) as u32;
+                let rows = next..next + count;
+                let record = |encoder: &mut _| surfaces.paint(layer, &rows, &round, encoder);
+                let before = stats.work;
+                let took = self.submit(&uniform, record, stats)?;
+                pace.learn(took, stats.work - before);
+                next += count;
+            }
+        }
+        Ok(())
+    }
+
+    /// Makes one tile, in as many submissions as its rays need.
+    fn draw(
+        &self,
+        strategy: &mut dyn RenderStrategy,
+        tile: Tile,
+        pace: &mut Pace,
+        stats: &mut FrameStats,
+    ) -> Result<(), GpuError> {
+        let mut uniform = tile;
+        let goal = stats.finished_rays + u64::from(tile.size[0]) * u64::from(tile.size[1]);
+        let most = WORK_LIMIT[usize::from(!self.gpu.is_software())];
+        let mut before = *stats;
+        while stats.finished_rays < goal {
+            let left = goal - stats.finished_rays;
+            uniform.work_limit = pace.work_limit(left, strategy.least_work(), most);
+            let now = *stats;
+            let round = Round {
+                paused: now.pauses - before.pauses,
+                strayed: now.recovered_rays - before.recovered_rays,
+                ..self.round(&uniform, left as u32)
+            };
+            let record = |encoder: &mut _| strategy.encode(&round, encoder);
+            let took = self.submit(&uniform, record, stats)?;
+            pace.learn(took, stats.work - now.work);
+            before = now;
+            uniform.resume = 1;
+        }
+        Ok(())
+    }
+
+    /// A round of a tile, before anything is known of its rays.
+    fn round(&self, uniform: &Tile, rays_left: u32) -> Round<'_> {
+        Round {
+            gpu: self.gpu,
+            size: uniform.size,
+            starts: uniform.resume == 0,
+            rays_left,
+            paused: 0,
+            strayed: 0,
+            groups: &self.groups,
+            queries: self.queries.as_ref().map(|(set, _)| set),
+        }
+    }
+
+    /// Submits what `record` records, waits for it and brings the statistics up to date.
+    fn submit(
+        &self,
+        uniform: &Tile,
+        record: impl FnOnce(&mut wgpu::CommandEncoder),
+        stats: &mut FrameStats,
+    ) -> Result<Duration, GpuError> {
+        let gpu = self.gpu;
+        gpu.queue
+            .write_buffer(&self.tile, 0, bytemuck::bytes_of(uniform));
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        record(&mut encoder);
+        if let Some((set, resolve)) = &self.queries {
+            encoder.resolve_query_set(set, 0..2, resolve, 0);
+            encoder.copy_buffer_to_buffer(resolve, 0, &self.staging, 0, TICKS);
+        }
+        encoder.copy_buffer_to_buffer(&self.counters, 0, &self.staging, TICKS, COUNTERS);
+        let start = Instant::now();
+        gpu.queue.submit([encoder.finish()]);
+        let content = gpu.map(&self.staging)?;
+        let wall = start.elapsed();
+        let (ticks, counters) = content.split_at(TICKS as usize);
+        stats.count(&bytemuck::pod_collect_to_vec(counters));
+        let ticks: Vec<u64> = bytemuck::pod_collect_to_vec(ticks);
+        let by_adapter = gpu.timestamp_period_ns.map(|period| {
+            Duration::from_nanos(
+                (ticks[1].saturating_sub(ticks[0]) as f64 * f64::from(period)) as u64,
+            )
+        });
+        // Some drivers give zero or nonsense: then the host's clock has to do.
+        stats.frame += by_adapter
+            .filter(|t| !t.is_zero() && *t < wall)
+            .unwrap_or(wall);
+        stats.submissions += 1;
+        stats.longest_submission = stats.longest_submission.max(wall);
+        Ok(wall)
+    }
+}
+
+impl FrameStats {
+    /// Takes over the shader's counters, pairs of low and high words.
+    fn count(&mut self, words: &[u32]) {
+        let count = |n: u32| {
+            let at = 2 * n as usize;
+            u64::from(words[at]) | u64::from(words[at + 1]) << 32
+        };
+        self.samples = count(layout::COUNT_SAMPLES);
+        self.newton_iterations = count(layout::COUNT_ITERATIONS);
+        self.topological_steps = count(layout::COUNT_STEPS);
+        self.grid_fallbacks = count(layout::COUNT_FALLBACKS);
+        self.entries = count(layout::COUNT_ENTRIES);
+        self.point_locations = self.grid_fallbacks + count(layout::COUNT_SECTIONS);
+        self.cell_crossings = count(layout::COUNT_CROSSINGS);
+        self.lost_samples = count(layout::COUNT_LOST_SAMPLES);
+        self.finished_rays = count(layout::COUNT_FINISHED);
+        self.work = count(layout::COUNT_WORK);
+        self.peels = count(layout::COUNT_PEELS);
+        self.recovered_rays = count(layout::COUNT_RECOVERED);
+        self.lost_rays = count(layout::COUNT_LOST);
+        self.pauses = count(layout::COUNT_PAUSED);
+    }
+}
+
+fn queries(gpu: &Gpu) -> Option<(wgpu::QuerySet, wgpu::Buffer)> {
+    gpu.timestamp_period_ns?;
+    let set = gpu.device.create_query_set(&wgpu::QuerySetDescriptor {
+        label: Some("tile times"),
+        ty: wgpu::QueryType::Timestamp,
+        count: 2,
+    });
+    let resolve = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("tile times"),
+        size: TICKS,
+        usage: wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC,
+        mapped_at_creation: false,
+    });
+    Some((set, resolve))
+}
+
+fn frame_uniform(grid: &GpuGrid, view: &View) -> Frame {
+    let camera = &view.camera;
+    let aspect = view.aspect();
+    let f32s = |v: DVec3| v.as_vec3().to_array();
+    let linear = view.spaces.grid_from_world.matrix3;
+    let eye = view.spaces.grid_from_world.transform_point3(camera.eye) - grid.origin;
+    // Half the picture at a depth of one.
+    let half_height = camera.half_height(1.0);
+    let [half_right, half_up] = [aspect * camera.right, camera.up].map(|v| half_height * v);
+    let is_parallel = f64::from(u8::from(camera.parallel.is_some()));
+    let aside = HEADLIGHT_ASIDE[0] * camera.right + HEADLIGHT_ASIDE[1] * camera.up;
+    let to_camera = view.spaces.world_from_grid.matrix3.transpose();
+    Frame {
+        eye: f32s(eye),
+        step: view.sampling_step as f32,
+        forward: f32s(camera.forward),
+        early_termination: view.early_termination as f32,
+        right: f32s((1.0 - is_parallel) * half_right),
+        value_low: view.transfer.range[0] as f32,
+        up: f32s((1.0 - is_parallel) * half_up),
+        value_scale: layout::per_unit(view.transfer.range),
+        grid_from_world_x: f32s(linear.x_axis),
+        width: view.size[0],
+        grid_from_world_y: f32s(linear.y_axis),
+        height: view.size[1],
+        grid_from_world_z: f32s(linear.z_axis),
+        interpolation: layout::interpolation(view.interpolation),
+        box_low: f32s(grid.bounds[0]),
+        clip_count: view.clip.len() as u32,
+        box_high: f32s(grid.bounds[1]),
+        opaque_cuts: (0..)
+            .zip(&view.clip)
+            .map(|(n, plane)| u32::from(plane.opaque) << n)
+            .sum(),
+        view_x: f32s(to_camera * (camera.right / (half_height * aspect))),
+        farthest: farthest(view) as f32,
+        view_y: f32s(to_camera * (camera.up / half_height)),
+        world_handedness: grid.handedness * linear.determinant().signum() as f32,
+        view_z: f32s(to_camera * camera.forward),
+        grid_handedness: grid.handedness,
+        origin_right: f32s(linear * (is_parallel * half_right)),
+        is_parallel: is_parallel as f32,
+        origin_up: f32s(linear * (is_parallel * half_up)),
+        reserved: 0.0,
+        headlight: f32s(linear * aside),
+        headlight_scale: (1.0 + aside.length_squared()).sqrt().recip() as f32,
+        ghost: ghost(view),
+        clip_planes: clip_planes(grid, view),
+    }
+}
+
+/// Color, as it is blended, and extinction of inactive cells.
+pub(super) fn ghost(view: &View) -> [f32; 4] {
+    let [r, g, b] = view.blending.of_srgb(ghosts::COLOR).map(|v| v as f32);
+    [r, g, b, view.transfer.extinction_of(ghosts::OPACITY) as f32]
+}
+
+/// Distance of the farthest corner of the model's box.
+fn farthest(view: &View) -> f64 {
+    let distances = view.box_corners.iter();
+    let distances = distances.map(|c| view.camera.to_viewer(*c).1);
+    distances.fold(0.0, f64::max)
+}
+
+/// Planes from world space to grid space relative to the grid's origin; f64 until nothing cancels.
+pub(super) fn clip_planes(grid: &GpuGrid, view: &View) -> [[f32; 4]; MAX_CLIP_PLANES] {
+    let mut planes = [[0.0; 4]; MAX_CLIP_PLANES];
+    for (plane, clip) in planes.iter_mut().zip(&view.clip) {
+        let to_world = &view.spaces.world_from_grid;
+        let normal = to_world.matrix3.transpose() * clip.normal;
+        let height = clip
+            .normal
+            .dot(to_world.transform_point3(grid.origin) - clip.point);
+        *plane = normal.extend(height).as_vec4().to_array();
+    }
+    planes
+}

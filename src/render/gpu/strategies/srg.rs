@@ -1,0 +1,317 @@
+//! SRG, structured resampled grid: the fast strategy for what moves, whatever the cells look like.
+//!
+//! The field is resampled into a volume of value and presence over the box of the active cells, filled on
+//! the device by point location; rays between the first and the last boundary face sample it
+//! (campagnolo-2021, 4.1.1). Cost: one texture sample a sample; the volume's bytes; a refill where values
+//! or drawn cells change. Faults and thin layers are blurred by about a voxel. Pyramids over the volume
+//! shorten the way (volumetric-ray-tracing survey, 8).
+
+use crate::model::Dims;
+use crate::render::gpu::faces::{FaceMode, FaceRaster, FaceTarget};
+use crate::render::gpu::pyramids::{Bricks, Classifier, Limits, PyramidMaker};
+use crate::render::gpu::resample::Resampler;
+use crate::render::gpu::slabs::Slabs;
+use crate::render::gpu::strategy::{Common, Preparation, RenderStrategy};
+use crate::render::gpu::tiles::Pace;
+use crate::render::gpu::volume::Volume;
+use crate::render::gpu::{Gpu, GpuBytes, GpuError, Pipeline, Place, Round, Versions, flag};
+use crate::scene::SrgSettings;
+use crate::transfer::TransferFunction;
+use crate::view::View;
+use crate::view::voxels::Shape;
+
+/// The strategy with its compiled shaders, and the volume.
+pub struct Srg {
+    begin: Pipeline,
+    march: Pipeline,
+    variant: Variant,
+    resampler: Resampler,
+    pyramids: PyramidMaker,
+    sampler: wgpu::Sampler,
+    faces: FaceRaster,
+    /// For the first entries and the last exits.
+    targets: [Option<FaceTarget>; 2],
+    pace: Pace,
+    fills: u64,
+    filled: Option<Filled>,
+}
+
+/// The volume with its pyramids, and what they were made from.
+struct Filled {
+    versions: Versions,
+    /// Values that are stored as 0 and 1.
+    range: [f64; 2],
+    volume: Volume,
+    bricks: Bricks,
+    /// What the bricks are classified for.
+    classified: Option<(TransferFunction, Limits, bool)>,
+}
+
+/// The volume of the wanted factor, or the largest one within a budget of bytes; no axis has more voxels
+/// than `limit`.
+fn shape(dims: Dims, settings: &SrgSettings, ghosts: bool, budget: u64, limit: u32) -> Shape {
+    let most = |factor| {
+        let shape = Shape::of(dims, factor, ghosts);
+        Shape {
+            size: shape.size.map(|n| n.min(limit)),
+            ..shape
+        }
+    };
+    let factor = settings.factor.unwrap_or_else(|| {
+        let mut factor = (budget as f64 / dims.cells() as f64).cbrt();
+        // Room for all pyramids is left, used or not, so that switches do not change the resolution.
+        let bytes = |most: Shape| most.bytes() + Bricks::most_bytes(most.size);
+        while bytes(most(factor)) > budget && most(factor).size != [1; 3] {
+            factor *= 0.99;
+        }
+        factor
+    });
+    let most = most(factor);
+    Shape {
+        levels: if settings.thin > 0.0 { most.levels } else { 1 },
+        ..most
+    }
+}
+
+/// The settings, without those that cannot gain: nothing is passed at once where the transfer function
+/// shows every value and next to no cell is hidden, or ghosts fill the gaps. There asking the bricks made
+/// frames in software up to 29 % slower.
+fn useful(view: &View) -> SrgSettings {
+    let is_clear = view.transfer.opacity.iter().any(|point| point.1 == 0.0);
+    let hidden = view.drawn.iter().filter(|drawn| !**drawn).count();
+    SrgSettings {
+        skip_empty: view.srg.skip_empty
+            && view.ghosts.is_none()
+            && (is_clear || 10 * hidden > view.drawn.len()),
+        ..view.srg
+    }
+}
+
+/// Limits of the bricks' classes at a sampling step.
+fn limits(settings: &SrgSettings, step: f64) -> Limits {
+    let limit = |is_on, value| if is_on { value } else { -1.0 };
+    Limits {
+        empty: limit(settings.skip_empty, 0.0),
+        even: limit(settings.even > 0.0, settings.even),
+        // From a sample's opacity to extinction.
+        thin: limit(settings.thin > 0.0, -(-settings.thin).ln_1p() / step),
+    }
+}
+
+/// Options that are constants of the pipelines.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Variant {
+    sections: bool,
+    weighted: bool,
+    by_brick: bool,
+    long_steps: bool,
+    roulette: f64,
+    common: Common,
+}
+
+impl Variant {
+    fn compile(self, gpu: &Gpu, entry: &str) -> Result<Pipeline, GpuError> {
+        let own = [
+            ("SECTIONS", flag(self.sections)),
+            ("WEIGHTED", flag(self.weighted)),
+            ("BY_BRICK", flag(self.by_brick)),
+            ("LONG_STEPS", flag(self.long_steps)),
+            ("ROULETTE", self.roulette),
+        ];
+        let constants: Vec<_> = own.into_iter().chain(self.common.pairs()).collect();
+        Pipeline::variant(gpu, "srg", entry, &constants)
+    }
+
+    fn of(settings: &SrgSettings, sections: bool, common: Common) -> Self {
+        Self {
+            sections,
+            weighted: settings.weighted,
+            by_brick: !limits(settings, 1.0).are_never(),
+            long_steps: settings.even > 0.0 || settings.thin > 0.0,
+            roulette: settings.roulette,
+            common,
+        }
+    }
+}
+
+impl Srg {
+    /// Compiles the shaders.
+    ///
+    /// # Errors
+    /// When the driver refuses one.
+    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+        let variant = Variant::of(&SrgSettings::default(), false, Common::default());
+        Ok(Self {
+            begin: variant.compile(gpu, "begin")?,
+            march: variant.compile(gpu, "march")?,
+            variant,
+            resampler: Resampler::new(gpu, false)?,
+            pyramids: PyramidMaker::new(gpu)?,
+            sampler: gpu.linear_sampler(),
+            faces: FaceRaster::new(gpu)?,
+            targets: [None, None],
+            pace: Pace::default(),
+            fills: 0,
+            filled: None,
+        })
+    }
+
+    /// Number of times that the volume was filled.
+    pub fn fills(&self) -> u64 {
+        self.fills
+    }
+
+    /// Fills the volume anew where values, cells or shape have changed; false where it was cancelled.
+    fn fill(&mut self, what: &Preparation<'_>, shape: Shape) -> Result<bool, GpuError> {
+        let filled = self.filled.take().filter(|f| f.volume.shape == shape);
+        let versions = what.grid.versions;
+        if filled.as_ref().is_some_and(|f| f.versions == versions) {
+            self.filled = filled;
+            return Ok(true);
+        }
+        let volume = filled.map_or_else(|| Volume::new(what.gpu, shape), |f| f.volume);
+        let statistics = what.view.field.statistics();
+        let range = statistics.map_or([0.0, 1.0], |s| [s.min, s.max]);
+        let bricks = Bricks::unused(what.gpu, shape.size);
+        let mut slabs = slabs(what, &mut self.pace);
+        let interpolation = what.view.interpolation;
+        let done = self
+            .resampler
+            .fill(&mut slabs, what.grid, &volume, range, interpolation)?
+            && self.pyramids.average(&mut slabs, &volume, &bricks)?;
+        self.fills += u64::from(done);
+        self.filled = done.then_some(Filled {
+            versions,
+            range,
+            volume,
+            bricks,
+            classified: None,
+        });
+        Ok(done)
+    }
+
+    /// Makes the bricks where they are asked for and not there, and classifies them anew where transfer
+    /// function or settings have changed; false where it was cancelled.
+    fn classify(
+        &mut self,
+        what: &Preparation<'_>,
+        settings: &SrgSettings,
+    ) -> Result<bool, GpuError> {
+        let Some(filled) = &mut self.filled else {
+            return Ok(false);
+        };
+        let limits = limits(settings, what.view.sampling_step);
+        if !limits.are_never() && !filled.bricks.are_used() {
+            let bricks = Bricks::new(what.gpu, filled.volume.shape.size);
+            let mut slabs = slabs(what, &mut self.pace);
+            if !self
+                .pyramids
+                .summarize(&mut slabs, &filled.volume, &bricks)?
+            {
+                return Ok(false);
+            }
+            filled.bricks = bricks;
+            filled.classified = None;
+        }
+        let by = (what.view.transfer.clone(), limits, settings.weighted);
+        if filled.classified.as_ref() != Some(&by) {
+            let classifier = Classifier {
+                transfer: &by.0,
+                range: filled.range,
+                limits,
+                weighted: settings.weighted,
+            };
+            let (volume, bricks) = (&filled.volume, &filled.bricks);
+            self.pyramids
+                .classify(what.gpu, volume, bricks, &classifier)?;
+            filled.classified = Some(by);
+        }
+        Ok(true)
+    }
+}
+
+fn slabs<'a>(what: &Preparation<'a>, pace: &'a mut Pace) -> Slabs<'a> {
+    Slabs {
+        gpu: what.gpu,
+        pace,
+        progress: what.progress,
+    }
+}
+
+impl RenderStrategy for Srg {
+    fn ray_state_bytes(&self) -> u64 {
+        32
+    }
+
+    /// Samples are cheap beside the drawing of the faces.
+    fn least_work(&self) -> u64 {
+        12
+    }
+
+    fn draws_faces(&self) -> bool {
+        true
+    }
+
+    fn prepare(&mut self, what: &Preparation<'_>) -> Result<bool, GpuError> {
+        let view = what.view;
+        let settings = useful(view);
+        let sections = view.clip.iter().any(|plane| plane.opaque);
+        let variant = Variant::of(&settings, sections, Common::of(what));
+        if variant != self.variant {
+            self.begin = variant.compile(what.gpu, "begin")?;
+            self.march = variant.compile(what.gpu, "march")?;
+            self.variant = variant;
+        }
+        self.faces.update(what.gpu, what.faces, 0.0);
+        let budget = settings.budget_bytes(what.gpu.is_software());
+        let limit = what.gpu.device.limits().max_texture_dimension_3d;
+        let ghosts = view.ghosts.is_some();
+        let shape = shape(what.model.dims(), &settings, ghosts, budget, limit);
+        Ok(self.fill(what, shape)? && self.classify(what, &settings)?)
+    }
+
+    fn bytes(&self) -> GpuBytes {
+        let volume = |f: &Filled| f.volume.shape.bytes() + f.bricks.bytes();
+        GpuBytes {
+            resampled: self.filled.as_ref().map_or(0, volume),
+            ..GpuBytes::default()
+        }
+    }
+
+    fn encode(&mut self, round: &Round<'_>, encoder: &mut wgpu::CommandEncoder) {
+        let Some(filled) = &self.filled else {
+            return;
+        };
+        let [first, last] = std::array::from_fn(|n| {
+            FaceTarget::fitting(self.targets[n].take(), round.gpu, round.size)
+        });
+        let voxels = filled.volume.texture.create_view(&Default::default());
+        let own = |pipeline: &Pipeline| {
+            let resources = [
+                filled.volume.info.as_entire_binding(),
+                filled.bricks.info.as_entire_binding(),
+                wgpu::BindingResource::TextureView(&voxels),
+                wgpu::BindingResource::Sampler(&self.sampler),
+                filled.bricks.passes.as_entire_binding(),
+                wgpu::BindingResource::TextureView(&first.met),
+                wgpu::BindingResource::TextureView(&last.met),
+            ];
+            round.gpu.bind(&pipeline.own, &resources)
+        };
+        // Faces are drawn in a round of their own: how long that takes says nothing of the rays' pace.
+        if round.starts {
+            for (target, mode, place) in [
+                (&first, FaceMode::First, Place::First),
+                (&last, FaceMode::Last, Place::Between),
+            ] {
+                self.faces.draw(round, encoder, target, mode, place);
+            }
+            let own = own(&self.begin);
+            round.compute(encoder, &self.begin, Some(&own), round.size, Place::Last);
+        } else {
+            let own = own(&self.march);
+            round.compute(encoder, &self.march, Some(&own), round.size, Place::Only);
+        }
+        self.targets = [Some(first), Some(last)];
+    }
+}

@@ -1,0 +1,321 @@
+//! Surfaces as parts of the picture: before the rays of a part of it begin, the points at which they meet
+//! surfaces are rasterized, layer by layer, and get their colors. The strategies blend them between samples.
+//!
+//! An opaque hull is one layer, for nothing is seen behind it; a faint one is two. Of faults each ray has the
+//! nearest [`layout::SHEET_LAYERS`] sheets; farther ones are left out. Each layer that gets its colors takes its
+//! place among those of the pixel by its distance.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use super::device::{Gpu, GpuError};
+use super::faces::{self, FORMAT, FaceList, FaceTarget};
+use super::grid_upload::GpuGrid;
+use super::illumination::Shading;
+use super::layout::{self, PaintInfo};
+use super::pipeline::{Pipeline, RasterPipeline, flag};
+use super::round::{Place, Round};
+use crate::image::Blending;
+use crate::model::Grid;
+use crate::scene::Hull;
+use crate::view::surfaces::{FAINT_BEHIND, FAINT_FRONT, PALETTE, UNNAMED, faint_color};
+use crate::view::{Surfaces, View};
+
+/// Names and values of the `override` constants of shaders that blend surfaces.
+pub fn constants(surfaces: Surfaces) -> [(&'static str, f64); 5] {
+    [
+        ("SURFACES", flag(surfaces.are_shown())),
+        ("HULL", flag(surfaces.hull == Hull::Opaque)),
+        ("LAYERS", f64::from(layers(surfaces).len().max(1) as u32)),
+        ("CELL_EDGES", flag(surfaces.cell_edges)),
+        ("SOLID", flag(surfaces.solid)),
+    ]
+}
+
+/// Which points of which faces make a layer.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Layer {
+    /// The nearest of an opaque hull.
+    Hull,
+    /// The nearest of a faint hull.
+    Front,
+    /// The last of a faint hull.
+    Ground,
+    /// Those of a sheet that lies behind so many others.
+    Sheet(u32),
+}
+
+/// The layers that a ray can have.
+fn layers(surfaces: Surfaces) -> Vec<Layer> {
+    let sheets = match surfaces.faults {
+        true => 0..layout::SHEET_LAYERS,
+        false => 0..0,
+    };
+    let hull: &[Layer] = match surfaces.hull {
+        Hull::Hidden => &[],
+        Hull::Faint => &[Layer::Front, Layer::Ground],
+        Hull::Opaque => return vec![Layer::Hull],
+    };
+    hull.iter()
+        .copied()
+        .chain(sheets.map(Layer::Sheet))
+        .collect()
+}
+
+/// Finds surface points and gives them colors.
+pub struct SurfacePainter {
+    peel: RasterPipeline,
+    paint: Pipeline,
+    /// Constants that it was compiled with.
+    look: (Surfaces, Shading),
+    shown: Option<Shown>,
+    gap: f32,
+    blending: Blending,
+    /// Color of a faint hull.
+    faint: [f32; 4],
+    work: u64,
+    targets: Vec<Option<FaceTarget>>,
+    /// What is bound in place of a layer before the first one.
+    nothing: wgpu::TextureView,
+}
+
+/// The surfaces that are shown.
+struct Shown {
+    surfaces: Surfaces,
+    /// See [`View::chosen_faults`].
+    chosen: Option<Arc<[bool]>>,
+    /// Version of the drawn cells.
+    drawn: u64,
+    hull: Option<FaceList>,
+    /// Faces that are sheets by themselves.
+    sheets: Option<FaceList>,
+    fault_faces: wgpu::Buffer,
+    fault_colors: wgpu::Buffer,
+    faults: u32,
+}
+
+impl SurfacePainter {
+    /// Compiles the shaders.
+    ///
+    /// # Errors
+    /// When the driver refuses one.
+    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+        Ok(Self {
+            peel: RasterPipeline::new(gpu, "peel", &[FORMAT])?,
+            paint: Pipeline::new(gpu, "paint")?,
+            look: <(Surfaces, Shading)>::default(),
+            shown: None,
+            gap: 0.0,
+            blending: Blending::default(),
+            faint: [0.0; 4],
+            work: 0,
+            targets: Vec::new(),
+            nothing: faces::texture(gpu, [1; 2], FORMAT),
+        })
+    }
+
+    /// True where the boundary faces of all drawn cells are the hull.
+    pub fn shares_faces(view: &View) -> bool {
+        view.surfaces.has_hull() && view.ghosts.is_none()
+    }
+
+    /// Brings up to date what is shown of `model` (the case's grid). `boundary` are the boundary faces of all
+    /// drawn cells, for a view that [shares](Self::shares_faces) them; `work` is what the light of a sample
+    /// costs.
+    ///
+    /// # Errors
+    /// When a list exceeds what the adapter holds, or the driver refuses a shader.
+    pub fn update(
+        &mut self,
+        gpu: &Gpu,
+        model: &Grid,
+        grid: &GpuGrid,
+        view: &View,
+        boundary: Option<&FaceList>,
+        work: u32,
+    ) -> Result<(), GpuError> {
+        let look = (view.surfaces, Shading::of(&view.lighting));
+        if look != self.look {
+            let surfaces = constants(look.0).into_iter();
+            let constants: Vec<_> = surfaces.chain(look.1.pairs()).collect();
+            self.paint = Pipeline::variant(gpu, "paint", "main", &constants)?;
+            self.look = look;
+        }
+        let is_known = |s: &Shown| {
+            let kinds = |s: Surfaces| (s.hull, s.faults);
+            s.drawn == grid.versions.drawn
+                && kinds(s.surfaces) == kinds(view.surfaces)
+                && s.chosen == view.chosen_faults
+        };
+        let shown = match self.shown.take().filter(is_known) {
+            Some(known) => known,
+            None => Shown::new(gpu, model, grid, view, boundary)?,
+        };
+        self.shown = Some(shown);
+        self.gap = view.fault_gap() as f32;
+        self.blending = view.blending;
+        let [r, g, b] = view.blending.of_srgb(faint_color(view.background));
+        self.faint = [r, g, b, 1.0].map(|v| v as f32);
+        self.work = u64::from(layout::PAINT_WORK + work);
+        Ok(())
+    }
+
+    /// Layers that a ray can have.
+    pub fn layers(&self) -> u32 {
+        layers(self.look.0).len() as u32
+    }
+
+    /// Loop iterations that a pixel of a layer costs, about.
+    pub fn work(&self) -> u64 {
+        self.work
+    }
+
+    /// Records the passes that find the points of all layers.
+    pub fn peel(&mut self, round: &Round<'_>, encoder: &mut wgpu::CommandEncoder) {
+        let Some(shown) = &self.shown else {
+            return;
+        };
+        let layers = layers(self.look.0);
+        self.targets.resize_with(layers.len(), || None);
+        let mut before = self.nothing.clone();
+        for (n, (layer, slot)) in layers.iter().zip(&mut self.targets).enumerate() {
+            let target = FaceTarget::fitting(slot.take(), round.gpu, round.size);
+            // Only of the hull both sides of a fault are there to choose from.
+            let (faces, number, behind) = match layer {
+                Layer::Sheet(number) => (&shown.sheets, *number, 0.0),
+                _ => (&shown.hull, 0, self.gap),
+            };
+            let is_last = u32::from(*layer == Layer::Ground);
+            let info = [number, self.gap.to_bits(), behind.to_bits(), is_last];
+            let info = round.gpu.uniform("peel info", &info);
+            let place = Place::of(n, layers.len());
+            let mut pass = round.raster(encoder, &target.met, &target.depth, place);
+            if let Some(faces) = faces {
+                let own = [
+                    info.as_entire_binding(),
+                    faces.numbers.as_entire_binding(),
+                    wgpu::BindingResource::TextureView(&before),
+                ];
+                let own = round.gpu.bind(&self.peel.own, &own);
+                pass.set_pipeline(&self.peel.pipeline);
+                pass.set_bind_group(3, &own, &[]);
+                pass.draw(0..6 * faces.count, 0..1);
+            }
+            drop(pass);
+            before = target.met.clone();
+            *slot = Some(target);
+        }
+    }
+
+    /// Records the pass that gives some rows of a layer their colors.
+    pub fn paint(
+        &self,
+        layer: u32,
+        rows: &Range<u32>,
+        round: &Round<'_>,
+        encoder: &mut wgpu::CommandEncoder,
+    ) {
+        let target = self.targets.get(layer as usize).and_then(Option::as_ref);
+        let (Some(shown), Some(target)) = (&self.shown, target) else {
+            return;
+        };
+        let kinds = layers(self.look.0);
+        let (look, [facing, edge_on]) = match kinds.get(layer as usize) {
+            Some(Layer::Front) => (layout::LOOK_FAINT, FAINT_FRONT),
+            Some(Layer::Ground) => (layout::LOOK_FAINT, FAINT_BEHIND),
+            _ => (layout::LOOK_COLORED, [1.0; 2]),
+        };
+        let info = PaintInfo {
+            palette: palette(self.blending),
+            faint: self.faint,
+            faults: shown.faults,
+            layer,
+            first_row: rows.start,
+            rows: rows.len() as u32,
+            look,
+            facing: facing as f32,
+            edge_on: edge_on as f32,
+            reserved: 0,
+        };
+        let info = round.gpu.uniform("paint info", &info);
+        let own = [
+            info.as_entire_binding(),
+            wgpu::BindingResource::TextureView(&target.met),
+            shown.fault_faces.as_entire_binding(),
+            shown.fault_colors.as_entire_binding(),
+        ];
+        let own = round.gpu.bind(&self.paint.own, &own);
+        let size = [round.size[0], rows.len() as u32];
+        round.compute(encoder, &self.paint, Some(&own), size, Place::Only);
+    }
+
+    /// Bytes of the lists that are this one's own.
+    pub fn bytes(&self, view: &View) -> u64 {
+        self.shown.as_ref().map_or(0, |shown| {
+            let faults = shown.fault_faces.size() + shown.fault_colors.size();
+            let hull = shown.hull.iter().filter(|_| !Self::shares_faces(view));
+            faults + hull.chain(&shown.sheets).map(FaceList::bytes).sum::<u64>()
+        })
+    }
+}
+
+impl Shown {
+    fn new(
+        gpu: &Gpu,
+        model: &Grid,
+        grid: &GpuGrid,
+        view: &View,
+        boundary: Option<&FaceList>,
+    ) -> Result<Self, GpuError> {
+        let surfaces = view.surfaces;
+        let faults = match surfaces.faults {
+            true => faults(model, view)?,
+            false => Vec::new(),
+        };
+        let (numbers, colors): (Vec<u32>, Vec<u32>) = faults.into_iter().unzip();
+        let hull = match (surfaces.has_hull(), boundary) {
+            (false, _) => None,
+            (true, Some(boundary)) if SurfacePainter::shares_faces(view) => Some(boundary.clone()),
+            (true, _) => {
+                let faces = faces::numbers(model, &view.hull_faces(model))?;
+                Some(FaceList::new(gpu, grid, &faces)?)
+            }
+        };
+        let sheets = match surfaces.hull {
+            Hull::Opaque => None,
+            _ => Some(FaceList::new(gpu, grid, &numbers)?),
+        };
+        Ok(Self {
+            surfaces,
+            chosen: view.chosen_faults.clone(),
+            drawn: grid.versions.drawn,
+            hull,
+            sheets,
+            fault_faces: gpu.storage("fault faces", &numbers)?,
+            fault_colors: gpu.storage("fault colors", &colors)?,
+            faults: numbers.len() as u32,
+        })
+    }
+}
+
+/// Numbers of the fault faces in rising order, and of their colors.
+fn faults(model: &Grid, view: &View) -> Result<Vec<(u32, u32)>, GpuError> {
+    let faces = view.fault_faces(model);
+    let places: Vec<_> = faces.iter().map(|f| (f.0, f.1)).collect();
+    let color = |fault: Option<usize>| fault.map_or(PALETTE.len(), |n| n % PALETTE.len()) as u32;
+    let colors = faces.iter().map(|f| color(f.2));
+    let mut faults: Vec<_> = faces::numbers(model, &places)?
+        .into_iter()
+        .zip(colors)
+        .collect();
+    faults.sort_unstable();
+    Ok(faults)
+}
+
+/// Colors of faults as they are blended; the last one is that of faults without a name.
+fn palette(blending: Blending) -> [[f32; 4]; layout::FAULT_COLORS] {
+    std::array::from_fn(|n| {
+        let [r, g, b] = blending.of_srgb(*PALETTE.get(n).unwrap_or(&UNNAMED));
+        [r, g, b, 1.0].map(|v| v as f32)
+    })
+}

@@ -1,0 +1,360 @@
+//! A scene against a case: every default filled in, every value checked.
+
+use std::sync::Arc;
+
+use glam::{DVec3, DVec4};
+
+use super::bounds::{automatic_exaggeration, bounds_of, box_corners, box_edges};
+use super::colors::{self, Asked, Colors, interpolation};
+use super::error::{SceneError, positive, wrong};
+use super::facts::{self, Facts};
+use super::framing::{self, Direction, Subject};
+use super::ghosts::{Ghosts, shown_grid};
+use super::lighting::{self, Lighting};
+use super::look::default_property;
+use super::step::step_of;
+use super::voxels::Shape;
+use super::{Camera, ClipPlane, Surfaces, View, clip, filter, surfaces};
+use crate::case::Case;
+use crate::model::{CellField, CellIndex, Dims, Ijk, Spaces};
+use crate::scene::{CameraSpec, Inactive, Mode, Scene, SrgSettings, StrategyKind};
+use crate::transfer::presets;
+
+/// Fills in every default of `scene` for `case` and checks every value.
+///
+/// # Errors
+/// When a value is out of its range, or asks for what the case or this version does not have.
+pub fn resolve(scene: &Scene, case: &Case) -> Result<View, SceneError> {
+    resolve_over(scene, case, None)
+}
+
+/// [`resolve`], over another range of true values where one is given.
+pub(super) fn resolve_over(
+    scene: &Scene,
+    case: &Case,
+    range: Option<[f64; 2]>,
+) -> Result<View, SceneError> {
+    check_version(scene)?;
+    let exaggeration = exaggeration(scene, active_bounds(case)?)?;
+    let spaces = Spaces::new(case.grid.map_axes(), exaggeration);
+    let edges = mean_world_edges(case, exaggeration);
+    let property = match &scene.property {
+        Some(name) => name.clone(),
+        None => default_property(case),
+    };
+    let step = step_of(case, &scene.step, case.is_dynamic(&property))?;
+    let field = case.field(&property, step)?;
+    let asked = Asked {
+        scene,
+        case,
+        property: &property,
+        range,
+        mean_edge: edges.element_sum() / 3.0,
+        exaggeration,
+        thinnest: filter::thinnest(&scene.filter, case.grid.dims(), edges)?,
+    };
+    let Colors {
+        field: shown,
+        transfer,
+        beyond,
+    } = colors::resolve(&asked, &field)?;
+    let clip = clip::planes(&scene.clip, scene.mode)?;
+    let Cells {
+        field,
+        drawn,
+        ghosts,
+        connections,
+        facts,
+        subject,
+        box_corners,
+    } = cells(&asked, [field, shown], &spaces, &clip)?;
+    let world_bounds = bounds_of(&box_corners);
+    let size = checked_size(scene.size)?;
+    Ok(View {
+        size,
+        background: presets::parse_color(&scene.background)
+            .ok_or_else(|| wrong("background", "must be a color like #ffffff"))?,
+        camera: camera(
+            &scene.camera,
+            size,
+            (&subject, &box_corners),
+            scene.show.r#box,
+        )?,
+        spaces,
+        vertical_exaggeration: exaggeration,
+        world_bounds,
+        box_corners,
+        subject: Arc::new(subject),
+        strategy: strategy(scene)?,
+        step,
+        interpolation: interpolation(scene),
+        transfer,
+        beyond,
+        blending: scene.blending,
+        sampling_step: sampling_step(scene, edges, world_bounds)?,
+        early_termination: early_termination(scene)?,
+        property,
+        field,
+        drawn: Arc::new(drawn),
+        ghosts,
+        clip,
+        surfaces: Surfaces::of(scene),
+        connections,
+        named_faults: case.fault_faces.clone(),
+        chosen_faults: surfaces::chosen(&scene.show.faults, case)?,
+        lighting: lighting(scene, case, &box_corners)?,
+        libc: scene.libc,
+        srg: srg(scene, case.grid.dims())?,
+        show_box: scene.show.r#box,
+        show_legend: scene.show.legend,
+        facts,
+    })
+}
+
+/// The box in grid space of the cells that can be shown.
+fn active_bounds(case: &Case) -> Result<[DVec3; 2], SceneError> {
+    let grid = &case.grid;
+    let has_thickness = |c: &CellIndex| grid.has_thickness(grid.dims().ijk(*c));
+    match grid.bounds() {
+        None => Err(SceneError::Empty),
+        Some(_) if !grid.active_cells().iter().any(has_thickness) => Err(SceneError::Flat),
+        Some(bounds) => Ok(bounds),
+    }
+}
+
+fn lighting(scene: &Scene, case: &Case, corners: &[DVec3; 8]) -> Result<Lighting, SceneError> {
+    let cells = case.grid.dims().cells();
+    let lighting = lighting::resolve(&scene.lighting, box_edges(corners), cells)?;
+    Ok(match scene.mode {
+        Mode::Cells => lighting.on_solid_cells(),
+        Mode::Volume => lighting,
+    })
+}
+
+fn exaggeration(scene: &Scene, bounds: [DVec3; 2]) -> Result<f64, SceneError> {
+    match scene.vertical_exaggeration {
+        Some(v) => positive("vertical_exaggeration", v),
+        None => Ok(automatic_exaggeration(bounds)),
+    }
+}
+
+fn check_version(scene: &Scene) -> Result<(), SceneError> {
+    if scene.version != 1 {
+        let problem = format!("{} is not known; this is version 1", scene.version);
+        return Err(wrong("version", problem));
+    }
+    Ok(())
+}
+
+fn strategy(scene: &Scene) -> Result<StrategyKind, SceneError> {
+    let kind = StrategyKind::from_name(&scene.strategy);
+    kind.ok_or_else(|| wrong("strategy", StrategyKind::refusal(&scene.strategy)))
+}
+
+fn early_termination(scene: &Scene) -> Result<f64, SceneError> {
+    match (0.0..1.0).contains(&scene.early_termination) {
+        true => Ok(scene.early_termination),
+        false => Err(wrong("early_termination", "must be at least 0 and below 1")),
+    }
+}
+
+pub(super) fn checked_size(size: [u32; 2]) -> Result<[u32; 2], SceneError> {
+    match size.iter().all(|n| (1..=16384).contains(n)) {
+        true => Ok(size),
+        false => Err(wrong("size", "must be 1 to 16384 pixels each way")),
+    }
+}
+
+fn sampling_step(scene: &Scene, edges: DVec3, bounds: [DVec3; 2]) -> Result<f64, SceneError> {
+    let Some(step) = scene.sampling_step else {
+        return Ok(edges.min_element() / 8.0);
+    };
+    // Below this a ray would take more samples than f32 can count.
+    let least = bounds[0].distance(bounds[1]) * 1e-6;
+    if step.is_finite() && step >= least {
+        return Ok(step);
+    }
+    let problem = format!("{step} is too small; use at least {least:.3e}");
+    Err(wrong("sampling_step", problem))
+}
+
+fn srg(scene: &Scene, dims: Dims) -> Result<SrgSettings, SceneError> {
+    let settings = scene.srg;
+    let parts = [
+        ("srg.even", settings.even),
+        ("srg.thin", settings.thin),
+        ("srg.roulette", settings.roulette),
+    ];
+    if let Some((field, value)) = parts.iter().find(|p| !(0.0..1.0).contains(&p.1)) {
+        let problem = format!("{value} must be at least 0, which turns it off, and below 1");
+        return Err(wrong(field, problem));
+    }
+    if settings.budget_mb == Some(0) {
+        return Err(wrong("srg.budget_mb", "must be at least 1"));
+    }
+    if let Some(factor) = settings.factor {
+        let ghosts = scene.show.inactive == Inactive::Ghost;
+        let shape = Shape::of(dims, positive("srg.factor", factor)?, ghosts);
+        let budget = settings.budget_bytes(false);
+        if shape.bytes() > budget {
+            let problem = format!(
+                "{factor} needs {} MB of the {} in srg.budget_mb; change one of them",
+                shape.bytes().div_ceil(1 << 20),
+                budget >> 20
+            );
+            return Err(wrong("srg.factor", problem));
+        }
+    }
+    Ok(settings)
+}
+
+/// Mean edge lengths of the drawn cells along s, t and r, in world space.
+fn mean_world_edges(case: &Case, exaggeration: f64) -> DVec3 {
+    let grid = &case.grid;
+    let edges_and_one = |ijk: Ijk| {
+        if !grid.has_thickness(ijk) {
+            return DVec4::ZERO;
+        }
+        let mut hexahedron = grid.hexahedron(ijk);
+        for corner in &mut hexahedron.0 {
+            corner.z *= exaggeration;
+        }
+        hexahedron.mean_edges().extend(1.0)
+    };
+    let sum = grid.sum_active(edges_and_one);
+    (sum.truncate() / sum.w.max(1.0)).max(DVec3::splat(1e-6))
+}
+
+/// Which cells are drawn, and what follows from that.
+struct Cells {
+    field: Arc<CellField>,
+    drawn: Vec<bool>,
+    ghosts: Option<Arc<Ghosts>>,
+    connections: Arc<Vec<[DVec3; 2]>>,
+    facts: Option<Arc<Facts>>,
+    subject: Subject,
+    /// Of all cells that could be drawn.
+    box_corners: [DVec3; 8],
+}
+
+/// The cells of a scene, from the values of the property: true ones, and those in the scale of its colors.
+fn cells(
+    asked: &Asked<'_>,
+    [values, field]: [Arc<CellField>; 2],
+    spaces: &Spaces,
+    clip: &[ClipPlane],
+) -> Result<Cells, SceneError> {
+    let Asked { scene, case, .. } = *asked;
+    let (field, drawn) = filtered(case, field, scene)?;
+    let framed = match framing::still(&scene.filter, case) {
+        Some(still) => filter::drawn(case, &values, &still, &scene.step)?,
+        None => drawn.clone(),
+    };
+    let facts = scene.show.info.then(|| {
+        let seen = facts::uncut(&case.grid, &drawn, clip, spaces);
+        Arc::new(Facts::of(case, asked.property, &values, &seen, scene))
+    });
+    let connections = match scene.show.nnc {
+        true => connections(case, spaces, &drawn),
+        false => Vec::new(),
+    };
+    let (ghosts, field, drawn, framed) = match scene.show.inactive {
+        Inactive::Hidden => (None, field, drawn, framed),
+        Inactive::Ghost => {
+            let (ghosts, field, drawn) = Ghosts::new(&case.grid, &field, &drawn);
+            let framed = ghosts.with(&case.grid, &framed);
+            (Some(Arc::new(ghosts)), Arc::new(field), drawn, framed)
+        }
+    };
+    let grid = shown_grid(&case.grid, ghosts.as_ref());
+    let subject = Subject::of(grid, &framed, spaces).ok_or(SceneError::Empty)?;
+    let bounds = grid.bounds().ok_or(SceneError::Empty)?;
+    Ok(Cells {
+        box_corners: box_corners(spaces, bounds),
+        field,
+        drawn,
+        ghosts,
+        connections: Arc::new(connections),
+        facts,
+        subject,
+    })
+}
+
+/// Which cells are drawn, and their values: averages at vertices are of drawn cells, so that no color of a cell
+/// shows that is filtered away.
+fn filtered(
+    case: &Case,
+    field: Arc<CellField>,
+    scene: &Scene,
+) -> Result<(Arc<CellField>, Vec<bool>), SceneError> {
+    let drawn = filter::drawn(case, &field, &scene.filter, &scene.step)?;
+    let field = match scene.filter.limits() {
+        true => Arc::new(only(&field, &drawn)),
+        false => field,
+    };
+    Ok((field, drawn))
+}
+
+/// The values of the drawn cells; the others have none.
+fn only(field: &CellField, drawn: &[bool]) -> CellField {
+    let values = field.values().iter().zip(drawn);
+    CellField::new(
+        values
+            .map(|(v, d)| if *d { *v } else { f32::NAN })
+            .collect(),
+    )
+}
+
+/// Middles of the cells of non-neighbor connections in world space, where both are drawn.
+fn connections(case: &Case, spaces: &Spaces, drawn: &[bool]) -> Vec<[DVec3; 2]> {
+    let grid = &case.grid;
+    let middle = |ijk: Ijk| {
+        let active = grid.active_index(grid.dims().cell(ijk))?;
+        let center = grid.hexahedron(ijk).center();
+        drawn[active.0 as usize].then(|| spaces.world_from_grid.transform_point3(center))
+    };
+    let ends = |[a, b]: &[Ijk; 2]| Some([middle(*a)?, middle(*b)?]);
+    case.connections.iter().filter_map(ends).collect()
+}
+
+/// The camera that a scene asks for, given what it frames and the corners of the model's box.
+pub(super) fn camera(
+    spec: &CameraSpec,
+    size: [u32; 2],
+    (subject, corners): (&Subject, &[DVec3; 8]),
+    has_box: bool,
+) -> Result<Camera, SceneError> {
+    let aspect = f64::from(size[0]) / f64::from(size[1]);
+    let framing = |from, zoom| -> Result<Option<Camera>, SceneError> {
+        let zoom = positive("camera.zoom", zoom)?;
+        let camera = subject.camera(from, zoom, spec.projection(), aspect, has_box);
+        // The plane of a parallel one stays before the whole model, of which only a part may be framed.
+        Ok(camera.map(|c| c.before(corners)))
+    };
+    let camera = match spec {
+        CameraSpec::Explicit(c) => {
+            if !(c.fovy_degrees > 0.0 && c.fovy_degrees < 180.0) {
+                return Err(wrong("camera.fovy_degrees", "must be between 0 and 180"));
+            }
+            let [eye, target, up] = [c.eye, c.target, c.up].map(DVec3::from_array);
+            let camera = Camera::look_at(eye, target, up, c.fovy_degrees.to_radians());
+            camera.map(|camera| camera.with(c.projection, target))
+        }
+        CameraSpec::Framing(c) => {
+            let from = Direction {
+                azimuth: c.azimuth_degrees,
+                elevation: c.elevation_degrees,
+            };
+            framing(Some(from), c.zoom)?
+        }
+        CameraSpec::Automatic(c) => framing(None, c.zoom)?,
+    };
+    camera
+        .filter(|c| c.eye.is_finite() && c.forward.is_finite() && c.right.is_finite())
+        .ok_or_else(|| {
+            wrong(
+                "camera",
+                "eye, target and up must be three finite points that span a view",
+            )
+        })
+}
