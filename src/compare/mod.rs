@@ -22,8 +22,9 @@ use crate::render::{Frame, Renderer};
 use crate::scene::StrategyKind;
 use crate::view::{NamedView, View};
 
-pub use report::{Report, ReportError, Setting};
+pub use report::{Report, ReportError};
 pub use row::Row;
+pub use tables::Setting;
 pub use tables::summary;
 
 /// What the pictures are measured against.

@@ -5,28 +5,13 @@ use std::time::Duration;
 use std::{fs, io};
 
 use super::sheet::Sheet;
+use super::tables::Setting;
 use super::{Compared, Outcome, Plan, Row, plots, tables};
-use crate::case::Case;
 use crate::image::Rgb8;
 use crate::picture::{PictureError, SheetError, difference_picture, write_png};
 
-/// Files that stand for all views.
-pub(super) const SHEET: &str = "sheet.png";
 const ROWS: &str = "compare.json";
 const PAGE: &str = "compare.md";
-
-/// What a report tells of its pictures beside their figures.
-#[derive(Clone)]
-pub struct Setting<'a> {
-    /// The case.
-    pub case: &'a Case,
-    /// What is compared.
-    pub plan: &'a Plan,
-    /// The adapter in words.
-    pub adapter: String,
-    /// CIEDE2000 difference at which the colors of difference maps end.
-    pub difference_scale: f64,
-}
 
 /// A folder in which a comparison is written, view by view.
 pub struct Report<'a> {
@@ -114,7 +99,7 @@ impl<'a> Report<'a> {
     /// When there are no views or a file cannot be written.
     pub fn finish(self) -> Result<Vec<Row>, ReportError> {
         let Setting { case, plan, .. } = self.setting;
-        self.write(SHEET, &self.sheet.picture()?)?;
+        self.write(tables::SHEET, &self.sheet.picture()?)?;
         for (file, picture) in plots::all(case, plan, &self.rows) {
             self.write(file, &picture)?;
         }

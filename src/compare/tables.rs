@@ -3,13 +3,28 @@
 use std::time::Duration;
 
 use super::plots::FIGURES;
-use super::report::{SHEET, Setting};
 use super::row::ms;
 use super::{Plan, Reference, Row};
 use crate::case::Case;
 use crate::compare::markdown::{self, row, table};
 use crate::scene::Interpolation;
 use crate::view::View;
+
+/// What a report tells of its pictures beside their figures.
+#[derive(Clone)]
+pub struct Setting<'a> {
+    /// The case.
+    pub case: &'a Case,
+    /// What is compared.
+    pub plan: &'a Plan,
+    /// The adapter in words.
+    pub adapter: String,
+    /// CIEDE2000 difference at which the colors of difference maps end.
+    pub difference_scale: f64,
+}
+
+/// The file with all images of all views.
+pub(super) const SHEET: &str = "sheet.png";
 
 /// What the rows of a strategy come to.
 struct Digest {

@@ -2,8 +2,34 @@
 
 use rayon::prelude::*;
 
-use super::grid::{DepthList, list};
 use super::ids::Dims;
+
+/// A list of depths in the pool: `nk + 1` where layers touch, `2 nk` where there are gaps.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct DepthList(u32);
+
+impl DepthList {
+    const GAPPED: u32 = 1 << 31;
+
+    fn new(offset: usize, gapped: bool) -> Self {
+        Self(offset as u32 | if gapped { Self::GAPPED } else { 0 })
+    }
+
+    /// First entry in the pool.
+    pub fn offset(self) -> usize {
+        (self.0 & !Self::GAPPED) as usize
+    }
+
+    /// True when top and bottom of every layer are listed apart.
+    pub fn gapped(self) -> bool {
+        self.0 & Self::GAPPED != 0
+    }
+
+    /// Pool position of the top (`dk` 0) or bottom (`dk` 1) of layer `k`.
+    pub fn entry(self, k: usize, dk: usize) -> usize {
+        self.offset() + if self.gapped() { 2 * k + dk } else { k + dk }
+    }
+}
 
 /// Depths of one row of columns: `[i][corner][2 nk]`, top and bottom of each layer in turn.
 struct Row {
@@ -84,11 +110,11 @@ pub(super) fn build<Z: Copy + Into<f64> + Sync>(
         })
         .collect();
     let mut depths = Vec::with_capacity(bands.iter().map(|b| b.depths.len()).sum());
-    let mut lists = vec![list(0, false); 4 * dims.columns()];
+    let mut lists = vec![DepthList::new(0, false); 4 * dims.columns()];
     for band in bands {
         let base = depths.len();
         for (at, offset, gapped) in band.lists {
-            lists[at] = list(base + offset, gapped);
+            lists[at] = DepthList::new(base + offset, gapped);
         }
         depths.extend_from_slice(&band.depths);
     }

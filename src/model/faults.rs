@@ -5,7 +5,7 @@ use std::ops::RangeInclusive;
 
 use super::grid::Grid;
 use super::ids::Ijk;
-use super::topology::Face;
+use super::topology::{Behind, Face};
 
 /// Layers of a column, and the number of the fault that their faces lie on.
 type Layers = (RangeInclusive<usize>, usize);
@@ -83,6 +83,21 @@ fn key(i: usize, j: usize, face: Face) -> Option<(usize, usize, usize)> {
         Face::JMinus => (i, j.checked_sub(1)?, 1),
         Face::KMinus | Face::KPlus => return None,
     })
+}
+
+impl Grid {
+    /// The lateral faces of the cells that `drawn` (by active index) names behind which an active cell
+    /// of equal k is displaced, and those that lie on a named fault, whatever its throw. A face between
+    /// two drawn cells is there twice, once for each.
+    pub fn fault_faces_of(&self, drawn: &[bool], named: &FaultFaces) -> Vec<(Ijk, Face)> {
+        let is_lateral = |face: Face| !matches!(face, Face::KMinus | Face::KPlus);
+        let has_name =
+            |ijk: Ijk, face: Face| !named.is_empty() && named.fault_of(ijk, face).is_some();
+        self.faces_where(drawn, |ijk, face| {
+            let is_displaced = matches!(self.behind(ijk, face), Behind::Displaced(_));
+            is_lateral(face) && (is_displaced || has_name(ijk, face))
+        })
+    }
 }
 
 #[cfg(test)]

@@ -21,6 +21,7 @@ use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
 use super::corner_point::Hexahedron;
+use super::depth_lists::DepthList;
 use super::ids::{ActiveIndex, CellIndex, Dims, Ijk};
 use super::spaces::MapAxes;
 
@@ -82,33 +83,6 @@ impl Pillar {
     /// The point of the line at `depth`, extrapolated beyond the ends.
     pub fn at(&self, depth: f64) -> DVec3 {
         (self.top.truncate() + self.slope() * (depth - self.top.z)).extend(depth)
-    }
-}
-
-/// A list of depths in the pool: `nk + 1` where layers touch, `2 nk` where there are gaps.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct DepthList(u32);
-
-impl DepthList {
-    const GAPPED: u32 = 1 << 31;
-
-    fn new(offset: usize, gapped: bool) -> Self {
-        Self(offset as u32 | if gapped { Self::GAPPED } else { 0 })
-    }
-
-    /// First entry in the pool.
-    pub fn offset(self) -> usize {
-        (self.0 & !Self::GAPPED) as usize
-    }
-
-    /// True when top and bottom of every layer are listed apart.
-    pub fn gapped(self) -> bool {
-        self.0 & Self::GAPPED != 0
-    }
-
-    /// Pool position of the top (`dk` 0) or bottom (`dk` 1) of layer `k`.
-    pub fn entry(self, k: usize, dk: usize) -> usize {
-        self.offset() + if self.gapped() { 2 * k + dk } else { k + dk }
     }
 }
 
@@ -367,8 +341,4 @@ fn finite<T: Copy + Into<f64> + Sync>(
     bad.map_or(Ok(()), |index| {
         Err(ModelError::NotFinite { keyword, index })
     })
-}
-
-pub(super) fn list(offset: usize, gapped: bool) -> DepthList {
-    DepthList::new(offset, gapped)
 }

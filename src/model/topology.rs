@@ -2,7 +2,6 @@
 
 use rayon::prelude::*;
 
-use super::faults::FaultFaces;
 use super::grid::Grid;
 use super::ids::Ijk;
 
@@ -120,20 +119,7 @@ impl Grid {
         self.faces_where(drawn, is_open)
     }
 
-    /// The lateral faces of the cells that `drawn` (by active index) names behind which an active cell
-    /// of equal k is displaced, and those that lie on a named fault, whatever its throw. A face between
-    /// two drawn cells is there twice, once for each.
-    pub fn fault_faces_of(&self, drawn: &[bool], named: &FaultFaces) -> Vec<(Ijk, Face)> {
-        let is_lateral = |face: Face| !matches!(face, Face::KMinus | Face::KPlus);
-        let has_name =
-            |ijk: Ijk, face: Face| !named.is_empty() && named.fault_of(ijk, face).is_some();
-        self.faces_where(drawn, |ijk, face| {
-            let is_displaced = matches!(self.behind(ijk, face), Behind::Displaced(_));
-            is_lateral(face) && (is_displaced || has_name(ijk, face))
-        })
-    }
-
-    fn faces_where(
+    pub(super) fn faces_where(
         &self,
         drawn: &[bool],
         holds: impl Fn(Ijk, Face) -> bool + Sync,

@@ -10,6 +10,7 @@ use super::legend::Key;
 use super::marks::mark_cells;
 use super::orientation::{Area, Orientation, Paper};
 use super::pen::Pen;
+use super::units::short_unit;
 use crate::case::{Case, Step};
 use crate::image::{Image, Rgb8, srgb_8bit};
 use crate::scene::Scene;
@@ -88,15 +89,6 @@ pub fn when(case: &Case, view: &View) -> String {
         (false, false) => step.date.clone(),
         (true, true) => format!("report {}", step.report),
         (true, false) => format!("step {}", view.step),
-    }
-}
-
-/// A length unit of a grid file as it is written behind numbers.
-pub fn short_unit(name: &str) -> String {
-    match name {
-        "METRES" => "m".into(),
-        "FEET" => "ft".into(),
-        other => other.to_lowercase(),
     }
 }
 

@@ -19,10 +19,11 @@ mod pen;
 mod plot;
 mod sheet;
 mod ticks;
+mod units;
 
 #[cfg(test)]
 pub(crate) use annotate::tests::view as test_view;
-pub use annotate::{Annotations, Shot, finished, short_unit, when};
+pub use annotate::{Annotations, Shot, finished, when};
 pub use axes::CONNECTION;
 pub use difference::{difference_colors, difference_picture};
 pub use files::{Format, PictureError, write_exr, write_png};
@@ -33,3 +34,4 @@ pub use marks::{cell_edges, mark_cells, mark_color};
 pub use orientation::{Area, Arrow, Orientation, Paper, Text, on_screen};
 pub use plot::{Plot, Series};
 pub use sheet::{SheetError, Tile, contact_sheet};
+pub use units::short_unit;

@@ -6,12 +6,9 @@
 //! surfaces where they meet the triangles of faces, found by a tree of boxes too.
 
 mod cell;
-mod cone;
 mod integrate;
-mod lighting;
 mod locate;
 mod render;
-mod surfaces;
 #[cfg(test)]
 mod tests;
 mod tree;

@@ -170,7 +170,7 @@ pub struct PathSheet {
 /// What a path means, looked up when it changes.
 struct Found {
     path: String,
-    wanted: Wanted,
+    wanted: RenderRequest,
     offered: Vec<PathBuf>,
 }
 
@@ -287,9 +287,9 @@ impl PathSheet {
 }
 
 /// Files that can be chosen by a path, and what to say of it.
-type Wanted = (Option<Vec<PathBuf>>, String);
+type RenderRequest = (Option<Vec<PathBuf>>, String);
 
-fn of_case(path: &Path) -> Wanted {
+fn of_case(path: &Path) -> RenderRequest {
     match cases::meaning(path) {
         Meaning::Case(case) => {
             let name = case.file_name().unwrap_or_default().to_string_lossy();
@@ -304,14 +304,14 @@ fn of_case(path: &Path) -> Wanted {
     }
 }
 
-fn of_old(path: &Path) -> Wanted {
+fn of_old(path: &Path) -> RenderRequest {
     match path.is_file() {
         true => (Some(vec![path.to_owned()]), String::new()),
         false => (None, "There is no such file.".into()),
     }
 }
 
-fn of_new(path: &Path) -> Wanted {
+fn of_new(path: &Path) -> RenderRequest {
     let folder = path.parent().filter(|f| !f.as_os_str().is_empty());
     if path.is_dir() {
         (None, "This is a folder; add a file name.".into())

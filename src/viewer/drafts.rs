@@ -6,7 +6,7 @@ use std::sync::{Arc, Weak};
 use eframe::egui::{ColorImage, Context, TextureHandle, TextureOptions};
 
 use super::budget::{COARSEST, DraftBudget, DraftSize, Spent};
-use super::worker::{Picture, Wanted};
+use super::job::{Picture, RenderRequest};
 use crate::case::Case;
 use crate::image::Rgb8;
 use crate::scene::{LightingSpec, Scene, StrategyKind};
@@ -23,12 +23,12 @@ const FIRST_LIGHT: [u32; 3] = [24, 24, 24];
 #[derive(Default)]
 pub struct Side {
     /// Of what the draft, and the final picture, are shown.
-    drafted: Option<Wanted>,
-    finished: Option<Wanted>,
+    drafted: Option<RenderRequest>,
+    finished: Option<RenderRequest>,
     /// The picture that is shown.
     pub shown: Option<Shown>,
     /// What cannot be shown.
-    refused: Option<Wanted>,
+    refused: Option<RenderRequest>,
     /// Costs of the pictures of this case.
     budget: DraftBudget,
     budget_of: Weak<Case>,
@@ -57,8 +57,8 @@ pub enum Due {
 
 impl Side {
     /// The picture that is due, where a draft may take `goal_ms`.
-    pub fn due(&self, wanted: &Wanted, goal_ms: f64, is_software: bool) -> Due {
-        let is = |known: &Option<Wanted>| known.as_ref() == Some(wanted);
+    pub fn due(&self, wanted: &RenderRequest, goal_ms: f64, is_software: bool) -> Due {
+        let is = |known: &Option<RenderRequest>| known.as_ref() == Some(wanted);
         if is(&self.finished) || is(&self.refused) {
             return Due::Nothing;
         }
@@ -80,7 +80,7 @@ impl Side {
     }
 
     /// Makes a draft of what is wanted.
-    pub fn make_draft(&self, wanted: &mut Wanted, draft: DraftSize, is_software: bool) {
+    pub fn make_draft(&self, wanted: &mut RenderRequest, draft: DraftSize, is_software: bool) {
         wanted.scene.strategy = self.draft_strategy(wanted, is_software).name().into();
         let scene = &mut wanted.scene;
         let smaller = |n: u32| ((f64::from(n) * draft.part).round() as u32).max(16);
@@ -105,7 +105,7 @@ impl Side {
 
     /// PLTS for a draft where LIBC would draw so many faces that no draft is quick: the picture is the same
     /// but for what samples leave out.
-    fn draft_strategy(&self, wanted: &Wanted, is_software: bool) -> StrategyKind {
+    fn draft_strategy(&self, wanted: &RenderRequest, is_software: bool) -> StrategyKind {
         let asked = strategy_of(&wanted.scene);
         let [width, height] = wanted.scene.size.map(f64::from);
         let fewest = COARSEST * COARSEST * width * height;
@@ -121,7 +121,7 @@ impl Side {
     }
 
     /// Takes a picture in.
-    pub fn arrive(&mut self, ctx: &Context, picture: Picture, of: Wanted) {
+    pub fn arrive(&mut self, ctx: &Context, picture: Picture, of: RenderRequest) {
         if !std::ptr::eq(self.budget_of.as_ptr(), Arc::as_ptr(&of.case)) {
             self.budget = DraftBudget::default();
             self.budget_of = Arc::downgrade(&of.case);
@@ -139,13 +139,13 @@ impl Side {
     }
 
     /// Does not ask again for what cannot be shown.
-    pub fn refuse(&mut self, wanted: Wanted) {
+    pub fn refuse(&mut self, wanted: RenderRequest) {
         self.refused = Some(wanted);
     }
 
     /// Keeps nothing of a case.
     pub fn forget(&mut self, case: &Arc<Case>) {
-        let is_of = |wanted: &Wanted| Arc::ptr_eq(&wanted.case, case);
+        let is_of = |wanted: &RenderRequest| Arc::ptr_eq(&wanted.case, case);
         for known in [&mut self.drafted, &mut self.finished, &mut self.refused] {
             known.take_if(|w| is_of(w));
         }
@@ -153,7 +153,7 @@ impl Side {
     }
 
     /// True where the final picture of this is shown.
-    pub fn is_finished(&self, wanted: &Wanted) -> bool {
+    pub fn is_finished(&self, wanted: &RenderRequest) -> bool {
         self.finished.as_ref() == Some(wanted)
     }
 }

@@ -2,7 +2,22 @@
 
 use eframe::egui::{self, Context, Key, KeyboardShortcut, Modifiers};
 
-use super::looking::Look;
+/// A change of the camera.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum CameraMove {
+    /// One of the standard views.
+    From(usize),
+    /// The model, from the same direction.
+    FrameAll,
+    /// The cells that are selected, or else those that are drawn, from the same direction.
+    FrameSelection,
+    /// Perspective or parallel.
+    Projection,
+    /// Turns to the right and up by steps, around the middle of the picture.
+    Turn(i8, i8),
+    /// Closer, or away.
+    Zoom(bool),
+}
 
 /// What a shortcut does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -32,7 +47,7 @@ pub enum Command {
     /// To the first step, or the last.
     End(bool),
     /// Changes the camera.
-    Look(Look),
+    Camera(CameraMove),
     /// The next preset of the mouse's buttons.
     Mouse,
     /// To the next slice along the axis in use, or the one before.
@@ -80,11 +95,11 @@ const SHIFT: Modifiers = Modifiers::SHIFT;
 const NONE: Modifiers = Modifiers::NONE;
 
 const fn turn(right: i8, up: i8) -> Command {
-    Command::Look(Look::Turn(right, up))
+    Command::Camera(CameraMove::Turn(right, up))
 }
 
 const fn from(view: usize) -> Command {
-    Command::Look(Look::From(view))
+    Command::Camera(CameraMove::From(view))
 }
 
 /// Every shortcut, with what it says in the sheet.
@@ -142,27 +157,37 @@ pub const SHORTCUTS: [(Modifiers, Key, Command, &str); 59] = [
     (
         NONE,
         Key::Num5,
-        Command::Look(Look::Projection),
+        Command::Camera(CameraMove::Projection),
         "Perspective or parallel",
     ),
-    (NONE, Key::F, Command::Look(Look::FrameAll), "Frame all"),
+    (
+        NONE,
+        Key::F,
+        Command::Camera(CameraMove::FrameAll),
+        "Frame all",
+    ),
     (
         NONE,
         Key::Z,
-        Command::Look(Look::FrameSelection),
+        Command::Camera(CameraMove::FrameSelection),
         "Frame the selection, or all drawn cells",
     ),
-    (NONE, Key::Plus, Command::Look(Look::Zoom(true)), "Zoom in"),
+    (
+        NONE,
+        Key::Plus,
+        Command::Camera(CameraMove::Zoom(true)),
+        "Zoom in",
+    ),
     (
         NONE,
         Key::Equals,
-        Command::Look(Look::Zoom(true)),
+        Command::Camera(CameraMove::Zoom(true)),
         "Zoom in",
     ),
     (
         NONE,
         Key::Minus,
-        Command::Look(Look::Zoom(false)),
+        Command::Camera(CameraMove::Zoom(false)),
         "Zoom out",
     ),
     (CTRL, Key::M, Command::Mouse, "Next mouse preset"),

@@ -4,25 +4,19 @@
 //! their own.
 
 mod action;
-mod asking;
-mod bar;
 mod budget;
 mod cases;
 mod command;
-mod commands;
 mod dialogs;
-mod docks;
 mod document;
 mod drafts;
 mod export;
 mod handles;
 mod history;
-mod keeping;
+mod job;
 mod keys;
 mod link;
-mod listening;
 mod loading;
-mod looking;
 mod marks;
 mod mouse;
 mod orbit;
@@ -32,14 +26,10 @@ mod panels;
 mod pictures;
 mod reader;
 mod settings;
-mod sheets;
-mod sides;
 mod slices;
 mod spread;
 mod state;
-mod still;
 mod studio;
-mod subject;
 mod turning;
 mod viewport;
 mod watch;
@@ -51,6 +41,7 @@ use std::path::PathBuf;
 
 pub use action::{Action, Beside};
 pub use document::Document;
+pub use job::{Difference, Picture};
 pub use pictures::DraftCount;
 pub use reader::{Curve, Curves, Table};
 pub use settings::Settings;
@@ -59,7 +50,6 @@ pub use spread::{Counts, Spread};
 pub use state::{Comparison, CurvePlots, Layout, Pace, Setup, State};
 pub use turning::{Turned, turn};
 pub use window::Window;
-pub use worker::{Difference, Picture};
 
 /// Opens the window on cases and returns when it is closed. Where it `watches`, cases are read again when
 /// their files change.

@@ -3,7 +3,7 @@
 use eframe::egui::{self, Align2, Color32, FontId, Painter, Pos2, Rect, Stroke, vec2};
 use glam::DVec2;
 
-use super::worker::Picture;
+use super::job::Picture;
 use crate::picture::{Annotations, Arrow, CONNECTION, Orientation, Paper, Text, on_screen};
 use crate::view::View;
 

@@ -8,7 +8,8 @@ use glam::DVec2;
 
 use super::budget::{DraftSize, PLAY_MS, TURN_MS};
 use super::drafts::{Due, Shown, Side, texture};
-use super::worker::{Answer, Difference, Job, Wanted, Why, Worker};
+use super::job::{Answer, Difference, Job, PickPurpose, RenderRequest};
+use super::worker::Worker;
 use crate::case::Case;
 use crate::picking::Pick;
 
@@ -23,7 +24,7 @@ pub struct Pictures {
     difference: Option<ShownDifference>,
     /// When what is wanted changed last, and what it was.
     changed: Instant,
-    wanted: Vec<Wanted>,
+    wanted: Vec<RenderRequest>,
     /// Drafts so far.
     pub drafts: DraftCount,
     /// Part of the picture on its way that is done.
@@ -53,7 +54,7 @@ pub struct ShownDifference {
 struct Flight {
     side: usize,
     /// In full size.
-    wanted: Wanted,
+    wanted: RenderRequest,
     is_draft: bool,
     /// It takes longer than a draft may.
     is_slow: bool,
@@ -65,7 +66,7 @@ struct Flight {
 /// What happened that concerns more than the pictures.
 pub enum Event {
     /// What is seen at a place that was asked for.
-    Picked(Why, Box<Pick>),
+    Picked(PickPurpose, Box<Pick>),
     /// A picture came.
     Came,
     /// Why one did not.
@@ -119,8 +120,8 @@ impl Pictures {
 
     /// Asks what is seen at a place. For a click a final picture on its way is left, to be begun again after
     /// it; a pointer that rests waits for the picture.
-    pub fn pick(&mut self, side: usize, wanted: Wanted, at: DVec2, why: Why) {
-        let is_slow = |f: &&mut Flight| f.is_slow && why != Why::Hover;
+    pub fn pick(&mut self, side: usize, wanted: RenderRequest, at: DVec2, why: PickPurpose) {
+        let is_slow = |f: &&mut Flight| f.is_slow && why != PickPurpose::Hover;
         if let Some(flight) = self.flight.as_mut().filter(is_slow) {
             flight.is_cancelled = true;
             self.worker.cancel();
@@ -195,7 +196,13 @@ impl Pictures {
 
     /// Asks for the next picture of what is wanted by each side, where one is due. While the user is busy
     /// only drafts are made; while time plays they may take longer.
-    pub fn schedule(&mut self, ctx: &Context, wanted: Vec<Wanted>, is_busy: bool, plays: bool) {
+    pub fn schedule(
+        &mut self,
+        ctx: &Context,
+        wanted: Vec<RenderRequest>,
+        is_busy: bool,
+        plays: bool,
+    ) {
         if self.wanted != wanted {
             self.changed = Instant::now();
             self.wanted = wanted;
@@ -260,7 +267,7 @@ impl Pictures {
 
     /// Lets go of all that is kept of a case, here and on the device.
     pub fn forget(&mut self, case: &Arc<Case>) {
-        let is_of = |wanted: &Wanted| Arc::ptr_eq(&wanted.case, case);
+        let is_of = |wanted: &RenderRequest| Arc::ptr_eq(&wanted.case, case);
         if let Some(flight) = self.flight.as_mut().filter(|f| is_of(&f.wanted)) {
             flight.is_forgotten = true;
             flight.is_cancelled = true;

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use glam::DVec2;
 
-use super::worker::{Answer, Difference, Job, Picture, Wanted};
+use super::job::{Answer, Difference, Job, Picture, RenderRequest};
 use crate::case::Case;
 use crate::image::Rgb8;
 use crate::image::metrics::{Comparison, ciede2000_map};
@@ -44,7 +44,7 @@ pub struct Studio {
 struct Side {
     /// Cases that share a grid share what is on the device.
     renderer: Option<(Arc<Grid>, Renderer)>,
-    resolved: VecDeque<(Wanted, Arc<View>)>,
+    resolved: VecDeque<(RenderRequest, Arc<View>)>,
     picker: Picker,
 }
 
@@ -112,7 +112,7 @@ impl Studio {
     fn make(
         &mut self,
         side: usize,
-        wanted: &Wanted,
+        wanted: &RenderRequest,
         is_draft: bool,
         cancel: &AtomicBool,
         say: Say<'_>,
@@ -182,7 +182,7 @@ impl Studio {
     fn pick(
         &mut self,
         side: usize,
-        wanted: &Wanted,
+        wanted: &RenderRequest,
         at: DVec2,
         say: Say<'_>,
     ) -> Result<Pick, Failure> {
@@ -217,12 +217,12 @@ impl Side {
 
     /// The scene resolved for the device; where only camera and size differ from a known one, without reading
     /// values.
-    fn view(&mut self, wanted: &Wanted, is_software: bool) -> Result<Arc<View>, Failure> {
+    fn view(&mut self, wanted: &RenderRequest, is_software: bool) -> Result<Arc<View>, Failure> {
         let of_scene = |e: view::SceneError| Failure {
             sentence: e.to_string(),
             is_device: false,
         };
-        let without_camera = Wanted {
+        let without_camera = RenderRequest {
             case: wanted.case.clone(),
             scene: Scene {
                 camera: CameraSpec::default(),
@@ -289,7 +289,7 @@ mod tests {
         let sample = Path::new(env!("CARGO_MANIFEST_DIR")).join("samples/scissor/SCISSOR.EGRID");
         let case = Arc::new(crate::case::load::open(&sample).unwrap());
         let mut picture = || {
-            let wanted = Wanted {
+            let wanted = RenderRequest {
                 case: case.clone(),
                 scene: Scene {
                     size: [40, 30],

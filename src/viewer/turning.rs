@@ -6,8 +6,8 @@ use std::time::{Duration, Instant};
 
 use eframe::egui::Context;
 
+use super::job::RenderRequest;
 use super::pictures::{Event, Pictures};
-use super::worker::Wanted;
 use crate::case::Case;
 use crate::scene::{CameraSpec, FramingCamera, Projection, Scene};
 
@@ -51,7 +51,7 @@ pub fn turn(case: &Arc<Case>, scene: &Scene, moves: usize) -> Result<Vec<Turned>
             zoom: 1.0,
             projection: Projection::Perspective,
         });
-        let wanted = Wanted {
+        let wanted = RenderRequest {
             case: case.clone(),
             scene: Scene {
                 camera: camera.clone(),

@@ -4,8 +4,8 @@ use glam::{DVec2, DVec3};
 
 use super::edges::{self, Edge};
 use super::{Area, Arrangement, overlap};
-use crate::picture::annotate::short_unit;
 use crate::picture::ticks::plain_labels;
+use crate::picture::units::short_unit;
 use crate::view::View;
 use crate::view::camera::middle;
 

@@ -6,7 +6,8 @@
 
 use glam::DVec3;
 
-use super::device::{Gpu, GpuError};
+use super::device::Gpu;
+use super::error::GpuError;
 use super::layout::{BlurInfo, MAX_CLIP_PLANES};
 use super::pipeline::{Pipeline, flag};
 use super::slabs::Slabs;

@@ -2,7 +2,8 @@
 
 use rayon::prelude::*;
 
-use super::device::{Gpu, GpuError};
+use super::device::Gpu;
+use super::error::GpuError;
 use super::grid_upload::GpuGrid;
 use super::pipeline::RasterPipeline;
 use super::round::{Place, Round};

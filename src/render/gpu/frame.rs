@@ -5,17 +5,19 @@ use std::time::{Duration, Instant};
 use bytemuck::Zeroable;
 use glam::DVec3;
 
-use super::device::{Gpu, GpuError};
+use super::device::Gpu;
+use super::error::GpuError;
 use super::grid_upload::GpuGrid;
-use super::layout::{self, Frame, MAX_CLIP_PLANES, Tile};
+use super::layout::{self, Frame, Tile};
 use super::round::Round;
 use super::surfaces::SurfacePainter;
 use super::target;
 use super::tiles::{self, Pace, Rect};
+use super::uniforms::{clip_planes, ghost};
 use crate::image::Image;
 use crate::render::gpu::strategy::RenderStrategy;
+use crate::view::View;
 use crate::view::surfaces::HEADLIGHT_ASIDE;
-use crate::view::{View, ghosts};
 
 /// What a frame cost.
 #[derive(Debug, Clone, Copy, Default)]
@@ -475,29 +477,9 @@ fn frame_uniform(grid: &GpuGrid, view: &View) -> Frame {
     }
 }
 
-/// Color, as it is blended, and extinction of inactive cells.
-pub(super) fn ghost(view: &View) -> [f32; 4] {
-    let [r, g, b] = view.blending.of_srgb(ghosts::COLOR).map(|v| v as f32);
-    [r, g, b, view.transfer.extinction_of(ghosts::OPACITY) as f32]
-}
-
 /// Distance of the farthest corner of the model's box.
 fn farthest(view: &View) -> f64 {
     let distances = view.box_corners.iter();
     let distances = distances.map(|c| view.camera.to_viewer(*c).1);
     distances.fold(0.0, f64::max)
-}
-
-/// Planes from world space to grid space relative to the grid's origin; f64 until nothing cancels.
-pub(super) fn clip_planes(grid: &GpuGrid, view: &View) -> [[f32; 4]; MAX_CLIP_PLANES] {
-    let mut planes = [[0.0; 4]; MAX_CLIP_PLANES];
-    for (plane, clip) in planes.iter_mut().zip(&view.clip) {
-        let to_world = &view.spaces.world_from_grid;
-        let normal = to_world.matrix3.transpose() * clip.normal;
-        let height = clip
-            .normal
-            .dot(to_world.transform_point3(grid.origin) - clip.point);
-        *plane = normal.extend(height).as_vec4().to_array();
-    }
-    planes
 }

@@ -5,7 +5,8 @@ use rayon::prelude::*;
 
 use super::accel::AccelGrid;
 use super::columns::{self, ColumnShape};
-use super::device::{Gpu, GpuError};
+use super::device::Gpu;
+use super::error::GpuError;
 use super::layout::{COLUMN_FLAG, GridInfo, LIST_GAPPED, LIST_OFFSET};
 use super::pipeline::flag;
 use crate::model::{CellField, Grid, Ijk, VertexField};

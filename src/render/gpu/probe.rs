@@ -2,7 +2,8 @@
 
 use glam::DVec3;
 
-use super::device::{Gpu, GpuError};
+use super::device::Gpu;
+use super::error::GpuError;
 use super::grid_upload::{Constants, GpuGrid};
 use super::layout::{self, Found, NOT_FOUND};
 use super::pipeline::Pipeline;

@@ -1,6 +1,7 @@
 //! Pyramids over a resampled volume: averages, and how rays may pass its bricks.
 
-use super::device::{Gpu, GpuError};
+use super::device::Gpu;
+use super::error::GpuError;
 use super::layout::{BRICK, BricksInfo, LUT_SIZE, Slab};
 use super::pipeline::Pipeline;
 use super::transfer_tables::extinctions;

@@ -1,6 +1,7 @@
 //! Fills volumes with a field by point location.
 
-use super::device::{Gpu, GpuError};
+use super::device::Gpu;
+use super::error::GpuError;
 use super::grid_upload::{Constants, GpuGrid};
 use super::layout::{self, VolumeInfo};
 use super::pipeline::{Pipeline, flag};

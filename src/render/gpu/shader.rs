@@ -1,6 +1,6 @@
 //! Shader sources: `#import name` by stem from `shaders/shared/`, each once.
 
-use super::device::GpuError;
+use super::error::GpuError;
 
 macro_rules! sources {
     ($($name:literal => $path:literal),* $(,)?) => {

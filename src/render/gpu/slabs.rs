@@ -1,6 +1,7 @@
 //! Work on volumes in parts, each short enough for a slow adapter.
 
-use super::device::{Gpu, GpuError};
+use super::device::Gpu;
+use super::error::GpuError;
 use super::layout::Slab;
 use super::tiles::Pace;
 

@@ -8,7 +8,8 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use super::device::{Gpu, GpuError};
+use super::device::Gpu;
+use super::error::GpuError;
 use super::faces::{self, FORMAT, FaceList, FaceTarget};
 use super::grid_upload::GpuGrid;
 use super::illumination::Shading;

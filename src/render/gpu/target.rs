@@ -1,6 +1,7 @@
 //! The picture on the device, and its way back.
 
-use super::device::{Gpu, GpuError};
+use super::device::Gpu;
+use super::error::GpuError;
 
 /// A texture of premultiplied RGBA that shaders write.
 pub fn create(gpu: &Gpu, size: [u32; 2]) -> wgpu::Texture {

@@ -1,6 +1,7 @@
 //! The transfer function on the device.
 
-use super::device::{Gpu, GpuError};
+use super::device::Gpu;
+use super::error::GpuError;
 use super::layout::LUT_SIZE;
 use crate::image::Blending;
 use crate::transfer::TransferFunction;

@@ -1,6 +1,7 @@
 //! Volumes on the device over the box of the active cells, made in slabs.
 
-use super::device::{Gpu, GpuError};
+use super::device::Gpu;
+use super::error::GpuError;
 use super::layout::{RUN, Slab, VolumeInfo};
 use super::slabs::Slabs;
 use crate::view::voxels::{Shape, Voxel};

@@ -8,7 +8,7 @@ use egui_plot::{GridInput, GridMark, Line, Plot, PlotResponse, Points, VLine};
 use super::About;
 use super::controls::significant;
 use super::dates::Calendar;
-use super::selection::named;
+use super::values::named;
 use crate::case::Case;
 use crate::viewer::action::Action;
 use crate::viewer::marks;

@@ -28,11 +28,11 @@ use std::sync::Arc;
 use eframe::egui::Ui;
 
 use super::action::Action;
+use super::job::Picture;
 use super::pictures::ShownDifference;
 use super::reader::{Curves, Table};
 use super::spread::Spread;
 use super::state::State;
-use super::worker::Picture;
 use crate::case::{Case, Property};
 use crate::picking::Pick;
 use crate::scene::Scene;

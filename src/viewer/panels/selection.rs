@@ -4,6 +4,7 @@ use eframe::egui::{self, Ui};
 
 use super::cells::clear;
 use super::controls::significant;
+use super::values::named;
 use super::{About, table, values};
 use crate::case::Case;
 use crate::model::Ijk;
@@ -44,11 +45,6 @@ pub fn show(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
         values::show(ui, table, about.property());
         buttons(ui, about, table, actions);
     }
-}
-
-/// A cell by its numbers.
-pub fn named([i, j, k]: [usize; 3]) -> String {
-    format!("I {i}  J {j}  K {k}")
 }
 
 fn place(hit: &Hit) -> String {

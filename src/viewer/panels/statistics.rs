@@ -10,7 +10,7 @@ use super::controls::significant;
 use crate::model::{CellField, Summary};
 use crate::view::View;
 use crate::viewer::action::Action;
-use crate::viewer::worker::Picture;
+use crate::viewer::job::Picture;
 
 pub fn show(ui: &mut Ui, about: &About<'_>, _actions: &mut Vec<Action>) {
     let Some(picture) = about.picture else { return };

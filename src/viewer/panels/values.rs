@@ -3,7 +3,6 @@
 use eframe::egui::{Align2, FontId, Label, Rect, RichText, ScrollArea, TextStyle, Ui, pos2, vec2};
 
 use super::controls::significant;
-use super::selection::named;
 use crate::viewer::marks;
 use crate::viewer::reader::Table;
 
@@ -90,4 +89,9 @@ fn head(ui: &Ui, corner: Rect, font: FontId) {
     let at = corner.left_center();
     ui.painter()
         .text(at, Align2::LEFT_CENTER, "I, J, K", font, ink);
+}
+
+/// A cell by its numbers.
+pub fn named([i, j, k]: [usize; 3]) -> String {
+    format!("I {i}  J {j}  K {k}")
 }

@@ -60,14 +60,14 @@ fn turning(light: &str) -> Option<Turning> {
 }
 
 impl Turning {
-    fn wanted(&self, degrees: u32) -> Wanted {
+    fn wanted(&self, degrees: u32) -> RenderRequest {
         let camera = CameraSpec::Framing(FramingCamera {
             azimuth_degrees: f64::from(degrees),
             elevation_degrees: 30.0,
             zoom: 1.0,
             projection: Projection::Perspective,
         });
-        Wanted {
+        RenderRequest {
             case: self.case.clone(),
             scene: Scene {
                 camera,
@@ -193,7 +193,7 @@ fn only_clicks_take_the_place_of_a_final_picture() {
         return;
     };
     let wanted = turning.wanted(10);
-    for (why, is_left) in [(Why::Hover, false), (Why::Select, true)] {
+    for (why, is_left) in [(PickPurpose::Hover, false), (PickPurpose::Select, true)] {
         turning.pictures.flight = Some(Flight {
             side: 0,
             wanted: wanted.clone(),

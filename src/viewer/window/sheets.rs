@@ -2,15 +2,15 @@
 
 use eframe::egui::{self, Context, Ui};
 
-use super::dialogs::{Asked, CasesSheet, PathSheet, Purpose};
-use super::export::{ExportSpec, Kind};
-use super::keys;
-use super::panels::{Choice, list, one_of};
-use super::settings::{Film, Mouse};
-use super::state::Pace;
-use super::window::Window;
+use super::Window;
 use crate::picture::film::FilmFormat;
 use crate::scene::Scene;
+use crate::viewer::dialogs::{Asked, CasesSheet, PathSheet, Purpose};
+use crate::viewer::export::{ExportSpec, Kind};
+use crate::viewer::keys;
+use crate::viewer::panels::{Choice, list, one_of};
+use crate::viewer::settings::{Film, Mouse};
+use crate::viewer::state::Pace;
 
 /// Which sheets are open.
 #[derive(Default)]

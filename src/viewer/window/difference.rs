@@ -2,17 +2,32 @@
 
 use std::sync::Arc;
 
-use super::document::Document;
-use super::state::Setup;
-use super::window::Window;
+use super::Window;
 use crate::case::{Case, minus, nearest};
 use crate::scene::{Scene, StepSpec};
+use crate::viewer::document::Document;
+use crate::viewer::export::Compared;
+use crate::viewer::state::Setup;
 
 /// The difference of two cases that was made last.
 pub struct CaseDifference {
     /// The cases, and the name of the difference.
     of: ([Arc<Case>; 2], String, Option<usize>),
     made: Result<Arc<Case>, String>,
+}
+
+impl Window {
+    /// The second picture as it is shown, with the selected cells, for saving what is on screen.
+    pub(super) fn compared(&self) -> Option<Compared> {
+        let setup = &self.document()?.state.setup;
+        let layout = setup.comparison.as_ref()?.layout;
+        let (case, scene) = self.other()?;
+        Some(Compared {
+            case,
+            scene,
+            layout,
+        })
+    }
 }
 
 impl Window {

@@ -1,54 +1,65 @@
 //! The window: what it keeps, and what happens in each frame.
 
+mod bar;
+mod camera;
+mod commands;
+mod difference;
+mod docks;
+mod events;
+mod persistence;
+mod requests;
+mod sheets;
+mod sides;
+
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use eframe::egui::{self, Context, Ui};
 
 use super::action::Action;
-use super::asking::Asked;
 use super::cases::{self, Meaning};
 use super::dialogs::{CasesSheet, Dialog};
-use super::docks::Docks;
 use super::document::Document;
 use super::export::Export;
+use super::job::{Difference, Picture};
+use super::keys;
 use super::loading::Loading;
 use super::pictures::{DraftCount, Pictures};
 use super::reader::Reader;
 use super::settings::Settings;
-use super::sheets::Sheets;
-use super::sides::Sides;
 use super::state::State;
-use super::subject::CaseDifference;
-use super::worker::{Difference, Picture};
-use super::{bar, keys};
 use crate::case::load::{self, CasePaths};
 use crate::picking::Pick;
+use difference::CaseDifference;
+use docks::Docks;
+use requests::Asked;
+use sheets::Sheets;
+use sides::Sides;
 
 /// The window's state.
 pub struct Window {
-    pub(super) documents: Vec<Document>,
-    pub(super) current: usize,
+    documents: Vec<Document>,
+    current: usize,
     /// Cases that were closed, and how they looked; the last one is at the end.
-    pub(super) closed: Vec<(CasePaths, State)>,
-    pub(super) pictures: Pictures,
-    pub(super) reader: Reader,
-    pub(super) sides: Sides,
-    pub(super) docks: Docks,
-    pub(super) settings: Settings,
-    pub(super) sheets: Sheets,
-    pub(super) dialog: Option<Dialog>,
-    pub(super) export: Option<Export>,
+    closed: Vec<(CasePaths, State)>,
+    pictures: Pictures,
+    reader: Reader,
+    sides: Sides,
+    docks: Docks,
+    settings: Settings,
+    sheets: Sheets,
+    dialog: Option<Dialog>,
+    export: Option<Export>,
     /// What to tell the user, and whether it is an error.
-    pub(super) message: Option<(String, bool)>,
+    message: Option<(String, bool)>,
     /// Cases opened from now on are read again when their files change.
-    pub(super) watches: bool,
+    watches: bool,
     /// The property that is to be shown once it is known how it looks.
-    pub(super) awaited: Option<String>,
+    awaited: Option<String>,
     /// What the reader was asked for last.
-    pub(super) asked: Asked,
+    asked: Asked,
     /// The difference of two cases that was asked for last.
-    pub(super) case_difference: Option<CaseDifference>,
+    case_difference: Option<CaseDifference>,
     /// The size of letters that is remembered has been set.
     is_zoomed: bool,
 }

@@ -1,9 +1,13 @@
 //! The emission-absorption integral along one ray.
 
+mod cone;
+mod lighting;
+mod surfaces;
+
 use glam::DVec3;
 
+use super::integrate::surfaces::SurfaceFaces;
 use super::locate::{Located, Locator};
-use super::surfaces::SurfaceFaces;
 use crate::model::corner_point::weights;
 use crate::model::{CellField, Grid, VertexField};
 use crate::scene::Interpolation;
@@ -60,7 +64,7 @@ pub struct Integrator<'a> {
     pub(super) view: &'a View,
     locator: Locator,
     pub(super) vertices: Option<VertexField>,
-    pub(super) surfaces: SurfaceFaces,
+    surfaces: SurfaceFaces,
 }
 
 /// What a ray has gathered, front to back.

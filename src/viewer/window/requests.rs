@@ -4,15 +4,15 @@ use std::sync::Arc;
 
 use eframe::egui::Context;
 
-use super::link::Link;
-use super::reader::Cells;
-use super::spread::Spread;
-use super::subject::same_date;
-use super::window::Window;
-use super::worker::Wanted;
+use super::Window;
+use super::difference::same_date;
 use crate::case::Case;
 use crate::scene::{Scene, ShownFaults};
 use crate::view::model_corners;
+use crate::viewer::job::RenderRequest;
+use crate::viewer::link::Link;
+use crate::viewer::reader::Cells;
+use crate::viewer::spread::Spread;
 
 /// What the reader was asked for last.
 #[derive(Default, PartialEq)]
@@ -42,7 +42,7 @@ impl Window {
     }
 
     /// What is to be shown, a scene for each side in the size of its place.
-    pub(super) fn wanted(&self, ctx: &Context) -> Vec<Wanted> {
+    pub(super) fn wanted(&self, ctx: &Context) -> Vec<RenderRequest> {
         let Some((case, scene)) = self.subject() else {
             return Vec::new();
         };
@@ -50,10 +50,10 @@ impl Window {
         let mut wanted = Vec::new();
         if let Some(size) = sizes[0].filter(|_| !self.awaits_difference()) {
             let scene = Scene { size, ..scene };
-            wanted.push(Wanted { case, scene });
+            wanted.push(RenderRequest { case, scene });
         }
         if let (Some(size), Some((case, scene))) = (sizes[1], self.other()) {
-            wanted.push(Wanted {
+            wanted.push(RenderRequest {
                 case,
                 scene: Scene { size, ..scene },
             });
@@ -84,7 +84,7 @@ impl Window {
                 let now = view.seen_from(&scene.camera, view.size);
                 scene.camera = now.map_or_else(
                     |_| scene.camera.clone(),
-                    |v| super::orbit::spec(&v.camera, &v.box_corners),
+                    |v| crate::viewer::orbit::spec(&v.camera, &v.box_corners),
                 );
                 scene.vertical_exaggeration = Some(view.vertical_exaggeration);
             } else {

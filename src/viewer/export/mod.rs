@@ -1,5 +1,7 @@
 //! Pictures of any size and films, made for files beside the window, on a device of their own.
 
+mod still;
+
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
@@ -7,8 +9,6 @@ use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::thread::JoinHandle;
 
 use super::state::Layout;
-use super::still::still;
-use super::window::Window;
 use crate::case::Case;
 use crate::picture::film::{Film, FilmFormat, FilmShape};
 use crate::picture::filming::shoot;
@@ -167,7 +167,7 @@ pub(super) type Fallible<T> = Result<T, Box<dyn std::error::Error>>;
 fn make(spec: &ExportSpec, path: &Path, progress: &dyn Fn(f64) -> bool) -> Fallible<bool> {
     let case = &spec.case;
     let (fps, sequence) = match spec.kind {
-        Kind::Still => return still(spec, path, progress),
+        Kind::Still => return still::still(spec, path, progress),
         Kind::Steps { fps } => {
             let steps = step::steps(case, None, 1)?;
             // Looking at all values is a small part of the work.
@@ -201,20 +201,6 @@ fn make(spec: &ExportSpec, path: &Path, progress: &dyn Fn(f64) -> bool) -> Falli
         spec.plain,
         progress,
     )?)
-}
-
-impl Window {
-    /// The second picture as it is shown, with the selected cells, for saving what is on screen.
-    pub(super) fn compared(&self) -> Option<Compared> {
-        let setup = &self.document()?.state.setup;
-        let layout = setup.comparison.as_ref()?.layout;
-        let (case, scene) = self.other()?;
-        Some(Compared {
-            case,
-            scene,
-            layout,
-        })
-    }
 }
 
 #[cfg(test)]

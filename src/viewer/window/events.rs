@@ -2,15 +2,15 @@
 
 use eframe::egui::Context;
 
-use super::action::{Action, Beside};
-use super::dialogs::{Dialog, Outcome, PathSheet};
-use super::export::Export;
-use super::pictures::Event;
-use super::reader::Read;
-use super::watch::{Change, Watch};
-use super::window::{Window, begin_loading};
-use super::worker::Why;
+use super::{Window, begin_loading};
 use crate::picking::Pick;
+use crate::viewer::action::{Action, Beside};
+use crate::viewer::dialogs::{Dialog, Outcome, PathSheet};
+use crate::viewer::export::Export;
+use crate::viewer::job::PickPurpose;
+use crate::viewer::pictures::Event;
+use crate::viewer::reader::Read;
+use crate::viewer::watch::{Change, Watch};
 
 impl Window {
     /// Takes in what happened since the last frame.
@@ -124,8 +124,8 @@ impl Window {
         self.keep_settings();
     }
 
-    fn picked(&mut self, why: Why, pick: Pick) {
-        if why == Why::Hover {
+    fn picked(&mut self, why: PickPurpose, pick: Pick) {
+        if why == PickPurpose::Hover {
             let is_seen = pick.hit.is_some() || pick.fault.is_some();
             self.sides.hover = is_seen.then_some(pick);
             return;
@@ -136,7 +136,7 @@ impl Window {
         };
         let cell = hit.ijk.one_based();
         let beside = match why {
-            Why::Join => Beside::Others,
+            PickPurpose::AddToSelection => Beside::Others,
             _ => Beside::Nothing,
         };
         if let Some(document) = self.document_mut() {

@@ -6,18 +6,18 @@ use std::time::Instant;
 
 use eframe::egui::Context;
 
-use super::action::{Action, Beside};
-use super::asking::Asked;
-use super::command;
-use super::dialogs::{Dialog, Purpose};
-use super::document::Document;
-use super::export::Export;
-use super::keys::Command;
+use super::Window;
+use super::requests::Asked;
 use super::sheets::Sheets;
-use super::state::{Comparison, CurvePlots, State, next_strategy};
-use super::window::Window;
 use crate::case::Case;
 use crate::scene::{LightingSpec, Scene};
+use crate::viewer::action::{Action, Beside};
+use crate::viewer::command;
+use crate::viewer::dialogs::{Dialog, Purpose};
+use crate::viewer::document::Document;
+use crate::viewer::export::Export;
+use crate::viewer::keys::Command;
+use crate::viewer::state::{Comparison, CurvePlots, State, next_strategy};
 
 /// Closed cases that can be opened again, at most.
 const MOST_CLOSED: usize = 10;
@@ -46,7 +46,7 @@ impl Window {
                 self.settings.hides_panels = !self.settings.hides_panels;
                 self.keep_settings();
             }
-            Command::Look(look) => self.look(look),
+            Command::Camera(change) => self.move_camera(change),
             Command::Mouse => {
                 self.settings.mouse = self.settings.mouse.next();
                 self.keep_settings();

@@ -2,12 +2,11 @@
 
 use eframe::egui::{self, Color32, Context, Ui};
 
-use super::action::Action;
-use super::keys::{self, Command};
-use super::looking::Look;
-use super::panels::{self, Asked};
-use super::window::Window;
+use super::Window;
 use crate::scene::Mode;
+use crate::viewer::action::Action;
+use crate::viewer::keys::{self, CameraMove, Command};
+use crate::viewer::panels::{self, Asked};
 
 /// The menus and what is in them.
 const MENUS: [(&str, &[Command]); 5] = [
@@ -31,16 +30,16 @@ const MENUS: [(&str, &[Command]); 5] = [
     (
         "View",
         &[
-            Command::Look(Look::FrameAll),
-            Command::Look(Look::FrameSelection),
-            Command::Look(Look::From(0)),
-            Command::Look(Look::From(1)),
-            Command::Look(Look::From(2)),
-            Command::Look(Look::From(3)),
-            Command::Look(Look::From(4)),
-            Command::Look(Look::From(6)),
-            Command::Look(Look::From(5)),
-            Command::Look(Look::Projection),
+            Command::Camera(CameraMove::FrameAll),
+            Command::Camera(CameraMove::FrameSelection),
+            Command::Camera(CameraMove::From(0)),
+            Command::Camera(CameraMove::From(1)),
+            Command::Camera(CameraMove::From(2)),
+            Command::Camera(CameraMove::From(3)),
+            Command::Camera(CameraMove::From(4)),
+            Command::Camera(CameraMove::From(6)),
+            Command::Camera(CameraMove::From(5)),
+            Command::Camera(CameraMove::Projection),
             Command::Mouse,
             Command::Panels,
             Command::Theme,
@@ -88,7 +87,7 @@ pub fn top(window: &mut Window, ui: &mut Ui, ctx: &Context) {
                 ("Open", Command::Open),
                 ("Undo", Command::Undo),
                 ("Redo", Command::Redo),
-                ("Frame all", Command::Look(Look::FrameAll)),
+                ("Frame all", Command::Camera(CameraMove::FrameAll)),
                 ("Save image", Command::Screenshot),
                 ("Keys", Command::Help),
             ] {
@@ -252,7 +251,7 @@ fn progress(window: &Window) -> String {
 }
 
 /// A case that is read again while it is shown.
-fn loading(ui: &mut Ui, document: &mut super::document::Document) {
+fn loading(ui: &mut Ui, document: &mut crate::viewer::document::Document) {
     let Some(stage) = document.loading.as_ref().map(|l| l.stage()) else {
         return;
     };

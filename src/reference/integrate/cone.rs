@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use glam::DVec3;
 
-use super::integrate::{Integrator, Ray};
+use super::{Integrator, Ray};
 use crate::view::Lighting;
 use crate::view::lighting::Cone;
 

@@ -2,9 +2,9 @@
 
 use glam::DVec3;
 
-use super::integrate::{Integrator, Sample};
-use super::locate::Located;
+use super::{Integrator, Sample};
 use crate::model::Hexahedron;
+use crate::reference::locate::Located;
 use crate::scene::LightMode;
 use crate::view::lighting::{GRADIENT_FADE, Light, SHININESS, SPECULAR, SPOT_EDGE, Source};
 use crate::view::surfaces::{HEADLIGHT_AMBIENT, HEADLIGHT_ASIDE};
@@ -29,14 +29,14 @@ struct Surface {
 
 impl Integrator<'_> {
     /// Color of a sample of a primary ray; what it is by itself where nothing shades it.
-    pub(super) fn lit(&self, point: DVec3, sample: &Sample) -> [f64; 3] {
+    pub(in crate::reference) fn lit(&self, point: DVec3, sample: &Sample) -> [f64; 3] {
         let valued = sample.value.map(|_| sample);
         self.shaded(point, self.unlit(sample), valued)
     }
 
     /// A color at a point of a primary ray as light makes it. `valued` is the sample there, of what
     /// carries a number.
-    pub(super) fn shaded(
+    pub(in crate::reference) fn shaded(
         &self,
         point: DVec3,
         color: [f64; 3],
@@ -62,7 +62,7 @@ impl Integrator<'_> {
     }
 
     /// What the lamp beside the viewer leaves of the color of a surface, by its unit normal of either sense.
-    pub(super) fn headlight(&self, normal: DVec3, ray: DVec3) -> f64 {
+    pub(in crate::reference) fn headlight(&self, normal: DVec3, ray: DVec3) -> f64 {
         if self.view.lighting.exact_colors {
             return 1.0;
         }
@@ -128,7 +128,7 @@ impl Integrator<'_> {
 
     /// Gradient in world space of the position in the range of values, as they are interpolated in a cell
     /// and not clamped to the range; `None` where they are constant or the cell is flat.
-    pub(super) fn gradient(&self, sample: &Sample) -> Option<DVec3> {
+    pub(in crate::reference) fn gradient(&self, sample: &Sample) -> Option<DVec3> {
         sample.value?;
         let Located { ijk, str } = sample.located;
         let corners = self.vertices.as_ref()?.corners(self.grid, ijk);

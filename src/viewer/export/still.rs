@@ -3,9 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use super::export::{Compared, ExportSpec, Fallible};
-use super::state::Layout;
-use super::studio::{DIFFERENCE_SCALE, difference_title};
+use super::{Compared, ExportSpec, Fallible};
 use crate::case::Case;
 use crate::image::metrics::{Comparison, ciede2000_map};
 use crate::image::{Image, Rgb8};
@@ -18,6 +16,8 @@ use crate::render::Renderer;
 use crate::render::gpu::Gpu;
 use crate::scene::Scene;
 use crate::view::View;
+use crate::viewer::state::Layout;
+use crate::viewer::studio::{DIFFERENCE_SCALE, difference_title};
 
 /// Makes one picture; false where it was canceled.
 pub fn still(spec: &ExportSpec, path: &Path, progress: &dyn Fn(f64) -> bool) -> Fallible<bool> {

@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use super::action::Action;
-use super::window::Window;
-use super::{command, panels};
+use super::Window;
 use crate::scene::Scene;
+use crate::viewer::action::Action;
+use crate::viewer::{command, panels};
 
 impl Window {
     /// Loads a scene into the document in front.

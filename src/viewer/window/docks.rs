@@ -6,12 +6,12 @@ use std::sync::Arc;
 
 use eframe::egui::{self, CollapsingResponse, Context, Margin, ScrollArea, Ui, WidgetInfo};
 
-use super::action::Action;
-use super::panels::{self, About, Panel};
-use super::state::{CurvePlots, Layout};
-use super::window::Window;
+use super::Window;
 use crate::case::Case;
 use crate::scene::Scene;
+use crate::viewer::action::Action;
+use crate::viewer::panels::{self, About, Panel};
+use crate::viewer::state::{CurvePlots, Layout};
 
 /// Points of a side's panels.
 const WIDTH: f32 = 280.0;

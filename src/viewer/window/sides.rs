@@ -5,22 +5,22 @@ use std::sync::Arc;
 use eframe::egui::{self, Context, Rect, Sense, Ui, UiBuilder, pos2, vec2};
 use glam::DVec2;
 
-use super::action::Action;
-use super::keys::Command;
-use super::pages::{self, Page};
-use super::state::{Comparison, Layout};
-use super::studio::difference_title;
-use super::viewport::{self, Touched, Viewport};
-use super::welcome::{self, Answer, Asked};
-use super::window::Window;
-use super::worker::{Wanted, Why};
-use super::{handles, marks, overlay, panels};
+use super::Window;
 use crate::case::Case;
 use crate::picking::Pick;
 use crate::picture::Annotations;
 use crate::picture::compared::differing;
 use crate::scene::{CameraSpec, Scene, Show};
 use crate::view::View;
+use crate::viewer::action::Action;
+use crate::viewer::job::{PickPurpose, RenderRequest};
+use crate::viewer::keys::Command;
+use crate::viewer::pages::{self, Page};
+use crate::viewer::state::{Comparison, Layout};
+use crate::viewer::studio::difference_title;
+use crate::viewer::viewport::{self, Touched, Viewport};
+use crate::viewer::welcome::{self, Answer, Asked};
+use crate::viewer::{handles, marks, overlay, panels};
 
 /// Where the pictures are, and what the pointer is on.
 #[derive(Default)]
@@ -51,7 +51,7 @@ struct Pointed {
     side: usize,
     /// In the picture, 0 to 1, right and down.
     at: DVec2,
-    wanted: Wanted,
+    wanted: RenderRequest,
 }
 
 /// Seconds that the pointer rests before what is under it is read.
@@ -342,8 +342,8 @@ impl Window {
     /// Asks for the cell that was clicked in the picture of a side.
     fn pick(&mut self, ctx: &Context, sides: &[Seen; 2], clicked: Option<(usize, DVec2)>) {
         let why = match ctx.input(|i| i.modifiers.command) {
-            true => Why::Join,
-            false => Why::Select,
+            true => PickPurpose::AddToSelection,
+            false => PickPurpose::Select,
         };
         let Some((side, at)) = clicked else { return };
         let [Some((first, _)), _] = sides else { return };
@@ -359,9 +359,9 @@ impl Window {
     }
 
     /// A scene in the size of the first picture; of two beside each other the second one has that too.
-    fn sized(&self, ctx: &Context, case: &Arc<Case>, scene: &Scene) -> Option<Wanted> {
+    fn sized(&self, ctx: &Context, case: &Arc<Case>, scene: &Scene) -> Option<RenderRequest> {
         let size = self.sides.sizes(ctx.pixels_per_point())[0]?;
-        Some(Wanted {
+        Some(RenderRequest {
             case: case.clone(),
             scene: Scene {
                 size,
@@ -387,7 +387,7 @@ impl Window {
             } else if self.pictures.are_final() {
                 let Pointed { side, at, .. } = pointed;
                 let wanted = pointed.wanted.clone();
-                self.pictures.pick(side, wanted, at, Why::Hover);
+                self.pictures.pick(side, wanted, at, PickPurpose::Hover);
                 self.sides.asked = Some(pointed);
             }
             return;

@@ -4,11 +4,11 @@ use glam::{DMat3, DVec2, DVec3};
 use rayon::prelude::*;
 use std::collections::HashMap;
 
-use super::integrate::{Integrator, Ray, Sample};
-use super::locate::Located;
-use super::tree::Tree;
+use super::{Integrator, Ray, Sample};
 use crate::model::topology::Face;
 use crate::model::{Grid, Ijk};
+use crate::reference::locate::Located;
+use crate::reference::tree::Tree;
 use crate::scene::Hull;
 use crate::view::surfaces::{
     EDGE_DARKNESS, EDGE_FADE, EDGE_WIDTH, FAINT_BEHIND, FAINT_FRONT, SHEET_OPACITY, faint_color,

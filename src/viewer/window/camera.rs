@@ -4,33 +4,17 @@ use std::sync::Arc;
 
 use glam::DVec2;
 
-use super::action::Action;
-use super::orbit;
-use super::window::Window;
+use super::Window;
 use crate::case::Case;
 use crate::model::Ijk;
 use crate::scene::CameraSpec;
 use crate::view::View;
 use crate::view::camera::middle;
+use crate::viewer::action::Action;
+use crate::viewer::keys::CameraMove;
+use crate::viewer::orbit;
 
-/// A change of the camera.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Look {
-    /// One of the standard views.
-    From(usize),
-    /// The model, from the same direction.
-    FrameAll,
-    /// The cells that are selected, or else those that are drawn, from the same direction.
-    FrameSelection,
-    /// Perspective or parallel.
-    Projection,
-    /// Turns to the right and up by steps, around the middle of the picture.
-    Turn(i8, i8),
-    /// Closer, or away.
-    Zoom(bool),
-}
-
-/// Degrees of a step of [`Look::Turn`], and factor of one of [`Look::Zoom`].
+/// Degrees of a step of [`CameraMove::Turn`], and factor of one of [`CameraMove::Zoom`].
 const STEP: f64 = 10.0;
 const CLOSER: f64 = 1.25;
 /// A selected cell takes this part of the picture.
@@ -38,7 +22,7 @@ const SELECTED: f64 = 0.3;
 
 impl Window {
     /// Changes the camera of the document in front; nothing before there is a picture.
-    pub(super) fn look(&mut self, look: Look) {
+    pub(super) fn move_camera(&mut self, change: CameraMove) {
         let view = self.picture(0).map(|(picture, _)| picture.view.clone());
         let document = self.document();
         let Some((document, case)) = document.and_then(|d| Some((d, d.case.clone()?))) else {
@@ -47,9 +31,9 @@ impl Window {
         let camera = &document.state.setup.scene.camera;
         let now = view.and_then(|v| v.seen_from(camera, v.size).ok());
         let selected = &document.state.selected;
-        let camera = match (look, now) {
-            (Look::From(n), _) => Some(orbit::standard(n, camera.projection())),
-            (_, Some(now)) => changed(look, camera, &now, &case, selected),
+        let camera = match (change, now) {
+            (CameraMove::From(n), _) => Some(orbit::standard(n, camera.projection())),
+            (_, Some(now)) => changed(change, camera, &now, &case, selected),
             (_, None) => None,
         };
         match camera {
@@ -59,7 +43,7 @@ impl Window {
                 }
                 self.apply(Action::Camera(camera));
             }
-            None if look == Look::FrameSelection => self.tell("no cell is drawn"),
+            None if change == CameraMove::FrameSelection => self.tell("no cell is drawn"),
             None => {}
         }
     }
@@ -77,7 +61,7 @@ impl Window {
 }
 
 fn changed(
-    look: Look,
+    change: CameraMove,
     spec: &CameraSpec,
     now: &View,
     case: &Arc<Case>,
@@ -87,14 +71,14 @@ fn changed(
     let corners = &now.box_corners;
     let drawn = || now.drawn_bounds(&case.grid).map(|b| now.corners_of(b));
     let center = || orbit::point_under(now, now.drawn_bounds(&case.grid), DVec2::splat(0.5));
-    let camera = match look {
-        Look::From(n) => return Some(orbit::standard(n, spec.projection())),
-        Look::FrameAll => {
+    let camera = match change {
+        CameraMove::From(n) => return Some(orbit::standard(n, spec.projection())),
+        CameraMove::FrameAll => {
             let points = &now.subject.points;
             return Some(orbit::frame_all(spec, camera, points, corners, aspect));
         }
-        Look::Projection => return Some(orbit::switched(spec, camera, corners)),
-        Look::FrameSelection => {
+        CameraMove::Projection => return Some(orbit::switched(spec, camera, corners)),
+        CameraMove::FrameSelection => {
             let cells = selected
                 .iter()
                 .filter_map(|ijk| case.grid.dims().one_based(*ijk));
@@ -108,11 +92,11 @@ fn changed(
                 None => camera.framed(&drawn()?, aspect),
             }
         }
-        Look::Turn(right, up) => {
+        CameraMove::Turn(right, up) => {
             let steps = DVec2::new(-f64::from(right), f64::from(up));
             orbit::rotate(camera, center(), orbit::drag_of(STEP.to_radians() * steps))
         }
-        Look::Zoom(is_closer) => orbit::zoom(
+        CameraMove::Zoom(is_closer) => orbit::zoom(
             camera,
             center(),
             if is_closer { CLOSER } else { 1.0 / CLOSER },
