@@ -18,14 +18,18 @@
 //! | [`viewer`] | the window |
 
 pub mod case;
+#[cfg(feature = "gpu")]
 pub mod compare;
 pub mod image;
 pub mod model;
+#[cfg(feature = "gpu")]
 pub mod picking;
 pub mod picture;
 pub mod reference;
+#[cfg(feature = "gpu")]
 pub mod render;
 pub mod scene;
 pub mod transfer;
 pub mod view;
+#[cfg(feature = "viewer")]
 pub mod viewer;

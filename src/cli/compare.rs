@@ -9,6 +9,7 @@ use strataray::scene::{Scene, StrategyKind};
 use strataray::view::{self, NamedView, TurnAxis, half_turns};
 
 use super::Verbosity;
+use super::choice::{TURN_AXES, one_of};
 use super::progress::Reporter;
 use super::scene_options::SceneOptions;
 
@@ -48,7 +49,7 @@ pub struct Arguments {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
     views: Option<u32>,
     /// Axis of the rotation: x east, y north, z up, or all three one after another [default: all].
-    #[arg(long, value_enum, requires = "views", hide_possible_values = true)]
+    #[arg(long, value_parser = one_of(&TURN_AXES), requires = "views", hide_possible_values = true)]
     turn: Option<TurnAxis>,
     /// Frames to time for each image, after one that is not timed.
     #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..))]

@@ -3,6 +3,7 @@
 mod animate;
 mod bench;
 mod cancel;
+mod choice;
 mod compare;
 mod info;
 mod pick;
@@ -81,7 +82,19 @@ fn open_window(cases: Vec<PathBuf>, watches: bool) -> anyhow::Result<()> {
             missing.display()
         );
     }
+    show_window(cases, watches)
+}
+
+#[cfg(feature = "viewer")]
+fn show_window(cases: Vec<PathBuf>, watches: bool) -> anyhow::Result<()> {
     strataray::viewer::run(cases, watches).map_err(anyhow::Error::msg)
+}
+
+#[cfg(not(feature = "viewer"))]
+fn show_window(_: Vec<PathBuf>, _: bool) -> anyhow::Result<()> {
+    anyhow::bail!(
+        "this build of strataray has no window; `strataray render CASE -o image.png` makes an image without one"
+    )
 }
 
 /// Runs the command line and turns an error into one sentence and exit code 1.

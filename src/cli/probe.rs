@@ -12,6 +12,7 @@ use strataray::render::gpu::{Gpu, GpuGrid, probe};
 use strataray::scene::Interpolation;
 
 use super::Verbosity;
+use super::choice::{INTERPOLATIONS, one_of};
 use super::progress::Reporter;
 use super::scene_options::AddedFiles;
 
@@ -43,7 +44,7 @@ pub struct Arguments {
     #[arg(long)]
     grid_coordinates: bool,
     /// Values within a cell.
-    #[arg(long, value_enum, default_value = "cell")]
+    #[arg(long, value_parser = one_of(&INTERPOLATIONS), default_value = "cell")]
     interpolation: Interpolation,
     /// Where to compute.
     #[arg(long, value_enum, default_value = "gpu")]

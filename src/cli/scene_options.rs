@@ -13,6 +13,7 @@ use strataray::scene::{
 };
 use strataray::view::look;
 
+use super::choice::{INTERPOLATIONS, LIGHT_MODES, MODES, one_of};
 use super::progress::Reporter;
 
 #[derive(clap::Args)]
@@ -30,16 +31,16 @@ pub struct SceneOptions {
     #[arg(long)]
     pub strategy: Option<String>,
     /// Values within a cell.
-    #[arg(long)]
+    #[arg(long, value_parser = one_of(&INTERPOLATIONS))]
     interpolation: Option<Interpolation>,
     /// Opaque cells, or rays through the inside; by default the one that shows more of the property.
-    #[arg(long)]
+    #[arg(long, value_parser = one_of(&MODES))]
     mode: Option<Mode>,
     /// Image size, such as 1000x1000.
     #[arg(long, value_name = "WxH")]
     pub size: Option<String>,
     /// Occlusion toward the viewer, and where it is found.
-    #[arg(long, value_name = "MODE")]
+    #[arg(long, value_name = "MODE", value_parser = one_of(&LIGHT_MODES))]
     occlusion: Option<LightMode>,
     /// Preset of occlusion and lights.
     #[arg(long, value_name = "NAME", value_parser = lighting_preset, help = lighting_help())]

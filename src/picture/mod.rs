@@ -9,6 +9,7 @@ mod difference;
 mod draft;
 mod files;
 pub mod film;
+#[cfg(feature = "gpu")]
 pub mod filming;
 mod info;
 mod layout;

@@ -51,9 +51,8 @@ impl Default for LightingSpec {
 }
 
 /// Where the light along a cone is found.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-#[clap(rename_all = "snake_case")]
 pub enum LightMode {
     /// No shading.
     Off,

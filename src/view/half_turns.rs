@@ -17,7 +17,7 @@ pub struct NamedView {
 }
 
 /// What the camera turns about, through the model's middle.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TurnAxis {
     /// The axis to the east.
     X,

@@ -1,0 +1,89 @@
+//! Choices by name, as scene files have them, with a sentence for each.
+
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use strataray::scene::{Interpolation, LightMode, Mode};
+use strataray::view::TurnAxis;
+
+/// A name, what it stands for, and what that is in one sentence.
+type Choice<T> = (&'static str, T, &'static str);
+
+pub const MODES: [Choice<Mode>; 2] = [
+    (
+        "volume",
+        Mode::Volume,
+        "Rays through the inside of the cells: the values looked for are solid",
+    ),
+    (
+        "cells",
+        Mode::Cells,
+        "Opaque cells: their outer faces and the sections of clip planes, each cell in the color of its value",
+    ),
+];
+
+pub const INTERPOLATIONS: [Choice<Interpolation>; 2] = [
+    (
+        "cell",
+        Interpolation::Cell,
+        "The cell's own value everywhere in it",
+    ),
+    (
+        "vertex",
+        Interpolation::Vertex,
+        "Trilinear between averages at the vertices",
+    ),
+];
+
+pub const LIGHT_MODES: [Choice<LightMode>; 4] = [
+    ("off", LightMode::Off, "No shading"),
+    (
+        "image",
+        LightMode::Image,
+        "By a cone at every sample of a ray: slower, more exact",
+    ),
+    (
+        "preilluminated",
+        LightMode::Preilluminated,
+        "Precomputed in a light volume that the rays sample: fast",
+    ),
+    (
+        "monte_carlo",
+        LightMode::MonteCarlo,
+        "By many rays over the cone at every sample: slow, for comparison",
+    ),
+];
+
+pub const TURN_AXES: [Choice<TurnAxis>; 4] = [
+    ("x", TurnAxis::X, "The axis to the east"),
+    ("y", TurnAxis::Y, "The axis to the north"),
+    ("z", TurnAxis::Z, "The vertical"),
+    ("all", TurnAxis::All, "All three, one after another"),
+];
+
+/// Reads one of some choices; the help lists them.
+pub fn one_of<T>(choices: &'static [Choice<T>]) -> impl TypedValueParser<Value = T>
+where
+    T: Copy + Send + Sync + 'static,
+{
+    let value = |(name, _, help): &Choice<T>| PossibleValue::new(*name).help(*help);
+    let names = PossibleValuesParser::new(choices.iter().map(value));
+    names.try_map(|name| {
+        let known = choices.iter().find(|choice| choice.0 == name);
+        known.map(|choice| choice.1).ok_or("this name is not known")
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn named<T: serde::Serialize>(choices: &[Choice<T>]) -> bool {
+        let is_named = |(name, value, _): &Choice<T>| serde_json::json!(value) == *name;
+        choices.iter().all(is_named)
+    }
+
+    #[test]
+    fn names_are_those_of_scene_files() {
+        assert!(named(&MODES) && named(&INTERPOLATIONS) && named(&LIGHT_MODES));
+        assert!(!named(&[("cells", Mode::Volume, "")]));
+    }
+}
