@@ -11,6 +11,7 @@ use strataray::render::Renderer;
 use strataray::render::gpu::volume::Volume;
 use strataray::scene::lighting::PRESETS;
 use strataray::scene::{LightingSpec, Scene};
+use strataray::view::lighting::BUDGET_MB;
 use strataray::view::{self, Lighting, View};
 
 /// A scene's lighting for a case, or what is wrong with it.
@@ -270,50 +271,44 @@ fn volumes_have_cubes_and_fit_their_budget() {
     assert!(voxels > 1000 && voxels <= 3000, "{voxels}");
 }
 
-/// The view of the sample without a size of the extinction volume, for adapters in software and for a GPU.
-fn for_adapters(case: &Case, volume: &Value) -> [View; 2] {
+/// The view of the sample with an extinction volume as it is asked for.
+fn with_volume(case: &Case, volume: &Value) -> View {
     let scene = json!({
         "size": [8, 6], "property": "PORO", "sampling_step": 50,
         "lighting": {"occlusion": {}, "volume": volume},
     });
     let scene: Scene = serde_json::from_value(scene).unwrap();
-    [true, false].map(|is_software| {
-        let view = view::resolve(&scene, case).unwrap();
-        view.for_adapter(is_software)
-    })
+    view::resolve(&scene, case).unwrap()
 }
 
 #[test]
-fn an_adapter_decides_the_volume_where_the_scene_does_not() {
+fn the_budget_decides_the_volume_where_the_scene_names_no_size() {
     let case = load::open(&common::sample()).unwrap();
-    let [software, gpu] = for_adapters(&case, &json!({})).map(|v| v.lighting);
-    assert!(gpu.sigma() < 0.95 * software.sigma());
-    assert!(gpu.size().iter().zip(software.size()).all(|(a, b)| *a > b));
-    let voxels = DVec3::from_array(gpu.size().map(f64::from));
-    assert!((gpu.sigma() - (gpu.extent / voxels).element_sum() / 3.0).abs() < 1e-9);
-    for volume in [json!({"budget_mb": 3}), json!({"size": [20, 30, 10]})] {
-        let [software, gpu] = for_adapters(&case, &volume).map(|v| v.lighting);
-        assert_eq!(gpu, software);
-    }
+    let lighting = |volume: Value| with_volume(&case, &volume).lighting;
+    let usual = lighting(json!({}));
+    assert_eq!(
+        usual.size(),
+        lighting(json!({"budget_mb": BUDGET_MB})).size()
+    );
+    let fine = lighting(json!({"budget_mb": 160}));
+    assert!(fine.sigma() < 0.95 * usual.sigma());
+    assert!(fine.size().iter().zip(usual.size()).all(|(a, b)| *a > b));
+    let voxels = DVec3::from_array(fine.size().map(f64::from));
+    assert!((fine.sigma() - (fine.extent / voxels).element_sum() / 3.0).abs() < 1e-9);
 }
 
 #[test]
-fn a_device_takes_the_volume_of_the_view_and_not_its_own() {
+fn a_device_takes_the_volume_of_the_view() {
     let Some(gpu) = common::gpu() else { return };
     let case = load::open(&common::sample()).unwrap();
-    let views = for_adapters(&case, &json!({}));
-    // The view for an adapter of the other kind.
-    let [own, other] = match gpu.is_software() {
-        true => [0, 1],
-        false => [1, 0],
-    };
-    let [own, other] = [own, other].map(|n: usize| &views[n]);
+    let view = with_volume(&case, &json!({"budget_mb": 20}));
     let mut renderer = Renderer::new(gpu, &case.grid).unwrap();
-    renderer.render(&case.grid, other, &|_| true).unwrap();
+    renderer.render(&case.grid, &view, &|_| true).unwrap();
     let light = renderer.light();
     let size = |volume: Option<&Volume>| volume.unwrap().shape.size;
-    assert_eq!(size(light.field()), other.lighting.size());
-    assert_eq!(size(light.pyramid()), other.lighting.size());
-    assert_eq!(size(light.light_volumes()), other.lighting.light_size());
-    assert_ne!(size(light.field()), own.lighting.size());
+    assert_eq!(size(light.field()), view.lighting.size());
+    assert_eq!(size(light.pyramid()), view.lighting.size());
+    assert_eq!(size(light.light_volumes()), view.lighting.light_size());
+    let usual = with_volume(&case, &json!({})).lighting;
+    assert_ne!(size(light.field()), usual.size());
 }

@@ -81,7 +81,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
             true => Reference::Cpu,
             false => Reference::Strategy(StrategyKind::accurate()),
         },
-        views: views(arguments, &scene, &case, gpu.is_software())?,
+        views: views(arguments, &scene, &case)?,
         frames: arguments.frames as usize,
     };
     let setting = Setting {
@@ -135,13 +135,8 @@ fn strategies(arguments: &Arguments) -> anyhow::Result<Vec<StrategyKind>> {
     Ok(found)
 }
 
-fn views(
-    arguments: &Arguments,
-    scene: &Scene,
-    case: &Case,
-    is_software: bool,
-) -> anyhow::Result<Vec<NamedView>> {
-    let view = view::resolve(scene, case)?.for_adapter(is_software);
+fn views(arguments: &Arguments, scene: &Scene, case: &Case) -> anyhow::Result<Vec<NamedView>> {
+    let view = view::resolve(scene, case)?;
     Ok(match arguments.views {
         Some(count) => {
             let about = arguments.turn.unwrap_or(TurnAxis::All);

@@ -70,12 +70,9 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let start = Instant::now();
     let scene = arguments.options.scene(&case, &reporter)?;
     let plain = arguments.plain || format == picture::Format::Exr;
-    let mut shot = Shot::of(&scene, &case, plain)?;
+    let shot = Shot::of(&scene, &case, plain)?;
     stages.read = start.elapsed();
     let image = if arguments.reference {
-        // The truth of what the adapter would render.
-        let is_software = arguments.options.is_software_at_hand();
-        shot.view = shot.view.for_adapter(is_software);
         reporter
             .bar("reference", |progress| {
                 reference::render(&case.grid, &shot.view, progress)
@@ -83,7 +80,6 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
             .context("the reference was canceled")?
     } else {
         let gpu = arguments.options.open_gpu(&reporter)?;
-        shot.view = shot.view.for_adapter(gpu.is_software());
         on_gpu(arguments, &case, &shot, &gpu, stages, &reporter)?
     };
     match format {

@@ -174,11 +174,6 @@ impl SceneOptions {
         self.added.open_case(path, reporter)
     }
 
-    /// True where [`Self::open_gpu`] would open an adapter in software, or none.
-    pub fn is_software_at_hand(&self) -> bool {
-        Gpu::is_software_at_hand(self.adapter.as_deref())
-    }
-
     /// Opens the adapter and says where it is none.
     pub fn open_gpu(&self, reporter: &Reporter) -> anyhow::Result<Arc<Gpu>> {
         let gpu = Gpu::new(self.adapter.as_deref())?;

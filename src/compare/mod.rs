@@ -24,8 +24,7 @@ use crate::view::{NamedView, View};
 
 pub use report::{Report, ReportError};
 pub use row::Row;
-pub use tables::Setting;
-pub use tables::summary;
+pub use tables::{Setting, summary};
 
 /// What the pictures are measured against.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -41,7 +41,6 @@ pub fn shoot(
     for n in 0..sequence.count() {
         let done = |f: f64| progress((n as f64 + f) / count);
         let view = sequence.view(n, case)?;
-        let view = view.for_adapter(renderer.gpu().is_software());
         let Some(frame) = renderer.render(&case.grid, &view, &done)? else {
             return Ok(false);
         };

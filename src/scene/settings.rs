@@ -59,7 +59,7 @@ pub enum Integration {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct SrgSettings {
-    /// Megabytes (2^20 bytes) on the device, of volume and pyramids; chosen by the adapter where absent.
+    /// Megabytes (2^20 bytes) on the device, of volume and pyramids; [`Self::BUDGET_MB`] where absent.
     pub budget_mb: Option<u32>,
     /// Voxels a cell along i, j and k; as large as the budget allows where absent.
     pub factor: Option<f64>,
@@ -90,13 +90,12 @@ impl Default for SrgSettings {
 }
 
 impl SrgSettings {
-    /// Megabytes where the scene says nothing: of a GPU, and of an adapter in software, where filling so
-    /// much takes 0.5 to 0.8 s of CPU time at each time step that is played.
-    const BUDGET_MB: [u32; 2] = [512, 32];
+    /// Megabytes where the scene says nothing, on every adapter alike, so that a scene means one image. Filling so
+    /// much takes an adapter in software 0.5 to 0.8 s of CPU time at each time step that is played.
+    pub const BUDGET_MB: u32 = 32;
 
     /// Bytes that volume and pyramids may take.
-    pub fn budget_bytes(&self, is_software: bool) -> u64 {
-        let default = Self::BUDGET_MB[usize::from(is_software)];
-        u64::from(self.budget_mb.unwrap_or(default)) << 20
+    pub fn budget_bytes(&self) -> u64 {
+        u64::from(self.budget_mb.unwrap_or(Self::BUDGET_MB)) << 20
     }
 }

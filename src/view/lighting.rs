@@ -131,8 +131,6 @@ pub struct Lighting {
     pub seed: u32,
     /// World-space edges of the model's box along the grid's x, y and depth.
     pub extent: DVec3,
-    /// Cells of the grid.
-    pub cells: usize,
     volume: VolumeSpec,
     /// What [`Self::size`] gives: decided once, for the device and the reference alike.
     size: [u32; 3],
@@ -146,17 +144,17 @@ const VOXELS_A_CELL: f64 = 256.0;
 /// Bytes that a voxel of the extinction volume takes while it is made: value, extinction, pyramid, in
 /// half floats (campagnolo-2021, 4.3.4).
 const VOXEL_BYTES: f64 = 2.0 * (2.0 + 1.0 / 7.0);
-/// Megabytes of the extinction volume where the scene says nothing: of a GPU, and of an adapter in
-/// software.
-const BUDGET_MB: [u32; 2] = [160, 10];
+/// Megabytes of the extinction volume where the scene says nothing, on every adapter alike, so that a scene means
+/// one image: what an adapter in software fills in about a second.
+pub const BUDGET_MB: u32 = 10;
 
 impl VolumeSpec {
     /// Voxels of the extinction volume over a box of a grid of so many cells: cubes in world space, unless the
     /// scene says otherwise.
-    fn voxels(&self, is_software: bool, extent: DVec3, cells: usize) -> [u32; 3] {
+    fn voxels(&self, extent: DVec3, cells: usize) -> [u32; 3] {
         self.size.unwrap_or_else(|| {
-            let budget = BUDGET_MB[usize::from(is_software)];
-            let bytes = f64::from(self.budget_mb.unwrap_or(budget)) * f64::from(1 << 20);
+            let budget = self.budget_mb.unwrap_or(BUDGET_MB);
+            let bytes = f64::from(budget) * f64::from(1 << 20);
             let voxels = (bytes / VOXEL_BYTES).min(VOXELS_A_CELL * cells as f64);
             let edge = (extent.element_product() / voxels.max(1.0)).cbrt();
             (extent / edge)
@@ -182,13 +180,6 @@ impl Lighting {
         if let Some(occlusion) = &mut self.occlusion {
             occlusion.strength *= 0.5;
         }
-        self
-    }
-
-    /// The same with the extinction volume that suits an adapter, where the scene names neither size nor budget.
-    #[must_use]
-    pub(super) fn for_adapter(mut self, is_software: bool) -> Self {
-        self.size = self.volume.voxels(is_software, self.extent, self.cells);
         self
     }
 
@@ -284,9 +275,8 @@ pub(crate) fn resolve(
         rays_gap: within("lighting.rays_gap", spec.rays_gap, [0.0, 20.0])?,
         seed: spec.seed,
         extent,
-        cells,
         volume: spec.volume,
-        size: spec.volume.voxels(true, extent, cells),
+        size: spec.volume.voxels(extent, cells),
     })
 }
 

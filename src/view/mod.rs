@@ -130,16 +130,6 @@ impl View {
         })
     }
 
-    /// The same view for the adapter that renders it: where the scene leaves the extinction volume open, a GPU has
-    /// more voxels of it. A resolved view has those of an adapter in software.
-    #[must_use]
-    pub fn for_adapter(self, is_software: bool) -> Self {
-        Self {
-            lighting: self.lighting.for_adapter(is_software),
-            ..self
-        }
-    }
-
     /// Smallest and largest corner in grid space of the drawn cells of `grid` (the case's), ghosts aside; `None`
     /// where none is drawn.
     pub fn drawn_bounds(&self, grid: &Grid) -> Option<[DVec3; 2]> {

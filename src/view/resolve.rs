@@ -195,7 +195,7 @@ fn srg(scene: &Scene, dims: Dims) -> Result<SrgSettings, SceneError> {
     if let Some(factor) = settings.factor {
         let ghosts = scene.show.inactive == Inactive::Ghost;
         let shape = Shape::of(dims, positive("srg.factor", factor)?, ghosts);
-        let budget = settings.budget_bytes(false);
+        let budget = settings.budget_bytes();
         if shape.bytes() > budget {
             let problem = format!(
                 "{factor} needs {} MB of the {} in srg.budget_mb; change one of them",

@@ -121,7 +121,7 @@ impl Studio {
         let gpu = self.open(say).map_err(Failure::of_device)?;
         self.share(side, &wanted.case);
         let side = &mut self.sides[side];
-        let view = side.view(wanted, gpu.is_software())?;
+        let view = side.view(wanted)?;
         let renderer = side.renderer(gpu, &wanted.case)?;
         let last_said = std::cell::Cell::new(Instant::now());
         let progress = |part: f64| {
@@ -188,7 +188,7 @@ impl Studio {
     ) -> Result<Pick, Failure> {
         let gpu = self.open(say).map_err(Failure::of_device)?;
         let side = &mut self.sides[side];
-        let view = side.view(wanted, gpu.is_software())?;
+        let view = side.view(wanted)?;
         let mut picker = std::mem::take(&mut side.picker);
         let renderer = side.renderer(gpu, &wanted.case)?;
         let pick = picker.pick(renderer, &wanted.case, &view, at);
@@ -215,9 +215,9 @@ impl Side {
         Ok(&mut self.renderer.insert(kept).1)
     }
 
-    /// The scene resolved for the device; where only camera and size differ from a known one, without reading
+    /// The scene resolved; where only camera and size differ from a known one, without reading
     /// values.
-    fn view(&mut self, wanted: &RenderRequest, is_software: bool) -> Result<Arc<View>, Failure> {
+    fn view(&mut self, wanted: &RenderRequest) -> Result<Arc<View>, Failure> {
         let of_scene = |e: view::SceneError| Failure {
             sentence: e.to_string(),
             is_device: false,
@@ -236,9 +236,7 @@ impl Side {
             .position(|(known, _)| *known == without_camera);
         let view = match known.and_then(|n| self.resolved.remove(n)) {
             Some((_, view)) => view.seen_from(&wanted.scene.camera, wanted.scene.size),
-            None => {
-                view::resolve(&wanted.scene, &wanted.case).map(|view| view.for_adapter(is_software))
-            }
+            None => view::resolve(&wanted.scene, &wanted.case),
         };
         let view = Arc::new(view.map_err(of_scene)?);
         self.resolved.push_front((without_camera, view.clone()));

@@ -99,7 +99,7 @@ pub fn case(
     let mut strategies = Vec::new();
     let mut light = None;
     for scene in scenes {
-        let view = view::resolve(scene, &case)?.for_adapter(gpu.is_software());
+        let view = view::resolve(scene, &case)?;
         let times = strategy(&mut renderer, &case, &view, frames, reporter);
         let what = || format!("{} by {}", case.about.name, view.strategy.name());
         let (times, light_times) = times.with_context(what)?;

@@ -7,7 +7,7 @@ use glam::DVec3;
 use super::{Integrator, Shape, constant, light, view};
 use crate::model::Grid;
 use crate::scene::LightingSpec;
-use crate::scene::lighting::OcclusionSpec;
+use crate::scene::lighting::{OcclusionSpec, VolumeSpec};
 use crate::view::lighting::Cone;
 use crate::view::{ClipPlane, View};
 
@@ -96,16 +96,19 @@ fn in_a_uniform_medium_all_rays_are_as_long_as_the_cone() {
 #[test]
 fn rays_start_by_the_voxels_that_the_view_decided_on() {
     let grid = row(&[0.0, 200.0]);
-    let found = [true, false].map(|is_software| {
+    let found = [10, 160].map(|budget| {
         let mut view = row_view(&grid, &[true], 0.03, 5);
         let extent = view.world_bounds[1] - view.world_bounds[0];
         let spec = LightingSpec {
             rays_gap: 2.0,
+            volume: VolumeSpec {
+                budget_mb: Some(budget),
+                ..VolumeSpec::default()
+            },
             ..LightingSpec::default()
         };
         // So many cells that the budget alone decides.
         view.lighting = crate::view::lighting::resolve(&spec, extent, 10_000_000).unwrap();
-        let view = view.for_adapter(is_software);
         let integrator = Integrator::new(&grid, &view);
         let found = transmittance(&integrator, 100.0, DVec3::X, &cone(20.0, 35.0), 1);
         let start = 2.0 * view.lighting.sigma();

@@ -51,11 +51,6 @@ impl Gpu {
         Self::open(&best_adapter(wanted)?)
     }
 
-    /// True where [`Self::new`] would open an adapter in software, or none.
-    pub fn is_software_at_hand(wanted: Option<&str>) -> bool {
-        best_adapter(wanted).map_or(true, |adapter| is_software(&adapter.get_info()))
-    }
-
     fn open(adapter: &wgpu::Adapter) -> Result<Self, GpuError> {
         let info = adapter.get_info();
         let unsuitable = |reason: String| GpuError::Unsuitable {

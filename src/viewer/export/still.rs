@@ -87,8 +87,7 @@ impl StillRenderer {
             ),
         };
         let renderer = &mut self.renderer.insert(kept).1;
-        let view = view.clone().for_adapter(self.gpu.is_software());
-        let frame = renderer.render(&case.grid, &view, progress)?;
+        let frame = renderer.render(&case.grid, view, progress)?;
         Ok(frame.map(|frame| frame.image))
     }
 

@@ -263,7 +263,7 @@ impl RenderStrategy for Srg {
             self.variant = variant;
         }
         self.faces.update(what.gpu, what.faces, 0.0);
-        let budget = settings.budget_bytes(what.gpu.is_software());
+        let budget = settings.budget_bytes();
         let limit = what.gpu.device.limits().max_texture_dimension_3d;
         let ghosts = view.ghosts.is_some();
         let shape = shape(what.model.dims(), &settings, ghosts, budget, limit);
