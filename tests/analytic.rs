@@ -10,7 +10,7 @@ use strataray::image::Image;
 use strataray::model::VertexField;
 use strataray::reference::{self, Locator};
 use strataray::render::Renderer;
-use strataray::render::gpu::{GpuGrid, probe};
+use strataray::render::gpu::{GpuGrid, GpuRenderer, probe};
 use strataray::scene::{
     CameraSpec, FramingCamera, Interpolation, OpacitySpec, Projection, RangeSpec, Scene,
     StrategyKind,
@@ -39,7 +39,12 @@ fn scene(azimuth: f64, elevation: f64, opacity: &[[f64; 2]]) -> Scene {
 }
 
 /// The picture by a strategy, or by the reference where there is none.
-fn picture(renderer: &mut Renderer, case: &Case, view: &View, by: Option<StrategyKind>) -> Image {
+fn picture(
+    renderer: &mut GpuRenderer,
+    case: &Case,
+    view: &View,
+    by: Option<StrategyKind>,
+) -> Image {
     let Some(strategy) = by else {
         return reference::render(&case.grid, view, &|_| true).unwrap();
     };
@@ -47,8 +52,8 @@ fn picture(renderer: &mut Renderer, case: &Case, view: &View, by: Option<Strateg
         strategy,
         ..view.clone()
     };
-    let frame = renderer.render(&case.grid, &view, &|_| true).unwrap();
-    frame.unwrap().image
+    let frame = renderer.render(&view, &|_| true).unwrap();
+    frame.image
 }
 
 fn all() -> impl Iterator<Item = Option<StrategyKind>> {
@@ -106,7 +111,7 @@ fn slab(low: DVec3, high: DVec3, shear: f64) -> Solid {
 
 fn check_alphas(case: &Case, solids: &[Solid], what: &str) {
     let Some(gpu) = common::gpu() else { return };
-    let mut renderer = Renderer::new(gpu, &case.grid).unwrap();
+    let mut renderer = GpuRenderer::new(gpu, &case.grid).unwrap();
     for (azimuth, elevation) in [(205.0, 35.0), (90.5, 7.0), (10.0, -50.0)] {
         let scene = scene(azimuth, elevation, &[[0.0, 0.6], [1.0, 0.6]]);
         let view = view::resolve(&scene, case).unwrap();
@@ -202,7 +207,7 @@ fn nothing_bleeds_across_a_fault() {
             [1.0, 0.0],
         ];
         let view = view::resolve(&scene(205.0, 35.0, &opacity), &case).unwrap();
-        let mut renderer = Renderer::new(gpu.clone(), &case.grid).unwrap();
+        let mut renderer = GpuRenderer::new(gpu.clone(), &case.grid).unwrap();
         let image = picture(&mut renderer, &case, &view, by);
         image.pixels.iter().filter(|p| p[3] > 0.0).count()
     };

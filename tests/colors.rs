@@ -13,6 +13,7 @@ use strataray::model::synthetic::Recipe;
 use strataray::model::{CellField, Dims, Grid, GridInput, derivatives};
 use strataray::reference;
 use strataray::render::Renderer;
+use strataray::render::gpu::GpuRenderer;
 use strataray::scene::{Interpolation, Scene, StrategyKind};
 use strataray::transfer::{Scale, boundaries};
 use strataray::view::step::steps;
@@ -55,7 +56,7 @@ fn least(strategy: StrategyKind) -> f64 {
 fn every_scale_and_coloring_agrees_with_the_reference() {
     let Some(gpu) = common::gpu() else { return };
     let case = load::open(&common::sample()).unwrap();
-    let mut renderer = Renderer::new(gpu, &case.grid).unwrap();
+    let mut renderer = GpuRenderer::new(gpu, &case.grid).unwrap();
     let opacity = json!([[0.0, 0.1], [1.0, 0.4]]);
     let plain = |property: &str| {
         view(
@@ -87,8 +88,8 @@ fn every_scale_and_coloring_agrees_with_the_reference() {
                 strategy,
                 ..view.clone()
             };
-            let frame = renderer.render(&case.grid, &shown, &|_| true).unwrap();
-            let db = psnr(&frame.unwrap().image, &truth, &view);
+            let frame = renderer.render(&shown, &|_| true).unwrap();
+            let db = psnr(&frame.image, &truth, &view);
             let what = format!(
                 "{property} {transfer} {}: {db:.1} dB, twin {apart:.1}",
                 strategy.name()

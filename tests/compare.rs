@@ -12,6 +12,7 @@ use glam::DVec3;
 use strataray::case::{Case, load};
 use strataray::compare::{Compared, Comparer, Plan, Reference, Report, Row, Setting, summary};
 use strataray::image::metrics::Comparison;
+use strataray::render::gpu::GpuExecutor;
 use strataray::scene::{CameraSpec, ExplicitCamera, Projection, Scene, StrategyKind};
 use strataray::view::{self, NamedView, TurnAxis, View, half_turns};
 
@@ -38,7 +39,7 @@ fn plan(case: &Case, reference: Reference, views: usize) -> Plan {
 
 /// All views of a plan, or `None` with a sentence where there is no adapter.
 fn compare(case: &Case, plan: &Plan) -> Option<Vec<Compared>> {
-    let mut comparer = Comparer::new(common::gpu()?, &case.grid, plan).unwrap();
+    let mut comparer = Comparer::new(&GpuExecutor::from(common::gpu()?), &case.grid, plan).unwrap();
     let view = |n| comparer.view(n, &|_| true).unwrap();
     Some((0..plan.views.len()).map(view).collect())
 }
@@ -154,7 +155,7 @@ fn a_report_tells_of_failures_and_of_cancelled_views() {
         };
         Report::begin(folder.path(), setting).unwrap()
     };
-    let mut comparer = Comparer::new(gpu.clone(), &case.grid, &plan).unwrap();
+    let mut comparer = Comparer::new(&GpuExecutor::from(gpu.clone()), &case.grid, &plan).unwrap();
     let mut compared = comparer.view(0, &|_| true).unwrap();
     let sentence = "the driver | said no";
     for outcome in &mut compared.outcomes {
@@ -185,7 +186,8 @@ fn progress_rises_and_cancels() {
     let case = load::open(&common::sample()).unwrap();
     for reference in [Reference::Cpu, ACCURATE] {
         let plan = plan(&case, reference, 1);
-        let mut comparer = Comparer::new(gpu.clone(), &case.grid, &plan).unwrap();
+        let mut comparer =
+            Comparer::new(&GpuExecutor::from(gpu.clone()), &case.grid, &plan).unwrap();
         let told = Mutex::new(Vec::new());
         let tell = |f| {
             told.lock().unwrap().push(f);

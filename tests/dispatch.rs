@@ -3,8 +3,9 @@
 
 mod common;
 
+use strataray::render::RenderError;
 use strataray::render::gpu::shader::{ENTRIES, compose};
-use strataray::render::gpu::{GpuError, Pipeline, tiles};
+use strataray::render::gpu::{Pipeline, tiles};
 
 /// Names and workgroup sizes of the compute entries of a shader, as its text has them.
 fn entries(shader: &str) -> Vec<(String, [u32; 3])> {
@@ -61,7 +62,10 @@ fn err_a_dispatch_that_is_too_large_is_named() {
     pipeline.dispatch(&mut encoder, &[], [rays, 1, 1]);
     gpu.queue.submit([encoder.finish()]);
     let error = gpu.check().unwrap_err();
-    assert!(matches!(error, GpuError::TooManyGroups { .. }), "{error}");
+    assert!(
+        matches!(error, RenderError::TooManyGroups { .. }),
+        "{error}"
+    );
     let words = error.to_string();
     assert!(
         words.contains("libc, walk") && words.contains("smaller"),

@@ -8,7 +8,7 @@ use common::shape::Shape;
 use glam::DVec3;
 use serde_json::json;
 
-use strataray::render::Renderer;
+use strataray::render::gpu::GpuRenderer;
 use strataray::scene::{ClipSpec, CutFace, Inactive, Scene};
 use strataray::view::View;
 
@@ -53,7 +53,7 @@ impl Found {
     fn new(shape: &Shape, scene: &Scene) -> Option<Self> {
         let gpu = common::gpu()?;
         let case = shape.case();
-        let mut renderer = Renderer::new(gpu.clone(), &case.grid).unwrap();
+        let mut renderer = GpuRenderer::new(gpu.clone(), &case.grid).unwrap();
         let (view, _) = render(&mut renderer, &case, scene);
         let light = renderer.light();
         let pyramid = Block::levels(&gpu, light.pyramid().unwrap());

@@ -13,6 +13,7 @@ use strataray::case::{Case, CaseError, Source, load};
 use strataray::image::metrics::psnr_8bit;
 use strataray::picture::{Annotations, Layout, finished};
 use strataray::render::Renderer;
+use strataray::render::gpu::GpuRenderer;
 use strataray::scene::{
     CameraSpec, ExplicitCamera, FramingCamera, Projection, RangeSpec, Scene, StepSpec,
 };
@@ -81,11 +82,11 @@ fn all_steps_have_one_range_and_a_given_one_wins() {
 fn pictures_are_those_of_render_with_the_range_of_all_steps() {
     let Some(gpu) = common::gpu() else { return };
     let case = load::open(&common::sample()).unwrap();
-    let mut renderer = Renderer::new(gpu, &case.grid).unwrap();
+    let mut renderer = GpuRenderer::new(gpu, &case.grid).unwrap();
     let mut picture = |view: &View| {
-        let frame = renderer.render(&case.grid, view, &|_| true).unwrap();
+        let frame = renderer.render(view, &|_| true).unwrap();
         let layout = Layout::of_picture(&case, view, true);
-        let picture = finished(&frame.unwrap().image, &case, view, &layout);
+        let picture = finished(&frame.image, &case, view, &layout);
         picture.pixels.into_flattened()
     };
     let scene = scene("PRESSURE");

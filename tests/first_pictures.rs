@@ -11,6 +11,7 @@ use strataray::case::{Case, load};
 use strataray::image::metrics::ciede2000_map;
 use strataray::model::derived::Derived;
 use strataray::render::Renderer;
+use strataray::render::gpu::GpuRenderer;
 use strataray::scene::Scene;
 use strataray::view::{self, View, look};
 
@@ -77,15 +78,11 @@ fn the_oil_shows() {
 }
 
 /// Pixels that a model covers from side to side: those of its opaque cells, less a rim of one pixel.
-fn silhouette(renderer: &mut Renderer, case: &Case, written: &serde_json::Value) -> Vec<bool> {
+fn silhouette(renderer: &mut GpuRenderer, case: &Case, written: &serde_json::Value) -> Vec<bool> {
     let mut cells = written.clone();
     cells["mode"] = "cells".into();
     let (_, view) = opened(case, &cells);
-    let image = renderer
-        .render(&case.grid, &view, &|_| true)
-        .unwrap()
-        .unwrap()
-        .image;
+    let image = renderer.render(&view, &|_| true).unwrap().image;
     let [width, height] = view.size.map(|n| n as usize);
     let covered = |x: usize, y: usize| image.pixels[y * width + x][3] > 0.99;
     let inside = |n: usize| {
@@ -104,17 +101,13 @@ fn nothing_inside_the_outline_is_taken_for_the_background() {
     let mut without = 0;
     for path in paths {
         let case = load::open(&path).unwrap();
-        let mut renderer = Renderer::new(gpu.clone(), &case.grid).unwrap();
+        let mut renderer = GpuRenderer::new(gpu.clone(), &case.grid).unwrap();
         let written = json!({"size": [240, 170]});
         let is_inside = silhouette(&mut renderer, &case, &written);
         let mut volume = written.clone();
         volume["mode"] = "volume".into();
-        let confused = |renderer: &mut Renderer, view: &View| {
-            let image = renderer
-                .render(&case.grid, view, &|_| true)
-                .unwrap()
-                .unwrap()
-                .image;
+        let confused = |renderer: &mut GpuRenderer, view: &View| {
+            let image = renderer.render(view, &|_| true).unwrap().image;
             let rgb = image.over_background_8bit(view.background);
             let ground = view.background.map(|v| (255.0 * v).round() as u8);
             let apart = ciede2000_map(&rgb, &vec![ground; rgb.len()]).unwrap();
@@ -141,16 +134,12 @@ fn sections_and_constant_properties_show_in_every_strategy() {
     for file in ["reported/F01_SLICE.EGRID", "reported/F02_CONST.EGRID"] {
         let Some(path) = data(file) else { return };
         let case = load::open(&path).unwrap();
-        let mut renderer = Renderer::new(gpu.clone(), &case.grid).unwrap();
+        let mut renderer = GpuRenderer::new(gpu.clone(), &case.grid).unwrap();
         for mode in ["cells", "volume"] {
             for strategy in ["plts", "libc", "srg"] {
                 let written = json!({"size": [240, 170], "mode": mode, "strategy": strategy});
                 let (_, view) = opened(&case, &written);
-                let image = renderer
-                    .render(&case.grid, &view, &|_| true)
-                    .unwrap()
-                    .unwrap()
-                    .image;
+                let image = renderer.render(&view, &|_| true).unwrap().image;
                 let rgb = image.over_background_8bit(view.background);
                 let ground = view.background.map(|v| (255.0 * v).round() as i32);
                 let differs =
@@ -197,15 +186,15 @@ fn occlusion_is_seen() {
     paths.extend(FIELDS.iter().chain(&more).filter_map(|f| data(f)));
     for path in paths {
         let case = load::open(&path).unwrap();
-        let mut renderer = Renderer::new(gpu.clone(), &case.grid).unwrap();
+        let mut renderer = GpuRenderer::new(gpu.clone(), &case.grid).unwrap();
         let mut picture = |light: &str| {
             let written = json!({
                 "size": [240, 170], "mode": "volume", "show": {"hull": "hidden"},
                 "lighting": strataray::scene::LightingSpec::preset(light).unwrap(),
             });
             let (_, view) = opened(&case, &written);
-            let frame = renderer.render(&case.grid, &view, &|_| true);
-            let image = frame.unwrap().unwrap().image;
+            let frame = renderer.render(&view, &|_| true);
+            let image = frame.unwrap().image;
             let rgb = image.over_background_8bit(view.background);
             (rgb, image.pixels)
         };

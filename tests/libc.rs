@@ -4,12 +4,12 @@
 mod common;
 
 use glam::DVec3;
-use strataray::case::{Case, load};
+use strataray::case::load;
 use strataray::image::Image;
 use strataray::image::metrics::psnr_8bit;
 use strataray::reference;
-use strataray::render::Renderer;
-use strataray::render::gpu::FrameStats;
+use strataray::render::gpu::GpuRenderer;
+use strataray::render::{FrameStats, Renderer};
 use strataray::scene::{
     CameraSpec, ExplicitCamera, FramingCamera, Integration, Interpolation, LibcSettings,
     Projection, Scene, StrategyKind,
@@ -37,9 +37,8 @@ fn with(view: &View, libc: LibcSettings) -> View {
     }
 }
 
-fn render(renderer: &mut Renderer, case: &Case, view: &View) -> (Image, FrameStats) {
-    let frame = renderer.render(&case.grid, view, &|_| true).unwrap();
-    let frame = frame.unwrap();
+fn render(renderer: &mut GpuRenderer, view: &View) -> (Image, FrameStats) {
+    let frame = renderer.render(view, &|_| true).unwrap();
     assert_eq!(frame.stats.lost_rays, 0);
     assert!(frame.image.pixels.iter().flatten().all(|v| v.is_finite()));
     (frame.image, frame.stats)
@@ -55,15 +54,15 @@ fn walking_across_faults_changes_the_cost_and_not_the_picture() {
     let Some(gpu) = common::gpu() else { return };
     for model in common::models() {
         let case = load::open(&model).unwrap();
-        let mut renderer = Renderer::new(gpu.clone(), &case.grid).unwrap();
+        let mut renderer = GpuRenderer::new(gpu.clone(), &case.grid).unwrap();
         for (azimuth, elevation) in [(205.0, 35.0), (80.0, 12.0), (0.0, 90.0)] {
             let view = view::resolve(&scene(azimuth, elevation), &case).unwrap();
-            let (across, walked) = render(&mut renderer, &case, &view);
+            let (across, walked) = render(&mut renderer, &view);
             let plain = LibcSettings {
                 cross_faults: false,
                 ..view.libc
             };
-            let (plain, peeled) = render(&mut renderer, &case, &with(&view, plain));
+            let (plain, peeled) = render(&mut renderer, &with(&view, plain));
             let db = psnr(&across, &plain, &view);
             println!(
                 "{} {azimuth}: {db:.1} dB, peels {} across and {} plain, recovered {} and {}, steps {}",
@@ -86,7 +85,7 @@ fn segments_are_the_limit_of_fine_steps() {
     let Some(gpu) = common::gpu() else { return };
     for model in common::models() {
         let case = load::open(&model).unwrap();
-        let mut renderer = Renderer::new(gpu.clone(), &case.grid).unwrap();
+        let mut renderer = GpuRenderer::new(gpu.clone(), &case.grid).unwrap();
         for (azimuth, interpolation) in
             [(205.0, Interpolation::Vertex), (80.0, Interpolation::Cell)]
         {
@@ -104,14 +103,14 @@ fn segments_are_the_limit_of_fine_steps() {
                 integration: Integration::Segments,
                 ..view.libc
             };
-            let (by_segment, segments) = render(&mut renderer, &case, &with(&view, segments));
+            let (by_segment, segments) = render(&mut renderer, &with(&view, segments));
             // Samples so coarse that they are a sixteenth of as many as by default.
             let coarse = View {
                 sampling_step: 16.0 * view.sampling_step,
                 ..view.clone()
             };
-            let (by_coarse, coarse) = render(&mut renderer, &case, &coarse);
-            let (limit, _) = render(&mut renderer, &case, &fine);
+            let (by_coarse, coarse) = render(&mut renderer, &coarse);
+            let (limit, _) = render(&mut renderer, &fine);
             let against_reference = psnr(&by_segment, &truth, &view);
             let found = [&by_segment, &by_coarse].map(|i| psnr(i, &limit, &view));
             println!(
@@ -130,7 +129,7 @@ fn an_eye_inside_the_model_sees_what_is_ahead() {
     let Some(gpu) = common::gpu() else { return };
     for model in common::models() {
         let case = load::open(&model).unwrap();
-        let mut renderer = Renderer::new(gpu.clone(), &case.grid).unwrap();
+        let mut renderer = GpuRenderer::new(gpu.clone(), &case.grid).unwrap();
         let outside = view::resolve(&scene(205.0, 35.0), &case).unwrap();
         // In the middle of the active cell halfway through the list.
         let cells = case.grid.active_cells();
@@ -149,9 +148,9 @@ fn an_eye_inside_the_model_sees_what_is_ahead() {
         });
         let view = view::resolve(&scene, &case).unwrap();
         let truth = reference::render(&case.grid, &view, &|_| true).unwrap();
-        let (image, _) = render(&mut renderer, &case, &view);
+        let (image, _) = render(&mut renderer, &view);
         let db = psnr(&image, &truth, &view);
-        let elsewhere = psnr(&render(&mut renderer, &case, &outside).0, &truth, &view);
+        let elsewhere = psnr(&render(&mut renderer, &outside).0, &truth, &view);
         println!(
             "{}: {db:.1} dB, from elsewhere {elsewhere:.1} dB",
             case.about.name

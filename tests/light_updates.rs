@@ -9,8 +9,9 @@ use common::light::{Block, lighting, render};
 use common::shape::boxes;
 use serde_json::{Value, json};
 use strataray::case::{Case, load};
-use strataray::render::Renderer;
+use strataray::render::gpu::GpuRenderer;
 use strataray::render::gpu::illumination::Made;
+use strataray::render::{RenderError, Renderer};
 use strataray::scene::Scene;
 use strataray::view;
 
@@ -39,7 +40,7 @@ fn parsed(scene: &Value) -> Scene {
 }
 
 /// The light volumes, one after the other.
-fn volumes(renderer: &Renderer) -> Vec<Vec<f64>> {
+fn volumes(renderer: &GpuRenderer) -> Vec<Vec<f64>> {
     let all = Block::read(renderer.gpu(), renderer.light().light_volumes().unwrap(), 0);
     let each = all.values.chunks(13 * 10 * 6);
     each.map(<[f64]>::to_vec).collect()
@@ -101,10 +102,10 @@ fn changes() -> Vec<Change> {
 fn a_change_remakes_what_depends_on_it_alone() {
     let Some(gpu) = common::gpu() else { return };
     let case = load::open(&common::sample()).unwrap();
-    let mut renderer = Renderer::new(gpu, &case.grid).unwrap();
+    let mut renderer = GpuRenderer::new(gpu, &case.grid).unwrap();
     let mut scene = lit();
     render(&mut renderer, &case, &parsed(&scene));
-    let counts = |renderer: &Renderer| {
+    let counts = |renderer: &GpuRenderer| {
         let Made {
             fields,
             pyramids,
@@ -142,13 +143,13 @@ fn a_cancelled_update_leaves_nothing_stale() {
         let mut scene = lit();
         // The same values, so that nothing but the cells tells one from the other.
         scene["filter"]["k"] = json!(layers);
-        let mut renderer = Renderer::new(gpu.clone(), &case.grid).unwrap();
+        let mut renderer = GpuRenderer::new(gpu.clone(), &case.grid).unwrap();
         render(&mut renderer, &case, &parsed(&scene));
         (parsed(&scene), volumes(&renderer))
     };
     let [(first, was), (second, expected)] = [[1, 4], [4, 9]].map(fresh);
     assert_ne!(was, expected);
-    let mut renderer = Renderer::new(gpu.clone(), &case.grid).unwrap();
+    let mut renderer = GpuRenderer::new(gpu.clone(), &case.grid).unwrap();
     let mut cancelled = 0;
     for calls in 0u32.. {
         render(&mut renderer, &case, &first);
@@ -157,10 +158,10 @@ fn a_cancelled_update_leaves_nothing_stale() {
         let view = view::resolve(&second, &case).unwrap();
         let left = Cell::new(calls);
         let progress = |_| left.replace(left.get().saturating_sub(1)) > 0;
-        let frame = renderer.render(&case.grid, &view, &progress).unwrap();
-        cancelled += u32::from(frame.is_none());
-        if frame.is_some() {
-            break;
+        match renderer.render(&view, &progress) {
+            Ok(_) => break,
+            Err(RenderError::Canceled) => cancelled += 1,
+            Err(error) => panic!("{error}"),
         }
         render(&mut renderer, &case, &second);
         assert!(volumes(&renderer) == expected, "after {calls} calls");
@@ -179,7 +180,7 @@ fn cube() -> Case {
 fn volumes_take_what_was_computed_and_are_freed() {
     let Some(gpu) = common::gpu() else { return };
     let case = cube();
-    let mut renderer = Renderer::new(gpu, &case.grid).unwrap();
+    let mut renderer = GpuRenderer::new(gpu, &case.grid).unwrap();
     let mut bytes = |spec: Value| {
         let scene = Scene {
             size: [8, 6],

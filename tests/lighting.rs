@@ -8,6 +8,7 @@ use glam::DVec3;
 use serde_json::{Value, json};
 use strataray::case::{Case, load};
 use strataray::render::Renderer;
+use strataray::render::gpu::GpuRenderer;
 use strataray::render::gpu::volume::Volume;
 use strataray::scene::lighting::PRESETS;
 use strataray::scene::{LightingSpec, Scene};
@@ -302,8 +303,8 @@ fn a_device_takes_the_volume_of_the_view() {
     let Some(gpu) = common::gpu() else { return };
     let case = load::open(&common::sample()).unwrap();
     let view = with_volume(&case, &json!({"budget_mb": 20}));
-    let mut renderer = Renderer::new(gpu, &case.grid).unwrap();
-    renderer.render(&case.grid, &view, &|_| true).unwrap();
+    let mut renderer = GpuRenderer::new(gpu, &case.grid).unwrap();
+    renderer.render(&view, &|_| true).unwrap();
     let light = renderer.light();
     let size = |volume: Option<&Volume>| volume.unwrap().shape.size;
     assert_eq!(size(light.field()), view.lighting.size());

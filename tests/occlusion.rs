@@ -19,7 +19,7 @@ use strataray::case::{Case, load};
 use strataray::image::Image;
 use strataray::image::metrics::ciede2000_map;
 use strataray::render::Renderer;
-use strataray::render::gpu::Gpu;
+use strataray::render::gpu::{Gpu, GpuRenderer};
 use strataray::scene::lighting::OcclusionSpec;
 use strataray::scene::{CameraSpec, ColorSpec, ExplicitCamera, Projection, Scene};
 use strataray::{reference, view};
@@ -70,7 +70,7 @@ fn models() -> Vec<(PathBuf, [f64; 4])> {
 struct Subject {
     name: String,
     case: Case,
-    renderer: Renderer,
+    renderer: GpuRenderer,
     camera: [f64; 4],
 }
 
@@ -79,7 +79,7 @@ impl Subject {
         let case = load::open(path).unwrap();
         Self {
             name: case.about.name.clone(),
-            renderer: Renderer::new(gpu.clone(), &case.grid).unwrap(),
+            renderer: GpuRenderer::new(gpu.clone(), &case.grid).unwrap(),
             case,
             camera,
         }
@@ -97,8 +97,8 @@ impl Subject {
         }))
         .unwrap();
         let view = view::resolve(&scene, &self.case).unwrap();
-        let frame = self.renderer.render(&self.case.grid, &view, &|_| true);
-        frame.unwrap().unwrap().image
+        let frame = self.renderer.render(&view, &|_| true);
+        frame.unwrap().image
     }
 }
 
@@ -272,7 +272,7 @@ fn rays_start_at_their_gap() {
     let Some(gpu) = common::gpu() else { return };
     let edge = [0.0, 40.0];
     let case = boxes(&edge, &edge, &edge, &|_| 0.5);
-    let mut renderer = Renderer::new(gpu, &case.grid).unwrap();
+    let mut renderer = GpuRenderer::new(gpu, &case.grid).unwrap();
     let opacity: f64 = 0.05;
     let gaps = [0.0, 1.0, 3.0];
     let expected = gaps.map(|gap| brightness_of_even_medium(-(1.0 - opacity).ln(), 40.0, gap));

@@ -9,6 +9,7 @@ use glam::{DVec2, DVec3};
 use strataray::case::load;
 use strataray::model::{CellField, Dims, Grid, GridInput, Hexahedron};
 use strataray::reference::{Located, Locator};
+use strataray::render;
 use strataray::render::gpu::{Gpu, GpuGrid, probe};
 use strataray::scene::Interpolation;
 
@@ -94,7 +95,7 @@ fn locate(
     gpu: &Gpu,
     grid: &Grid,
     points: &[DVec3],
-) -> Vec<(Option<probe::Located>, Option<Located>)> {
+) -> Vec<(Option<render::Located>, Option<Located>)> {
     let cells = grid.active_cells().len();
     let mut on_device = GpuGrid::new(gpu, grid).unwrap();
     let field = CellField::new(vec![1.0; cells]);
@@ -121,7 +122,7 @@ impl Tally {
     fn of(
         grid: &Grid,
         points: &[DVec3],
-        located: &[(Option<probe::Located>, Option<Located>)],
+        located: &[(Option<render::Located>, Option<Located>)],
     ) -> Self {
         let mut tally = Self::default();
         for (point, (found, truth)) in points.iter().zip(located) {
@@ -428,7 +429,7 @@ impl Answers {
     fn of(
         grid: &Grid,
         points: &[DVec3],
-        located: &[(Option<probe::Located>, Option<Located>)],
+        located: &[(Option<render::Located>, Option<Located>)],
     ) -> Self {
         let mut answers = Self::default();
         for (point, (on_device, truth)) in points.iter().zip(located) {

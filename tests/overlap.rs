@@ -8,6 +8,7 @@ use strataray::case::{Case, load};
 use strataray::image::Image;
 use strataray::reference;
 use strataray::render::Renderer;
+use strataray::render::gpu::GpuRenderer;
 use strataray::scene::{
     CameraSpec, FramingCamera, Interpolation, OpacitySpec, Projection, RangeSpec, Scene,
     StrategyKind,
@@ -53,15 +54,15 @@ fn mean_alpha(image: &Image) -> f64 {
 }
 
 /// Mean alpha by the reference and by each strategy.
-fn mean_alphas(renderer: &mut Renderer, case: &Case, view: &View) -> (f64, Vec<f64>) {
+fn mean_alphas(renderer: &mut GpuRenderer, case: &Case, view: &View) -> (f64, Vec<f64>) {
     let truth = reference::render(&case.grid, view, &|_| true).unwrap();
     let by = |strategy| {
         let view = View {
             strategy,
             ..view.clone()
         };
-        let frame = renderer.render(&case.grid, &view, &|_| true).unwrap();
-        mean_alpha(&frame.unwrap().image)
+        let frame = renderer.render(&view, &|_| true).unwrap();
+        mean_alpha(&frame.image)
     };
     let all = StrategyKind::ALL.into_iter().map(by).collect();
     (mean_alpha(&truth), all)
@@ -71,7 +72,7 @@ fn mean_alphas(renderer: &mut Renderer, case: &Case, view: &View) -> (f64, Vec<f
 fn a_hidden_cell_takes_no_point_from_one_that_is_drawn() {
     let Some(gpu) = common::gpu() else { return };
     let case = crossing();
-    let mut renderer = Renderer::new(gpu, &case.grid).unwrap();
+    let mut renderer = GpuRenderer::new(gpu, &case.grid).unwrap();
     let mut means = Vec::new();
     for k in [[1, 2], [1, 1], [2, 2]] {
         let view = view_of(&case, k);
@@ -101,7 +102,7 @@ fn the_reported_grid_has_the_right_mean() {
         return;
     };
     let case = load::open(&model).unwrap();
-    let mut renderer = Renderer::new(gpu, &case.grid).unwrap();
+    let mut renderer = GpuRenderer::new(gpu, &case.grid).unwrap();
     let text = std::fs::read_to_string(scene).unwrap();
     let scene: Scene = serde_json::from_str(&text).unwrap();
     let view = view::resolve(&scene, &case).unwrap();

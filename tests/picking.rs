@@ -16,6 +16,7 @@ use strataray::model::Ijk;
 use strataray::model::topology::Face;
 use strataray::picking::{Part, Pick, Picker};
 use strataray::render::Renderer;
+use strataray::render::gpu::GpuRenderer;
 use strataray::scene::{
     CameraSpec, ClipSpec, ColorSpec, CutFace, ExplicitCamera, Filter, Hull, Inactive,
     Interpolation, LightingSpec, OpacitySpec, Projection, RangeSpec, Scene,
@@ -108,9 +109,9 @@ fn what_is_picked_has_the_color_that_is_seen() {
     for model in models() {
         let case = load::open(&model).unwrap();
         let view = view::resolve(&opening(&case), &case).unwrap();
-        let mut renderer = Renderer::new(gpu.clone(), &case.grid).unwrap();
-        let frame = renderer.render(&case.grid, &view, &|_| true);
-        let image = frame.unwrap().unwrap().image;
+        let mut renderer = GpuRenderer::new(gpu.clone(), &case.grid).unwrap();
+        let frame = renderer.render(&view, &|_| true);
+        let image = frame.unwrap().image;
         let mut picker = Picker::default();
         let (mut shown, mut own, mut first) = (0, 0, 0);
         for (pixel, at) in covered(&image, PLACES) {
@@ -159,9 +160,9 @@ fn a_click_on_the_first_picture_takes_the_value_that_is_seen() {
             ..look::opening(&case, &serde_json::json!({})).unwrap()
         };
         let view = view::resolve(&scene, &case).unwrap();
-        let mut renderer = Renderer::new(gpu.clone(), &case.grid).unwrap();
-        let frame = renderer.render(&case.grid, &view, &|_| true);
-        let image = frame.unwrap().unwrap().image;
+        let mut renderer = GpuRenderer::new(gpu.clone(), &case.grid).unwrap();
+        let frame = renderer.render(&view, &|_| true);
+        let image = frame.unwrap().image;
         let mut picker = Picker::default();
         let (mut alike, mut first, mut whole) = (0, 0, 0);
         for (pixel, at) in covered(&image, PLACES) {
@@ -190,7 +191,7 @@ fn stepping_along_the_line_of_sight_reaches_all_cells() {
     let Some(gpu) = common::gpu() else { return };
     let case = load::open(&common::sample()).unwrap();
     let view = view::resolve(&opening(&case), &case).unwrap();
-    let mut renderer = Renderer::new(gpu, &case.grid).unwrap();
+    let mut renderer = GpuRenderer::new(gpu, &case.grid).unwrap();
     let mut picker = Picker::default();
     for at in [DVec2::splat(0.5), DVec2::new(0.4, 0.55)] {
         let pick = picker.pick(&mut renderer, &case, &view, at).unwrap();
@@ -250,7 +251,7 @@ const BLUE_TO_RED: [(f64, &str); 2] = [(0.0, "#0000ff"), (1.0, "#ff0000")];
 
 fn pick(case: &Case, scene: &Scene) -> Option<Pick> {
     let view = view::resolve(scene, case).unwrap();
-    let mut renderer = Renderer::new(common::gpu()?, &case.grid).unwrap();
+    let mut renderer = GpuRenderer::new(common::gpu()?, &case.grid).unwrap();
     let picked = Picker::default().pick(&mut renderer, case, &view, DVec2::splat(0.5));
     Some(picked.unwrap())
 }
@@ -496,7 +497,7 @@ fn a_fault_is_picked_where_it_is_what_is_seen() {
 fn one_picker_answers_for_every_view() {
     let Some(gpu) = common::gpu() else { return };
     let case = load::open(&common::sample()).unwrap();
-    let mut renderer = Renderer::new(gpu, &case.grid).unwrap();
+    let mut renderer = GpuRenderer::new(gpu, &case.grid).unwrap();
     let plain = opening(&case);
     let mut scenes = vec![plain.clone()];
     for (hull, faults) in [
@@ -551,7 +552,7 @@ fn the_command_gives_the_same_answer() {
     let scene = opening(&case);
     std::fs::write(&file, serde_json::to_string(&scene).unwrap()).unwrap();
     let view = view::resolve(&scene, &case).unwrap();
-    let mut renderer = Renderer::new(gpu, &case.grid).unwrap();
+    let mut renderer = GpuRenderer::new(gpu, &case.grid).unwrap();
     let at = middle([230, 190], view.size);
     let pick = Picker::default()
         .pick(&mut renderer, &case, &view, at)

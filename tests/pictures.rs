@@ -4,13 +4,14 @@
 mod common;
 
 use glam::{DVec2, DVec3};
-use strataray::case::{Case, load};
+use strataray::case::load;
 use strataray::image::Image;
 use strataray::image::metrics::{fraction_within, psnr_8bit, ssim_8bit};
 use strataray::model::CellIndex;
 use strataray::picking::Picker;
 use strataray::reference;
 use strataray::render::Renderer;
+use strataray::render::gpu::GpuRenderer;
 use strataray::scene::{
     CameraSpec, ClipSpec, CutFace, FramingCamera, Inactive, Interpolation, LightMode, LightingSpec,
     Projection, Scene, StrategyKind,
@@ -31,15 +32,12 @@ fn scene(azimuth: f64, elevation: f64, interpolation: Interpolation) -> Scene {
     }
 }
 
-fn on_gpu(renderer: &mut Renderer, case: &Case, view: &View, strategy: StrategyKind) -> Image {
+fn on_gpu(renderer: &mut GpuRenderer, view: &View, strategy: StrategyKind) -> Image {
     let view = View {
         strategy,
         ..view.clone()
     };
-    let frame = renderer
-        .render(&case.grid, &view, &|_| true)
-        .unwrap()
-        .unwrap();
+    let frame = renderer.render(&view, &|_| true).unwrap();
     let (image, stats) = (frame.image, frame.stats);
     assert!(image.pixels.iter().flatten().all(|v| v.is_finite()));
     assert_eq!(stats.lost_rays, 0);
@@ -73,7 +71,7 @@ fn strategies_agree_with_the_reference() {
     let Some(gpu) = common::gpu() else { return };
     for model in common::models() {
         let case = load::open(&model).unwrap();
-        let mut renderer = Renderer::new(gpu.clone(), &case.grid).unwrap();
+        let mut renderer = GpuRenderer::new(gpu.clone(), &case.grid).unwrap();
         for (azimuth, elevation, interpolation) in [
             (205.0, 35.0, Interpolation::Vertex),
             (80.0, 12.0, Interpolation::Cell),
@@ -90,7 +88,7 @@ fn strategies_agree_with_the_reference() {
                 case.about.name
             );
             for strategy in StrategyKind::ALL {
-                let image = on_gpu(&mut renderer, &case, &view, strategy);
+                let image = on_gpu(&mut renderer, &view, strategy);
                 let bytes = [&image, &truth].map(|i| i.over_background_8bit(view.background));
                 let found = [
                     psnr(&image, &truth, &view),
@@ -117,7 +115,7 @@ fn strategies_agree_with_the_reference() {
 fn a_shifted_camera_is_noticed() {
     let Some(gpu) = common::gpu() else { return };
     let case = load::open(&common::sample()).unwrap();
-    let mut renderer = Renderer::new(gpu, &case.grid).unwrap();
+    let mut renderer = GpuRenderer::new(gpu, &case.grid).unwrap();
     let view = view::resolve(&scene(205.0, 35.0, Interpolation::Vertex), &case).unwrap();
     let truth = reference::render(&case.grid, &view, &|_| true).unwrap();
     let mut shifted = view.clone();
@@ -127,7 +125,7 @@ fn a_shifted_camera_is_noticed() {
             .camera
             .eye
             .distance(0.5 * (shifted.world_bounds[0] + shifted.world_bounds[1])));
-    let image = on_gpu(&mut renderer, &case, &shifted, StrategyKind::Plts);
+    let image = on_gpu(&mut renderer, &shifted, StrategyKind::Plts);
     let (db, within) = (
         psnr(&image, &truth, &view),
         fraction_within(&image.pixels, &truth.pixels, 2e-3),
@@ -139,18 +137,18 @@ fn a_shifted_camera_is_noticed() {
 fn filters_and_cancel_work() {
     let Some(gpu) = common::gpu() else { return };
     let case = load::open(&common::sample()).unwrap();
-    let mut renderer = Renderer::new(gpu, &case.grid).unwrap();
+    let mut renderer = GpuRenderer::new(gpu, &case.grid).unwrap();
     let mut scene = scene(205.0, 35.0, Interpolation::Cell);
     scene.filter.k = Some([2, 3].into());
     let view = view::resolve(&scene, &case).unwrap();
     let truth = reference::render(&case.grid, &view, &|_| true).unwrap();
-    let image = on_gpu(&mut renderer, &case, &view, StrategyKind::Plts);
+    let image = on_gpu(&mut renderer, &view, StrategyKind::Plts);
     assert!(psnr(&image, &truth, &view) >= 45.0);
     scene.filter.k = None;
     let whole = view::resolve(&scene, &case).unwrap();
     assert!(
         psnr(
-            &on_gpu(&mut renderer, &case, &whole, StrategyKind::Plts),
+            &on_gpu(&mut renderer, &whole, StrategyKind::Plts),
             &truth,
             &view
         ) < 40.0
@@ -170,7 +168,7 @@ fn parallel_pictures_agree_with_the_reference() {
     let Some(gpu) = common::gpu() else { return };
     for model in common::models() {
         let case = load::open(&model).unwrap();
-        let mut renderer = Renderer::new(gpu.clone(), &case.grid).unwrap();
+        let mut renderer = GpuRenderer::new(gpu.clone(), &case.grid).unwrap();
         for (azimuth, elevation, inside) in [
             (205.0, 35.0, false),
             (90.0, 0.0, false),
@@ -203,7 +201,7 @@ fn parallel_pictures_agree_with_the_reference() {
             let twin = reference::render(&case.grid, &perspective, &|_| true).unwrap();
             let twin = psnr(&twin, &truth, &view);
             for strategy in StrategyKind::ALL {
-                let image = on_gpu(&mut renderer, &case, &view, strategy);
+                let image = on_gpu(&mut renderer, &view, strategy);
                 let found = psnr(&image, &truth, &view);
                 let what = format!(
                     "{} {} {azimuth}: {found:.1} dB, {twin:.1} dB in perspective",
@@ -226,7 +224,7 @@ fn parallel_pictures_agree_with_the_reference() {
 fn what_is_picked_in_parallel_lies_under_the_pointer() {
     let Some(gpu) = common::gpu() else { return };
     let case = load::open(&common::sample()).unwrap();
-    let mut renderer = Renderer::new(gpu, &case.grid).unwrap();
+    let mut renderer = GpuRenderer::new(gpu, &case.grid).unwrap();
     let mut scene = scene(205.0, 35.0, Interpolation::Vertex);
     let perspective = view::resolve(&scene, &case).unwrap();
     parallel(&mut scene);
@@ -265,7 +263,7 @@ fn what_is_picked_in_parallel_lies_under_the_pointer() {
 fn occlusion_in_parallel_agrees_with_the_reference() {
     let Some(gpu) = common::gpu() else { return };
     let case = load::open(&common::sample()).unwrap();
-    let mut renderer = Renderer::new(gpu, &case.grid).unwrap();
+    let mut renderer = GpuRenderer::new(gpu, &case.grid).unwrap();
     for (mode, inside, least) in [
         (LightMode::MonteCarlo, false, 45.0),
         (LightMode::MonteCarlo, true, 45.0),
@@ -303,14 +301,10 @@ fn occlusion_in_parallel_agrees_with_the_reference() {
             ..view.clone()
         };
         for strategy in StrategyKind::ALL {
-            let found = psnr(
-                &on_gpu(&mut renderer, &case, &view, strategy),
-                &truth,
-                &view,
-            );
+            let found = psnr(&on_gpu(&mut renderer, &view, strategy), &truth, &view);
             // The twins: no occlusion, and that of another camera.
             let [unlit, other] = [&dark, &perspective]
-                .map(|v| psnr(&on_gpu(&mut renderer, &case, v, strategy), &truth, &view));
+                .map(|v| psnr(&on_gpu(&mut renderer, v, strategy), &truth, &view));
             let what = format!(
                 "{mode:?} {} {inside}: {found:.1} dB, {unlit:.1} dB without, {other:.1} dB in perspective",
                 strategy.name()
@@ -339,7 +333,7 @@ fn clip_planes_and_their_sections_agree_with_the_reference() {
     let Some(gpu) = common::gpu() else { return };
     for model in common::models() {
         let case = load::open(&model).unwrap();
-        let mut renderer = Renderer::new(gpu.clone(), &case.grid).unwrap();
+        let mut renderer = GpuRenderer::new(gpu.clone(), &case.grid).unwrap();
         let mut scene = scene(205.0, 35.0, Interpolation::Vertex);
         scene.vertical_exaggeration = Some(8.0);
         let whole = view::resolve(&scene, &case).unwrap();
@@ -353,13 +347,9 @@ fn clip_planes_and_their_sections_agree_with_the_reference() {
             let opaque = truth.pixels.iter().filter(|p| p[3] == 1.0).count();
             assert_eq!(opaque > 30, face == CutFace::Opaque, "{}", case.about.name);
             for strategy in StrategyKind::ALL {
-                let image = on_gpu(&mut renderer, &case, &view, strategy);
+                let image = on_gpu(&mut renderer, &view, strategy);
                 let db = psnr(&image, &truth, &view);
-                let not_clipped = psnr(
-                    &on_gpu(&mut renderer, &case, &whole, strategy),
-                    &truth,
-                    &view,
-                );
+                let not_clipped = psnr(&on_gpu(&mut renderer, &whole, strategy), &truth, &view);
                 println!(
                     "{} {} {face:?}: {db:.1} dB, {not_clipped:.1} dB unclipped",
                     case.about.name,
@@ -384,7 +374,7 @@ fn ghosts_of_inactive_cells_agree_with_the_reference() {
         {
             continue;
         }
-        let mut renderer = Renderer::new(gpu.clone(), &case.grid).unwrap();
+        let mut renderer = GpuRenderer::new(gpu.clone(), &case.grid).unwrap();
         for interpolation in [Interpolation::Vertex, Interpolation::Cell] {
             let mut scene = scene(205.0, 35.0, interpolation);
             let without = view::resolve(&scene, &case).unwrap();
@@ -397,14 +387,10 @@ fn ghosts_of_inactive_cells_agree_with_the_reference() {
             };
             let truth = reference::render(&case.grid, &view, &|_| true).unwrap();
             // Showing the view before it is rendered changes nothing.
-            renderer.show(&case.grid, &view).unwrap();
+            renderer.prepare(&view).unwrap();
             for strategy in StrategyKind::ALL {
-                let db = psnr(
-                    &on_gpu(&mut renderer, &case, &view, strategy),
-                    &truth,
-                    &view,
-                );
-                let hidden = on_gpu(&mut renderer, &case, &without, strategy);
+                let db = psnr(&on_gpu(&mut renderer, &view, strategy), &truth, &view);
+                let hidden = on_gpu(&mut renderer, &without, strategy);
                 let hidden = psnr(&hidden, &truth, &view);
                 println!(
                     "{} {} {interpolation:?}: {db:.1} dB, {hidden:.1} dB without ghosts",

@@ -8,6 +8,7 @@ use glam::DVec3;
 use strataray::case::{Case, load};
 use strataray::model::{CellField, Dims, Grid, GridInput, VertexField};
 use strataray::reference::{self, Located, Locator};
+use strataray::render;
 use strataray::render::gpu::{Gpu, GpuGrid, probe};
 use strataray::scene::Interpolation;
 
@@ -67,7 +68,7 @@ fn compare(
     field: &CellField,
     vertices: &VertexField,
     points: &[DVec3],
-    gpu: &[Option<probe::Located>],
+    gpu: &[Option<render::Located>],
     cpu: &[Option<Located>],
 ) -> Tally {
     let statistics = field.statistics().unwrap();

@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 use strataray::case::Case;
 use strataray::image::Image;
 use strataray::reference::Ray;
-use strataray::render::Renderer;
+use strataray::render::gpu::GpuRenderer;
 use strataray::scene::{CameraSpec, ColorSpec, FramingCamera, Projection, StrategyKind};
 use strataray::view::View;
 
@@ -37,7 +37,7 @@ fn bar() -> Case {
 
 /// The picture under lights.
 fn picture(
-    renderer: &mut Renderer,
+    renderer: &mut GpuRenderer,
     case: &Case,
     lights: &[Light],
     mode: &str,
@@ -166,7 +166,7 @@ fn counted(view: &View, image: &Image, lights: &[Light]) -> ([u32; 4], u32) {
 fn check(name: &str, lights: &[Light], ways: &[(&str, StrategyKind)]) -> Option<[u32; 4]> {
     let gpu = common::gpu()?;
     let case = bar();
-    let mut renderer = Renderer::new(gpu, &case.grid).unwrap();
+    let mut renderer = GpuRenderer::new(gpu, &case.grid).unwrap();
     let mirrored: Vec<_> = lights.iter().map(|l| l.mirrored()).collect();
     let mut pixels = None;
     for &(mode, strategy) in ways {

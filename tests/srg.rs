@@ -27,8 +27,8 @@ use strataray::render::gpu::strategies::srg::Srg;
 use strataray::render::gpu::strategy::{Preparation, RenderStrategy};
 use strataray::render::gpu::tiles::Pace;
 use strataray::render::gpu::volume::Volume;
-use strataray::render::gpu::{Gpu, GpuGrid};
-use strataray::render::{Frame, Renderer};
+use strataray::render::gpu::{Gpu, GpuGrid, GpuRenderer};
+use strataray::render::{Frame, Job, RenderError, Renderer};
 use strataray::scene::{
     self, CameraSpec, ClipSpec, CutFace, ExplicitCamera, FramingCamera, Inactive, Interpolation,
     OpacitySpec, Projection, RangeSpec, Scene, SrgSettings, StrategyKind,
@@ -75,9 +75,8 @@ fn with(view: &View, srg: SrgSettings) -> View {
     }
 }
 
-fn render(renderer: &mut Renderer, case: &Case, view: &View) -> Frame {
-    let frame = renderer.render(&case.grid, view, &|_| true).unwrap();
-    let frame = frame.unwrap();
+fn render(renderer: &mut GpuRenderer, view: &View) -> Frame {
+    let frame = renderer.render(view, &|_| true).unwrap();
     assert!(frame.image.pixels.iter().flatten().all(|v| v.is_finite()));
     frame
 }
@@ -109,15 +108,19 @@ fn volume_of(
         .show(gpu, grid, field, &drawn, interpolation)
         .unwrap();
     let volume = Volume::new(gpu, voxels::Shape::of(grid.dims(), factor, false));
-    let mut slabs = Slabs {
-        gpu,
-        pace: &mut Pace::default(),
-        progress: &|_| true,
-    };
     let range = range_of(field);
     let mut resampler = Resampler::new(gpu, false).unwrap();
-    let done = resampler.fill(&mut slabs, &on_device, &volume, range, interpolation);
-    assert!(done.unwrap());
+    let fill = Job::new(|progress| {
+        let (on_device, volume, resampler) = (&on_device, &volume, &mut resampler);
+        Box::pin(async move {
+            let mut pace = Pace::default();
+            let mut slabs = Slabs::new(gpu, &mut pace, &progress);
+            resampler
+                .fill(&mut slabs, on_device, volume, range, interpolation)
+                .await
+        })
+    });
+    fill.run(&|_| true).unwrap();
     let halves =
         |word: &u32| [*word as u16, (*word >> 16) as u16].map(|h| f16::from_bits(h).into());
     let words = volume.read(gpu, 0).unwrap();
@@ -249,15 +252,25 @@ impl<'a> Bench<'a> {
             calls.set(calls.get() + 1);
             go_on
         };
-        let what = Preparation {
-            gpu: self.gpu,
-            model: &self.case.grid,
-            grid: &self.grid,
-            view,
-            faces: None,
-            progress: &progress,
+        let (gpu, model, grid, srg) = (self.gpu, &self.case.grid, &self.grid, &mut self.srg);
+        let prepare = Job::new(|told| {
+            Box::pin(async move {
+                let what = Preparation {
+                    gpu,
+                    model,
+                    grid,
+                    view,
+                    faces: None,
+                    progress: &told,
+                };
+                srg.prepare(&what).await
+            })
+        });
+        let done = match prepare.run(&progress) {
+            Ok(()) => true,
+            Err(RenderError::Canceled) => false,
+            Err(error) => panic!("{error}"),
         };
-        let done = self.srg.prepare(&what).unwrap();
         (done, self.srg.fills() - fills, calls.get())
     }
 }
@@ -356,10 +369,19 @@ fn a_fill_is_split_into_parts_that_the_pace_allows() {
             parts.borrow_mut().push(voxels.round() as u64);
             true
         };
-        let mut slabs = Slabs::new(&gpu, &mut pace, &progress);
         let range = range_of(&field);
-        let fill = resampler.fill(&mut slabs, &on_device, &volume, range, Interpolation::Cell);
-        assert!(fill.unwrap() && done.get() == 1.0);
+        let fill = Job::new(|told| {
+            let (gpu, on_device, volume) = (&gpu, &on_device, &volume);
+            let (pace, resampler) = (&mut pace, &mut resampler);
+            Box::pin(async move {
+                let mut slabs = Slabs::new(gpu, pace, &told);
+                resampler
+                    .fill(&mut slabs, on_device, volume, range, Interpolation::Cell)
+                    .await
+            })
+        });
+        fill.run(&progress).unwrap();
+        assert_eq!(done.get(), 1.0);
         parts.into_inner()
     };
     let learned = parts_at(Pace::default());
@@ -399,10 +421,10 @@ fn the_volume_fits_its_budget_or_has_its_factor() {
     let Some(gpu) = common::gpu() else { return };
     for model in common::models() {
         let case = load::open(&model).unwrap();
-        let mut renderer = Renderer::new(gpu.clone(), &case.grid).unwrap();
+        let mut renderer = GpuRenderer::new(gpu.clone(), &case.grid).unwrap();
         let mut bytes = |settings| {
             let view = view::resolve(&scene([20, 15], settings), &case).unwrap();
-            render(&mut renderer, &case, &view).bytes.resampled
+            render(&mut renderer, &view).bytes.resampled
         };
         for megabytes in [1, 3, 10] {
             let budget = u64::from(megabytes) << 20;
@@ -435,14 +457,9 @@ fn the_volume_fits_its_budget_or_has_its_factor() {
 }
 
 /// PSNR in dB to the plain march, and steps as a part of its steps.
-fn against_plain(
-    renderer: &mut Renderer,
-    case: &Case,
-    view: &View,
-    settings: SrgSettings,
-) -> [f64; 2] {
-    let plain = render(renderer, case, &with(view, PLAIN));
-    let frame = render(renderer, case, &with(view, settings));
+fn against_plain(renderer: &mut GpuRenderer, view: &View, settings: SrgSettings) -> [f64; 2] {
+    let plain = render(renderer, &with(view, PLAIN));
+    let frame = render(renderer, &with(view, settings));
     let steps = frame.stats.work as f64 / plain.stats.work as f64;
     [psnr(&frame.image, &plain.image, view), steps]
 }
@@ -452,7 +469,7 @@ fn each_switch_stays_within_its_error_of_the_plain_march() {
     let Some(gpu) = common::gpu() else { return };
     for model in common::models() {
         let case = load::open(&model).unwrap();
-        let mut renderer = Renderer::new(gpu.clone(), &case.grid).unwrap();
+        let mut renderer = GpuRenderer::new(gpu.clone(), &case.grid).unwrap();
         let mut scene = scene([200, 150], PLAIN);
         scene.transfer.opacity = Some(OpacitySpec::Points(UPPER_HALF.to_vec()));
         let view = view::resolve(&scene, &case).unwrap();
@@ -479,7 +496,7 @@ fn each_switch_stays_within_its_error_of_the_plain_march() {
             let [[db, steps], [twin_db, twin_steps]] = [change, twin].map(|change| {
                 let mut settings = PLAIN;
                 change(&mut settings);
-                against_plain(&mut renderer, &case, &view, settings)
+                against_plain(&mut renderer, &view, settings)
             });
             println!(
                 "{} {name}: {db:.1} dB with {steps:.2} of the steps; its twin {twin_db:.1} dB with {twin_steps:.2}",
@@ -498,7 +515,7 @@ fn dividing_by_presence_comes_nearer_to_the_reference() {
     let Some(gpu) = common::gpu() else { return };
     for model in common::models() {
         let case = load::open(&model).unwrap();
-        let mut renderer = Renderer::new(gpu.clone(), &case.grid).unwrap();
+        let mut renderer = GpuRenderer::new(gpu.clone(), &case.grid).unwrap();
         let view = view::resolve(&scene([120, 90], PLAIN), &case).unwrap();
         let truth = reference::render(&case.grid, &view, &|_| true).unwrap();
         let weighted = SrgSettings {
@@ -507,7 +524,7 @@ fn dividing_by_presence_comes_nearer_to_the_reference() {
         };
         let [without, with] = [PLAIN, weighted].map(|settings| {
             let view = with(&view, settings);
-            psnr(&render(&mut renderer, &case, &view).image, &truth, &view)
+            psnr(&render(&mut renderer, &view).image, &truth, &view)
         });
         println!(
             "{}: {without:.1} dB, {with:.1} dB divided by presence",
@@ -521,15 +538,15 @@ fn dividing_by_presence_comes_nearer_to_the_reference() {
 fn roulette_is_unbiased() {
     let Some(gpu) = common::gpu() else { return };
     let case = load::open(&common::sample()).unwrap();
-    let mut renderer = Renderer::new(gpu, &case.grid).unwrap();
+    let mut renderer = GpuRenderer::new(gpu, &case.grid).unwrap();
     let mut scene = scene([160, 120], PLAIN);
     scene.early_termination = 0.0;
     scene.transfer.opacity = Some(OpacitySpec::Points(vec![[0.0, 0.3], [1.0, 0.9]]));
     let view = view::resolve(&scene, &case).unwrap();
-    let plain = render(&mut renderer, &case, &view).image;
+    let plain = render(&mut renderer, &view).image;
     // Mean difference of all channels of the pixels that differ, in standard errors.
     let mut bias = |view: &View| {
-        let found = render(&mut renderer, &case, view).image;
+        let found = render(&mut renderer, view).image;
         let sums = |image: &Image| -> Vec<f64> {
             let sum = |p: &[f32; 4]| p.iter().map(|v| f64::from(*v)).sum();
             image.pixels.iter().map(sum).collect()
@@ -560,7 +577,7 @@ fn roulette_is_unbiased() {
     );
     assert!(pixels > 2000.0 && errors.abs() < 4.0 && twin.abs() > 20.0);
     // The same pixel, the same chance.
-    let [a, b] = [0, 1].map(|_| render(&mut renderer, &case, &by_chance).image);
+    let [a, b] = [0, 1].map(|_| render(&mut renderer, &by_chance).image);
     assert!(psnr(&a, &b, &view) > 60.0);
 }
 
@@ -568,7 +585,7 @@ fn roulette_is_unbiased() {
 fn quality_grows_with_the_factor() {
     let Some(gpu) = common::gpu() else { return };
     let case = load::open(&common::sample()).unwrap();
-    let mut renderer = Renderer::new(gpu, &case.grid).unwrap();
+    let mut renderer = GpuRenderer::new(gpu, &case.grid).unwrap();
     let view = view::resolve(&scene([120, 90], SrgSettings::default()), &case).unwrap();
     let truth = reference::render(&case.grid, &view, &|_| true).unwrap();
     let mut before = 0.0;
@@ -577,7 +594,7 @@ fn quality_grows_with_the_factor() {
             factor: Some(factor),
             ..SrgSettings::default()
         };
-        let image = render(&mut renderer, &case, &with(&view, settings)).image;
+        let image = render(&mut renderer, &with(&view, settings)).image;
         let found = compare(&image, &truth, &view);
         println!("factor {factor}: {found:?}");
         assert!(found.psnr_db > before + 1.0, "{factor}");
@@ -631,13 +648,16 @@ fn averages_are_means_of_an_odd_number_of_voxels_too() {
                 depth_or_array_layers,
             },
         );
-        let mut slabs = Slabs {
-            gpu: &gpu,
-            pace: &mut Pace::default(),
-            progress: &|_| true,
-        };
         let bricks = Bricks::unused(&gpu, size);
-        assert!(maker.average(&mut slabs, &volume, &bricks).unwrap());
+        let average = Job::new(|told| {
+            let (gpu, maker, volume, bricks) = (&gpu, &maker, &volume, &bricks);
+            Box::pin(async move {
+                let mut pace = Pace::default();
+                let mut slabs = Slabs::new(gpu, &mut pace, &told);
+                maker.average(&mut slabs, volume, bricks).await
+            })
+        });
+        average.run(&|_| true).unwrap();
         let mut worst: f64 = 0.0;
         for level in 1..shape.levels {
             let [below, made] = [level - 1, level].map(|l| pairs(&gpu, &volume, l));
@@ -663,12 +683,12 @@ fn averages_are_means_of_an_odd_number_of_voxels_too() {
 fn clip_planes_cut_and_show_exact_sections() {
     let Some(gpu) = common::gpu() else { return };
     let case = load::open(&common::sample()).unwrap();
-    let mut renderer = Renderer::new(gpu, &case.grid).unwrap();
+    let mut renderer = GpuRenderer::new(gpu, &case.grid).unwrap();
     let mut scene = scene([120, 90], SrgSettings::default());
     scene.vertical_exaggeration = Some(8.0);
     let whole = view::resolve(&scene, &case).unwrap();
     let middle = 0.5 * (whole.world_bounds[0] + whole.world_bounds[1]);
-    let uncut = render(&mut renderer, &case, &whole).image;
+    let uncut = render(&mut renderer, &whole).image;
     for face in [CutFace::Open, CutFace::Opaque] {
         scene.clip = vec![ClipSpec {
             point: middle.to_array(),
@@ -677,7 +697,7 @@ fn clip_planes_cut_and_show_exact_sections() {
         }];
         let view = view::resolve(&scene, &case).unwrap();
         let truth = reference::render(&case.grid, &view, &|_| true).unwrap();
-        let image = render(&mut renderer, &case, &view).image;
+        let image = render(&mut renderer, &view).image;
         let [cut, twin] = [&image, &uncut].map(|i| psnr(i, &truth, &view));
         println!("{face:?}: {cut:.1} dB, {twin:.1} dB uncut");
         assert!(cut > 40.0 && twin < 30.0);
@@ -700,7 +720,7 @@ fn clip_planes_cut_and_show_exact_sections() {
 fn an_eye_inside_the_model_sees_what_is_ahead() {
     let Some(gpu) = common::gpu() else { return };
     let case = load::open(&common::sample()).unwrap();
-    let mut renderer = Renderer::new(gpu, &case.grid).unwrap();
+    let mut renderer = GpuRenderer::new(gpu, &case.grid).unwrap();
     let mut scene = scene([120, 90], SrgSettings::default());
     let outside = view::resolve(&scene, &case).unwrap();
     let [low, high] = outside.world_bounds;
@@ -719,7 +739,7 @@ fn an_eye_inside_the_model_sees_what_is_ahead() {
     let truth = reference::render(&case.grid, &view, &|_| true).unwrap();
     let back = look_at(DVec3::new(low.x, low.y, middle.z));
     let [ahead, twin] = [&view, &back].map(|v| {
-        let image = render(&mut renderer, &case, v).image;
+        let image = render(&mut renderer, v).image;
         psnr(&image, &truth, &view)
     });
     println!("{ahead:.1} dB, {twin:.1} dB looking back");
@@ -730,7 +750,7 @@ fn an_eye_inside_the_model_sees_what_is_ahead() {
 fn ghosts_are_resampled_beside_the_field() {
     let Some(gpu) = common::gpu() else { return };
     let case = load::open(&common::sample()).unwrap();
-    let mut renderer = Renderer::new(gpu, &case.grid).unwrap();
+    let mut renderer = GpuRenderer::new(gpu, &case.grid).unwrap();
     // Only ghosts are seen, and they are seen well.
     let mut scene = scene([120, 90], SrgSettings::default());
     scene.transfer.opacity = Some(OpacitySpec::Points(vec![[0.0, 0.0], [1.0, 0.0]]));
@@ -740,7 +760,7 @@ fn ghosts_are_resampled_beside_the_field() {
     let view = view::resolve(&scene, &case).unwrap();
     let truth = reference::render(&case.grid, &view, &|_| true).unwrap();
     let [found, twin] = [&view, &hidden].map(|v| {
-        let image = render(&mut renderer, &case, v).image;
+        let image = render(&mut renderer, v).image;
         psnr(&image, &truth, &view)
     });
     println!("{found:.1} dB, {twin:.1} dB without ghosts");
@@ -759,13 +779,13 @@ fn undefined_values_and_hidden_cells_leave_holes() {
     let mut scene = scene([60, 45], SrgSettings::default());
     scene.property = Some("VALUE".into());
     scene.transfer.opacity = Some(OpacitySpec::Points(vec![[0.0, 0.9], [1.0, 0.9]]));
-    let mut renderer = Renderer::new(gpu, &case.grid).unwrap();
+    let mut renderer = GpuRenderer::new(gpu, &case.grid).unwrap();
     let view = view::resolve(&scene, &case).unwrap();
     let truth = reference::render(&case.grid, &view, &|_| true).unwrap();
-    let db = psnr(&render(&mut renderer, &case, &view).image, &truth, &view);
+    let db = psnr(&render(&mut renderer, &view).image, &truth, &view);
     scene.filter.i = Some([1, 2].into());
     let half = view::resolve(&scene, &case).unwrap();
-    let twin = psnr(&render(&mut renderer, &case, &half).image, &truth, &view);
+    let twin = psnr(&render(&mut renderer, &half).image, &truth, &view);
     println!("{db:.1} dB, {twin:.1} dB where half of the cells are hidden");
     assert!(db > 35.0 && twin < 25.0);
 }
@@ -801,11 +821,11 @@ fn err_settings_out_of_range_are_named() {
 }
 
 /// CPU time of a frame in milliseconds, the mean of several.
-fn cpu_time(renderer: &mut Renderer, case: &Case, view: &View) -> f64 {
+fn cpu_time(renderer: &mut GpuRenderer, view: &View) -> f64 {
     const FRAMES: u32 = 9;
     let start = process::cpu_time();
     for _ in 0..FRAMES {
-        render(renderer, case, view);
+        render(renderer, view);
     }
     1e3 * (process::cpu_time() - start).as_secs_f64() / f64::from(FRAMES)
 }
@@ -820,11 +840,11 @@ fn table_of_factors() {
     println!("| --- | --- | --- | --- | --- | --- | --- | --- |");
     for model in common::models() {
         let case = load::open(&model).unwrap();
-        let mut renderer = Renderer::new(gpu.clone(), &case.grid).unwrap();
+        let mut renderer = GpuRenderer::new(gpu.clone(), &case.grid).unwrap();
         let view = view::resolve(&scene([240, 180], SrgSettings::default()), &case).unwrap();
         let truth = reference::render(&case.grid, &view, &|_| true).unwrap();
         // The first fill compiles shaders.
-        render(&mut renderer, &case, &view);
+        render(&mut renderer, &view);
         for factor in [1.0, 2.0, 3.0, 4.0, 6.0, 8.0] {
             let settings = SrgSettings {
                 factor: Some(factor),
@@ -832,9 +852,9 @@ fn table_of_factors() {
             };
             let view = with(&view, settings);
             let start = process::cpu_time();
-            let frame = render(&mut renderer, &case, &view);
+            let frame = render(&mut renderer, &view);
             let both = 1e3 * (process::cpu_time() - start).as_secs_f64();
-            let each = cpu_time(&mut renderer, &case, &view);
+            let each = cpu_time(&mut renderer, &view);
             let c = compare(&frame.image, &truth, &view);
             println!(
                 "| {} | {factor} | {:.1} | {:.0} | {each:.0} | {:.1} | {:.4} | {:.2}, {:.2} |",
@@ -869,20 +889,20 @@ fn table_of_switches() {
     let mut header = String::from("| switch | opacity |");
     for model in common::models() {
         let case = load::open(&model).unwrap();
-        let mut renderer = Renderer::new(gpu.clone(), &case.grid).unwrap();
+        let mut renderer = GpuRenderer::new(gpu.clone(), &case.grid).unwrap();
         header += &format!(" {} |", case.about.name);
         for (upper, curve) in [None, Some(UPPER_HALF.to_vec())].into_iter().enumerate() {
             let mut scene = scene([400, 300], PLAIN);
             scene.transfer.opacity = curve.map(OpacitySpec::Points);
             let view = view::resolve(&scene, &case).unwrap();
-            let plain = render(&mut renderer, &case, &view);
-            let time = cpu_time(&mut renderer, &case, &view);
+            let plain = render(&mut renderer, &view);
+            let time = cpu_time(&mut renderer, &view);
             for (at, (name, change)) in switches.iter().enumerate() {
                 let mut settings = PLAIN;
                 change(&mut settings);
                 let view = with(&view, settings);
-                let frame = render(&mut renderer, &case, &view);
-                let gain = time / cpu_time(&mut renderer, &case, &view);
+                let frame = render(&mut renderer, &view);
+                let gain = time / cpu_time(&mut renderer, &view);
                 let steps = frame.stats.work as f64 / plain.stats.work as f64;
                 let c = compare(&frame.image, &plain.image, &view);
                 let row = &mut rows[2 * at + upper];

@@ -6,8 +6,8 @@ mod common;
 use common::shape::Shape;
 use strataray::case::{Case, load};
 use strataray::reference::{Locator, Ray};
-use strataray::render::Renderer;
-use strataray::render::gpu::FrameStats;
+use strataray::render::gpu::GpuRenderer;
+use strataray::render::{FrameStats, Renderer};
 use strataray::scene::{CameraSpec, FramingCamera, OpacitySpec, Projection, Scene, StrategyKind};
 use strataray::view::{self, View};
 
@@ -62,13 +62,13 @@ fn by_reference(case: &Case, view: &View) -> Counts {
     counts
 }
 
-fn stats(renderer: &mut Renderer, case: &Case, view: &View, strategy: StrategyKind) -> FrameStats {
+fn stats(renderer: &mut GpuRenderer, view: &View, strategy: StrategyKind) -> FrameStats {
     let view = View {
         strategy,
         ..view.clone()
     };
-    let frame = renderer.render(&case.grid, &view, &|_| true).unwrap();
-    frame.unwrap().stats
+    let frame = renderer.render(&view, &|_| true).unwrap();
+    frame.stats
 }
 
 /// Columns whose pillars stand anywhere near their places, so that some cells are concave and some fold over.
@@ -98,8 +98,8 @@ fn frames_count_what_the_reference_counts() {
     ] {
         let view = view_of(&case);
         let truth = by_reference(&case, &view);
-        let mut renderer = Renderer::new(gpu.clone(), &case.grid).unwrap();
-        let [libc, plts, srg] = StrategyKind::ALL.map(|s| stats(&mut renderer, &case, &view, s));
+        let mut renderer = GpuRenderer::new(gpu.clone(), &case.grid).unwrap();
+        let [libc, plts, srg] = StrategyKind::ALL.map(|s| stats(&mut renderer, &view, s));
         println!("{name}: {truth:?}");
         for (strategy, s) in [("libc", libc), ("plts", plts), ("srg", srg)] {
             println!(
@@ -132,7 +132,7 @@ fn frames_count_what_the_reference_counts() {
             sampling_step: 1.1 * view.sampling_step,
             ..view.clone()
         };
-        let coarse = stats(&mut renderer, &case, &coarse, StrategyKind::Plts);
+        let coarse = stats(&mut renderer, &coarse, StrategyKind::Plts);
         assert!(!is_close(coarse.samples, truth.samples, 0.05), "{name}");
     }
 }

@@ -2,11 +2,11 @@
 
 use std::path::PathBuf;
 
-use anyhow::{Context, ensure};
+use anyhow::{Context, bail, ensure};
 use strataray::case::Case;
 use strataray::picture::film::{Film, FilmFormat, FilmShape};
-use strataray::picture::filming::shoot;
-use strataray::render::Renderer;
+use strataray::picture::filming::{FilmingError, shoot};
+use strataray::render::RenderError;
 use strataray::scene::Scene;
 use strataray::view::{Sequence, Turn, step};
 
@@ -74,7 +74,7 @@ enum Over {
 }
 
 /// What a user who pressed Ctrl-C reads.
-const CANCELLED: &str = "the animation was canceled; nothing was written";
+const CANCELED: &str = "the animation was canceled; nothing was written";
 
 pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let reporter = Reporter::new(arguments.verbosity);
@@ -90,16 +90,16 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let [low, high] = sequence.range();
     reporter.detail(&format!("{pictures} images of values {low} to {high}"));
     let film = Film::create(&arguments.output, shape(arguments, scene.size, pictures))?;
-    let gpu = arguments.options.open_gpu(&reporter)?;
-    let mut renderer = Renderer::new(gpu, &case.grid)?;
+    let executor = arguments.options.open_executor(&reporter)?;
+    let mut renderer = executor.renderer(&case.grid)?;
     let plain = arguments.plain;
     let made = reporter.bar(format!("{pictures} pictures"), |progress| {
-        shoot(&mut renderer, &case, &sequence, film, plain, &|f| {
-            progress(f)
-        })
-    })?;
-    ensure!(made, CANCELLED);
-    Ok(())
+        shoot(&mut *renderer, &case, &sequence, film, plain, progress)
+    });
+    match made {
+        Err(FilmingError::Render(RenderError::Canceled)) => bail!(CANCELED),
+        made => Ok(made?),
+    }
 }
 
 /// Refuses what cannot become a film before anything takes time.
@@ -144,7 +144,7 @@ fn sequence(
             let found = reporter.bar("range of the steps", |progress| {
                 Sequence::over_steps(scene, case, &steps, &|f| progress(f))
             });
-            found?.context(CANCELLED)
+            found?.context(CANCELED)
         }
         Over::Orbit => {
             let turn = Turn {

@@ -74,7 +74,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let strategies = strategies(arguments)?;
     let case = arguments.options.open_case(&arguments.case, &reporter)?;
     let scene = arguments.options.scene(&case, &reporter)?;
-    let gpu = arguments.options.open_gpu(&reporter)?;
+    let executor = arguments.options.open_executor(&reporter)?;
     let plan = Plan {
         strategies,
         reference: match arguments.reference {
@@ -87,11 +87,11 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let setting = Setting {
         case: &case,
         plan: &plan,
-        adapter: gpu.describe(),
+        adapter: executor.info().adapter,
         difference_scale: arguments.difference_scale,
     };
     let mut report = Report::begin(&arguments.output, setting)?;
-    let mut comparer = Comparer::new(gpu, &case.grid, &plan)?;
+    let mut comparer = Comparer::new(&*executor, &case.grid, &plan)?;
     let all = plan.views.len();
     let done = reporter.bar("comparing", |progress| {
         for n in 0..all {

@@ -8,7 +8,6 @@ use serde_json::{Value, json};
 use strataray::case::Case;
 use strataray::picking::{CellOnRay, Fault, Hit, Part, Pick, Picker};
 use strataray::picture::{Shot, short_unit};
-use strataray::render::Renderer;
 
 use super::Verbosity;
 use super::progress::Reporter;
@@ -47,9 +46,9 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let scene = arguments.options.scene(&case, &reporter)?;
     let shot = Shot::of(&scene, &case, arguments.plain)?;
     let at = place(&shot, scene.size, pixel)?;
-    let gpu = arguments.options.open_gpu(&reporter)?;
-    let mut renderer = Renderer::new(gpu, &case.grid)?;
-    let pick = Picker::default().pick(&mut renderer, &case, &shot.view, at)?;
+    let executor = arguments.options.open_executor(&reporter)?;
+    let mut renderer = executor.renderer(&case.grid)?;
+    let pick = Picker::default().pick(&mut *renderer, &case, &shot.view, at)?;
     match arguments.json {
         true => println!(
             "{}",

@@ -8,8 +8,8 @@ use glam::DVec3;
 use strataray::case::Case;
 use strataray::model::{CellField, Ijk, Spaces, VertexField};
 use strataray::reference::{self, Locator};
-use strataray::render::gpu::{Gpu, GpuGrid, probe};
-use strataray::scene::Interpolation;
+use strataray::scene::{Interpolation, Scene, StepSpec};
+use strataray::{render, view};
 
 use super::Verbosity;
 use super::choice::{INTERPOLATIONS, one_of};
@@ -82,7 +82,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
         .collect();
     let answers = match arguments.on {
         On::Cpu => on_cpu(&case, &field, &in_grid, arguments.interpolation),
-        On::Gpu => on_gpu(arguments, &case, &field, &in_grid)?,
+        On::Gpu => on_gpu(arguments, &case, step, &in_grid)?,
     };
     match &arguments.output {
         Some(path) => {
@@ -115,17 +115,21 @@ fn on_cpu(
 fn on_gpu(
     arguments: &Arguments,
     case: &Case,
-    field: &CellField,
+    step: usize,
     points: &[DVec3],
 ) -> anyhow::Result<Vec<Answer>> {
-    let gpu = Gpu::new(arguments.adapter.as_deref())?;
-    let mut grid = GpuGrid::new(&gpu, &case.grid)?;
-    let cells = case.grid.active_cells().iter().zip(field.values());
-    let drawn: Vec<bool> = cells
-        .map(|(&c, v)| !v.is_nan() && case.grid.has_thickness(case.grid.dims().ijk(c)))
-        .collect();
-    grid.show(&gpu, &case.grid, field, &drawn, arguments.interpolation)?;
-    let located = probe::locate(&gpu, &grid, &case.grid, points, arguments.interpolation)?;
+    let scene = Scene {
+        property: Some(arguments.property.clone()),
+        step: StepSpec::Index(step),
+        interpolation: arguments.interpolation,
+        vertical_exaggeration: Some(1.0),
+        ..Scene::default()
+    };
+    let view = view::resolve(&scene, case)?;
+    let to_world = |p: &DVec3| view.spaces.world_from_grid.transform_point3(*p);
+    let in_world: Vec<DVec3> = points.iter().map(to_world).collect();
+    let executor = render::executor(arguments.adapter.as_deref())?;
+    let located = executor.renderer(&case.grid)?.locate(&view, &in_world)?;
     Ok(located
         .into_iter()
         .map(|l| l.map(|l| (l.ijk, l.parameters, l.value)))

@@ -1,7 +1,6 @@
 //! `strataray render`: one picture of a case, without a window.
 
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use anyhow::Context;
@@ -10,9 +9,7 @@ use strataray::case::Case;
 use strataray::image::Image;
 use strataray::picture::{self, Shot};
 use strataray::reference;
-use strataray::render::gpu::Gpu;
-use strataray::render::gpu::illumination::LightTimes;
-use strataray::render::{Frame, Renderer};
+use strataray::render::{Executor, ExecutorInfo, Frame, LightTimes, RenderError, SetupTimes};
 
 use super::Verbosity;
 use super::process::cpu_time;
@@ -53,8 +50,7 @@ pub struct Arguments {
 struct Stages {
     open: Duration,
     read: Duration,
-    upload: Duration,
-    acceleration: Duration,
+    setup: SetupTimes,
     first_frame: Duration,
     light: LightTimes,
 }
@@ -79,8 +75,8 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
             })
             .context("the reference was canceled")?
     } else {
-        let gpu = arguments.options.open_gpu(&reporter)?;
-        on_gpu(arguments, &case, &shot, &gpu, stages, &reporter)?
+        let executor = arguments.options.open_executor(&reporter)?;
+        executed(arguments, &case, &shot, &*executor, stages, &reporter)?
     };
     match format {
         picture::Format::Exr => picture::write_exr(&arguments.output, &image)?,
@@ -92,25 +88,24 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
     Ok(())
 }
 
-fn on_gpu(
+fn executed(
     arguments: &Arguments,
     case: &Case,
     shot: &Shot,
-    gpu: &Arc<Gpu>,
+    executor: &dyn Executor,
     mut stages: Stages,
     reporter: &Reporter,
 ) -> anyhow::Result<Image> {
     let view = &shot.view;
-    let start = Instant::now();
-    let mut renderer = Renderer::new(gpu.clone(), &case.grid)?;
-    stages.acceleration = renderer.acceleration_time();
-    stages.upload = start.elapsed().saturating_sub(stages.acceleration);
+    let mut renderer = executor.renderer(&case.grid)?;
+    stages.setup = renderer.setup_times();
+    let info = executor.info();
     let mut frame = || {
-        reporter
-            .bar("rendering", |progress| {
-                renderer.render(&case.grid, view, &|f| progress(f))
-            })?
-            .context("the image was canceled")
+        let made = reporter.bar("rendering", |progress| renderer.render(view, progress));
+        match made {
+            Err(RenderError::Canceled) => anyhow::bail!("the image was canceled"),
+            made => Ok(made?),
+        }
     };
     let start = Instant::now();
     let first = frame()?;
@@ -121,7 +116,7 @@ fn on_gpu(
         view.strategy.name(),
         1e3 * first.stats.frame.as_secs_f64(),
         1e3 * first.prepare.as_secs_f64(),
-        gpu.describe()
+        info.adapter
     ));
     let Some(path) = &arguments.stats else {
         return Ok(first.image);
@@ -136,7 +131,7 @@ fn on_gpu(
         timed.push(again);
     }
     let median = Frame::median(timed).context("no frame was timed")?;
-    let stats = statistics(case, shot, gpu, &median, &stages);
+    let stats = statistics(case, shot, &info, &median, &stages);
     write_json(path, &stats)?;
     Ok(median.image)
 }
@@ -149,7 +144,7 @@ fn write_json(path: &Path, value: &serde_json::Value) -> anyhow::Result<()> {
 fn statistics(
     case: &Case,
     shot: &Shot,
-    gpu: &Gpu,
+    info: &ExecutorInfo,
     frame: &Frame,
     stages: &Stages,
 ) -> serde_json::Value {
@@ -158,8 +153,9 @@ fn statistics(
     let stats = &frame.stats;
     json!({
         "strategy": shot.view.strategy.name(),
-        "executor": "gpu",
-        "adapter": gpu.describe(),
+        "executor": info.executor,
+        "adapter": info.adapter,
+        "budget_mb": {"extinction": shot.view.lighting.budget_mb(), "srg": shot.view.srg.budget_bytes() >> 20},
         "size": shot.layout.size.to_array().map(|n| n as u32),
         "volume_size": shot.view.size,
         "frame_ms": ms(stats.frame),
@@ -186,8 +182,8 @@ fn statistics(
             "open": ms(stages.open.saturating_sub(load.model)),
             "read": ms(stages.read),
             "model": ms(load.model),
-            "upload": ms(stages.upload),
-            "acceleration": ms(stages.acceleration),
+            "upload": ms(stages.setup.upload),
+            "acceleration": ms(stages.setup.acceleration),
             "light_field": ms(stages.light.field),
             "light_extinction": ms(stages.light.extinction),
             "light_volumes": ms(stages.light.volumes),

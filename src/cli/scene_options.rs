@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use anyhow::Context;
 use strataray::case::{Case, load};
-use strataray::render::gpu::Gpu;
+use strataray::render::{self, Executor};
 use strataray::scene::lighting::PRESETS;
 use strataray::scene::{
     CameraSpec, FramingCamera, Interpolation, LightMode, LightingSpec, Mode, Projection, Scene,
@@ -174,16 +174,17 @@ impl SceneOptions {
         self.added.open_case(path, reporter)
     }
 
-    /// Opens the adapter and says where it is none.
-    pub fn open_gpu(&self, reporter: &Reporter) -> anyhow::Result<Arc<Gpu>> {
-        let gpu = Gpu::new(self.adapter.as_deref())?;
-        if gpu.is_software() {
+    /// Opens what makes the images, and says where it is no GPU.
+    pub fn open_executor(&self, reporter: &Reporter) -> anyhow::Result<Arc<dyn Executor>> {
+        let executor = render::executor(self.adapter.as_deref())?;
+        let info = executor.info();
+        if info.is_software {
             reporter.note(&format!(
                 "no GPU is used: {} computes on the CPU",
-                gpu.describe()
+                info.adapter
             ));
         }
-        Ok(Arc::new(gpu))
+        Ok(executor)
     }
 }
 

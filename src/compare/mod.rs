@@ -17,8 +17,7 @@ use crate::image::metrics::{Comparison, ciede2000_map};
 use crate::image::{Image, Rgb8};
 use crate::model::Grid;
 use crate::reference;
-use crate::render::gpu::{Gpu, GpuError};
-use crate::render::{Frame, Renderer};
+use crate::render::{Executor, Frame, RenderError, Renderer};
 use crate::scene::StrategyKind;
 use crate::view::{NamedView, View};
 
@@ -88,9 +87,8 @@ pub struct Outcome {
 
 /// Makes the pictures of a plan.
 pub struct Comparer<'a> {
-    grid: &'a Grid,
     plan: &'a Plan,
-    renderer: Renderer,
+    renderer: Box<dyn Renderer>,
     /// What the first preparation of each strategy took.
     prepared: Vec<(StrategyKind, Duration)>,
 }
@@ -103,13 +101,16 @@ impl<'a> Comparer<'a> {
     ///
     /// # Errors
     /// When the adapter cannot hold them.
-    pub fn new(gpu: Arc<Gpu>, grid: &'a Grid, plan: &'a Plan) -> Result<Self, GpuError> {
-        let mut renderer = Renderer::new(gpu, grid)?;
+    pub fn new(
+        executor: &dyn Executor,
+        grid: &Arc<Grid>,
+        plan: &'a Plan,
+    ) -> Result<Self, RenderError> {
+        let mut renderer = executor.renderer(grid)?;
         if let Some(first) = plan.views.first() {
-            renderer.show(grid, &first.view)?;
+            renderer.prepare(&first.view)?;
         }
         Ok(Self {
-            grid,
             plan,
             renderer,
             prepared: Vec::new(),
@@ -162,8 +163,10 @@ impl<'a> Comparer<'a> {
             ..view.clone()
         };
         let progress = pictures.next();
-        let rendered = self.renderer.render(self.grid, &view, &progress);
-        rendered.map_err(|error| error.to_string()).transpose()
+        match self.renderer.render(&view, &progress) {
+            Err(RenderError::Canceled) => None,
+            rendered => Some(rendered.map_err(|error| error.to_string())),
+        }
     }
 
     fn remember(&mut self, kind: StrategyKind, prepare: Duration) {
@@ -190,7 +193,7 @@ impl<'a> Comparer<'a> {
         };
         let Reference::Strategy(kind) = self.plan.reference else {
             let start = Instant::now();
-            let image = reference::render(self.grid, view, &pictures.next())?;
+            let image = reference::render(self.renderer.grid(), view, &pictures.next())?;
             return Some((Ok(finished(&image, view)), start.elapsed()));
         };
         Some(match shots.iter().find(|(k, _)| *k == kind) {

@@ -34,9 +34,9 @@ pub struct Row {
     pub prepare_ms: Option<f64>,
     /// Bytes on the device for all purposes together.
     pub gpu_bytes: Option<u64>,
-    /// See [`crate::render::gpu::FrameStats::recovered_rays`].
+    /// See [`crate::render::FrameStats::recovered_rays`].
     pub recovered_rays: Option<u64>,
-    /// See [`crate::render::gpu::FrameStats::lost_rays`].
+    /// See [`crate::render::FrameStats::lost_rays`].
     pub lost_rays: Option<u64>,
     /// File of the picture.
     pub picture: Option<String>,

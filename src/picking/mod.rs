@@ -30,8 +30,7 @@ use glam::{DVec2, DVec3};
 use crate::case::{Case, CaseError};
 use crate::model::topology::{Behind, Face};
 use crate::model::{Grid, Ijk};
-use crate::render::Renderer;
-use crate::render::gpu::GpuError;
+use crate::render::{RenderError, Renderer};
 use crate::view::View;
 
 use gather::{Gathered, Passed, Source};
@@ -141,7 +140,7 @@ impl Fault {
 pub enum PickError {
     /// The device reports an error.
     #[error(transparent)]
-    Device(#[from] GpuError),
+    Render(#[from] RenderError),
     /// The property's values cannot be read.
     #[error(transparent)]
     Case(#[from] CaseError),
@@ -176,7 +175,7 @@ impl Picker {
     /// When the device reports an error, or the values cannot be read.
     pub fn pick(
         &mut self,
-        renderer: &mut Renderer,
+        renderer: &mut dyn Renderer,
         case: &Case,
         view: &View,
         at: DVec2,
@@ -192,7 +191,7 @@ impl Picker {
         };
         let met = self.surfaces.seen(case, view, &ray);
         let sight = Sight::new(case, view, ray, span, met);
-        let located = renderer.locate(&case.grid, view, &sight.points())?;
+        let located = renderer.locate(view, &sight.points())?;
         let gathered = Gathered::of(sight.pieces(&located), view);
         let cells = cells(case, view, &gathered)?;
         let hit = hit(case, view, &sight, &gathered, &cells);

@@ -8,7 +8,7 @@ use super::surfaces::Met;
 use super::{Part, fault_of};
 use crate::case::Case;
 use crate::model::Ijk;
-use crate::render::gpu::probe::Located;
+use crate::render::Located;
 use crate::scene::Hull;
 use crate::view::View;
 use crate::view::ghosts::{self, shown_grid};

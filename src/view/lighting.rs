@@ -188,6 +188,11 @@ impl Lighting {
         self.size
     }
 
+    /// Megabytes (2^20 bytes) that the extinction volume may take where the scene names no size.
+    pub fn budget_mb(&self) -> u32 {
+        self.volume.budget_mb.unwrap_or(BUDGET_MB)
+    }
+
     /// Voxels of a light volume.
     pub fn light_size(&self) -> [u32; 3] {
         let size = self.volume.light_size;

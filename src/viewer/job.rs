@@ -10,8 +10,7 @@ use crate::image::Rgb8;
 use crate::image::metrics::Comparison;
 use crate::model::Grid;
 use crate::picking::Pick;
-use crate::render::gpu::illumination::LightTimes;
-use crate::render::gpu::{FrameStats, GpuBytes};
+use crate::render::{DeviceBytes, FrameStats, LightTimes};
 use crate::scene::Scene;
 use crate::view::View;
 
@@ -88,7 +87,7 @@ pub struct Picture {
     /// See [`crate::render::Frame`].
     pub light: LightTimes,
     /// Bytes on the device.
-    pub bytes: GpuBytes,
+    pub bytes: DeviceBytes,
     /// From the job's arrival to the picture's end.
     pub took: Duration,
 }
@@ -130,7 +129,7 @@ pub enum Answer {
     /// A picture of a side.
     Picture(usize, Box<Picture>),
     /// It was canceled.
-    Cancelled,
+    Canceled,
     /// What is seen at the place, and what lies before and behind it.
     Picked(PickPurpose, Box<Pick>),
     /// How far two pictures are apart.

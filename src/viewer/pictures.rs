@@ -157,7 +157,7 @@ impl Pictures {
         match answer {
             Answer::Adapter { name, is_software } => self.adapter = Some((name, is_software)),
             Answer::Progress(part) => self.progress = Some(part),
-            Answer::Cancelled => {
+            Answer::Canceled => {
                 self.land();
             }
             Answer::Failed(error) => {

@@ -14,8 +14,7 @@ use crate::image::metrics::{Comparison, ciede2000_map};
 use crate::model::Grid;
 use crate::picking::{Pick, PickError, Picker};
 use crate::picture;
-use crate::render::Renderer;
-use crate::render::gpu::Gpu;
+use crate::render::{self, Executor, RenderError, Renderer};
 use crate::scene::{CameraSpec, Scene};
 use crate::view::{self, View};
 
@@ -35,7 +34,7 @@ type Say<'a> = &'a dyn Fn(Answer);
 /// The device and two sides of it.
 #[derive(Default)]
 pub struct Studio {
-    gpu: Option<Arc<Gpu>>,
+    executor: Option<Arc<dyn Executor>>,
     sides: [Side; 2],
 }
 
@@ -43,7 +42,7 @@ pub struct Studio {
 #[derive(Default)]
 struct Side {
     /// Cases that share a grid share what is on the device.
-    renderer: Option<(Arc<Grid>, Renderer)>,
+    renderer: Option<Box<dyn Renderer>>,
     resolved: VecDeque<(RenderRequest, Arc<View>)>,
     picker: Picker,
 }
@@ -53,17 +52,18 @@ impl Studio {
     ///
     /// # Errors
     /// When there is none; the sentence says what to do.
-    pub fn open(&mut self, say: Say<'_>) -> Result<Arc<Gpu>, String> {
-        if let Some(gpu) = &self.gpu {
-            return Ok(gpu.clone());
+    pub fn open(&mut self, say: Say<'_>) -> Result<Arc<dyn Executor>, String> {
+        if let Some(executor) = &self.executor {
+            return Ok(executor.clone());
         }
-        let gpu = Arc::new(Gpu::new(None).map_err(|e| e.to_string())?);
+        let executor = render::executor(None).map_err(|e| e.to_string())?;
+        let info = executor.info();
         say(Answer::Adapter {
-            name: gpu.describe(),
-            is_software: gpu.is_software(),
+            name: info.adapter,
+            is_software: info.is_software,
         });
-        self.gpu = Some(gpu.clone());
-        Ok(gpu)
+        self.executor = Some(executor.clone());
+        Ok(executor)
     }
 
     /// Does a job.
@@ -83,7 +83,7 @@ impl Studio {
                 }
                 made.map(|made| match made {
                     Some(picture) => Answer::Picture(side, Box::new(picture)),
-                    None => Answer::Cancelled,
+                    None => Answer::Canceled,
                 })
             }
             Job::Pick {
@@ -118,11 +118,11 @@ impl Studio {
         say: Say<'_>,
     ) -> Result<Option<Picture>, Failure> {
         let start = Instant::now();
-        let gpu = self.open(say).map_err(Failure::of_device)?;
+        let executor = self.open(say).map_err(Failure::of_device)?;
         self.share(side, &wanted.case);
         let side = &mut self.sides[side];
         let view = side.view(wanted)?;
-        let renderer = side.renderer(gpu, &wanted.case)?;
+        let renderer = side.renderer(&*executor, &wanted.case)?;
         let last_said = std::cell::Cell::new(Instant::now());
         let progress = |part: f64| {
             if last_said.get().elapsed() > Duration::from_millis(200) {
@@ -131,10 +131,12 @@ impl Studio {
             }
             !cancel.load(Ordering::Relaxed)
         };
-        let frame = renderer.render(&wanted.case.grid, &view, &progress);
-        let frame = frame.map_err(|e| Failure::of_device(e.to_string()))?;
+        let frame = match renderer.render(&view, &progress) {
+            Err(RenderError::Canceled) => return Ok(None),
+            frame => frame.map_err(|e| Failure::of_device(e.to_string()))?,
+        };
         let cover = |p: &[f32; 4]| (255.0 * p[3].clamp(0.0, 1.0)).round() as u8;
-        Ok(frame.map(|frame| Picture {
+        Ok(Some(Picture {
             cover: frame.image.pixels.iter().map(cover).collect(),
             rgb: Arc::new(Rgb8 {
                 size: frame.image.size,
@@ -154,9 +156,8 @@ impl Studio {
     /// Frees the second side's grid where the first one shows another case alone.
     fn share(&mut self, side: usize, case: &Arc<Case>) {
         let holds_other = |s: &Side| {
-            s.renderer
-                .as_ref()
-                .is_some_and(|(grid, _)| !Arc::ptr_eq(grid, &case.grid))
+            let kept = s.renderer.as_ref();
+            kept.is_some_and(|kept| !Arc::ptr_eq(kept.grid(), &case.grid))
         };
         if side == 0 && holds_other(&self.sides[0]) {
             self.sides[1] = Side::default();
@@ -168,13 +169,15 @@ impl Studio {
         let is_of = |known: &Arc<Case>| std::ptr::eq(Arc::as_ptr(known), case.as_ptr());
         let has = |known: &Arc<Grid>| std::ptr::eq(Arc::as_ptr(known), grid.as_ptr());
         for side in &mut self.sides {
-            side.renderer.take_if(|(known, _)| has(known));
+            side.renderer.take_if(|kept| has(kept.grid()));
             side.picker = Picker::default();
             side.resolved.retain(|(wanted, _)| !is_of(&wanted.case));
         }
         // The device frees what it is done with when it is asked.
-        match &self.gpu {
-            Some(gpu) => gpu.wait().map_err(|e| Failure::of_device(e.to_string())),
+        match &self.executor {
+            Some(executor) => executor
+                .tidy()
+                .map_err(|e| Failure::of_device(e.to_string())),
             None => Ok(()),
         }
     }
@@ -186,15 +189,15 @@ impl Studio {
         at: DVec2,
         say: Say<'_>,
     ) -> Result<Pick, Failure> {
-        let gpu = self.open(say).map_err(Failure::of_device)?;
+        let executor = self.open(say).map_err(Failure::of_device)?;
         let side = &mut self.sides[side];
         let view = side.view(wanted)?;
         let mut picker = std::mem::take(&mut side.picker);
-        let renderer = side.renderer(gpu, &wanted.case)?;
+        let renderer = side.renderer(&*executor, &wanted.case)?;
         let pick = picker.pick(renderer, &wanted.case, &view, at);
         side.picker = picker;
         pick.map_err(|error| Failure {
-            is_device: matches!(error, PickError::Device(_)),
+            is_device: matches!(error, PickError::Render(_)),
             sentence: error.to_string(),
         })
     }
@@ -202,17 +205,19 @@ impl Studio {
 
 impl Side {
     /// The renderer of a case: the one at hand, or a new one.
-    fn renderer(&mut self, gpu: Arc<Gpu>, case: &Arc<Case>) -> Result<&mut Renderer, Failure> {
+    fn renderer(
+        &mut self,
+        executor: &dyn Executor,
+        case: &Case,
+    ) -> Result<&mut dyn Renderer, Failure> {
         let kept = self.renderer.take();
-        let kept = match kept.filter(|(kept, _)| Arc::ptr_eq(kept, &case.grid)) {
+        let kept = match kept.filter(|kept| Arc::ptr_eq(kept.grid(), &case.grid)) {
             Some(kept) => kept,
-            None => {
-                let made = Renderer::new(gpu, &case.grid);
-                let made = made.map_err(|e| Failure::of_device(e.to_string()))?;
-                (case.grid.clone(), made)
-            }
+            None => executor
+                .renderer(&case.grid)
+                .map_err(|e| Failure::of_device(e.to_string()))?,
         };
-        Ok(&mut self.renderer.insert(kept).1)
+        Ok(&mut **self.renderer.insert(kept))
     }
 
     /// The scene resolved; where only camera and size differ from a known one, without reading
@@ -274,15 +279,20 @@ impl Failure {
 #[allow(clippy::unwrap_used, reason = "tests")]
 mod tests {
     use super::*;
+    use crate::render::gpu::GpuExecutor;
     use std::path::Path;
 
     #[test]
     fn a_lost_device_is_replaced() {
-        let mut studio = Studio::default();
         let silent = |_| {};
-        let Ok(gpu) = studio.open(&silent) else {
+        let Ok(executor) = GpuExecutor::new(None) else {
             assert!(std::env::var_os("REQUIRE_GPU").is_none());
             return;
+        };
+        let gpu = executor.gpu().clone();
+        let mut studio = Studio {
+            executor: Some(Arc::new(executor)),
+            ..Studio::default()
         };
         let sample = Path::new(env!("CARGO_MANIFEST_DIR")).join("samples/scissor/SCISSOR.EGRID");
         let case = Arc::new(crate::case::load::open(&sample).unwrap());

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use glam::{DVec2, DVec3};
 use serde_json::{Value, json};
 use strataray::case::Case;
-use strataray::render::Renderer;
+use strataray::render::gpu::GpuRenderer;
 use strataray::render::gpu::cones::ConeTable;
 use strataray::scene::{CameraSpec, ExplicitCamera, Projection, Scene};
 use strataray::view::lighting::Cone;
@@ -16,7 +16,7 @@ use super::shape::boxes;
 /// A model with its renderer; voxels have edges of 1.
 pub struct Model {
     case: Case,
-    renderer: Renderer,
+    renderer: GpuRenderer,
     scene: Scene,
 }
 
@@ -42,7 +42,7 @@ impl Model {
         let case = boxes(x, y, depth, value);
         let [low, high] = opacity;
         Some(Self {
-            renderer: Renderer::new(gpu, &case.grid).unwrap(),
+            renderer: GpuRenderer::new(gpu, &case.grid).unwrap(),
             scene: scene(&[[0.0, low], [1.0, high]], 1.0, lighting(json!({}))),
             case,
         })

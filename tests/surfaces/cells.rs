@@ -15,7 +15,7 @@ fn lamp(view: &View, ray: &reference::Ray, normal: DVec3) -> f64 {
 fn the_hull_of_a_box_has_the_color_of_its_values_in_the_headlight() {
     let Some(gpu) = common::gpu() else { return };
     let case = one_box();
-    let mut renderer = Renderer::new(gpu, &case.grid).unwrap();
+    let mut renderer = GpuRenderer::new(gpu, &case.grid).unwrap();
     for (exact_colors, surfaces) in [(false, HULL), (true, HULL), (false, CELLS)] {
         let mut scene = plain(camera(205.0, 35.0, 1.0), 0.3);
         scene.lighting.exact_colors = exact_colors;
@@ -73,7 +73,7 @@ fn values_are_read_off_faces_and_shapes_off_their_light() {
     let [up, side] = [camera(0.0, 90.0, 1.0), camera(225.0, 35.0, 0.3)];
     for value in [0.05, 0.3, 0.5, 0.7, 0.95] {
         let case = boxes(&[0.0, 100.0], &[0.0, 100.0], &[1000.0, 1080.0], &|_| value);
-        let mut renderer = Renderer::new(gpu.clone(), &case.grid).unwrap();
+        let mut renderer = GpuRenderer::new(gpu.clone(), &case.grid).unwrap();
         let mut scene = plain(up.clone(), 0.3);
         scene.mode = Mode::Cells;
         scene.range = RangeSpec::Fixed([0.0, 1.0]);
@@ -116,7 +116,7 @@ fn cells_agree_with_the_reference() {
     models.extend(common::data("reek/REEK.EGRID"));
     for model in models {
         let case = load::open(&model).unwrap();
-        let mut renderer = Renderer::new(gpu.clone(), &case.grid).unwrap();
+        let mut renderer = GpuRenderer::new(gpu.clone(), &case.grid).unwrap();
         for (inactive, is_cut, faults) in [
             (Inactive::Hidden, false, false),
             (Inactive::Hidden, true, true),
@@ -172,7 +172,7 @@ fn cells_agree_with_the_reference() {
 fn cells_are_solid_whatever_the_opacity_and_cast_no_ray() {
     let Some(gpu) = common::gpu() else { return };
     let case = load::open(&common::sample()).unwrap();
-    let mut renderer = Renderer::new(gpu, &case.grid).unwrap();
+    let mut renderer = GpuRenderer::new(gpu, &case.grid).unwrap();
     let scene = |opacity: f64, mode: Mode| {
         let mut scene = Scene {
             size: [40, 30],
@@ -188,10 +188,7 @@ fn cells_are_solid_whatever_the_opacity_and_cast_no_ray() {
                 strategy,
                 ..view::resolve(scene, &case).unwrap()
             };
-            renderer
-                .render(&case.grid, &view, &|_| true)
-                .unwrap()
-                .unwrap()
+            renderer.render(&view, &|_| true).unwrap()
         };
         let [faint, solid] = [0.0, 0.9].map(|opacity| made(&scene(opacity, Mode::Cells)));
         assert_eq!(faint.image, solid.image, "{}", strategy.name());

@@ -21,7 +21,7 @@ fn behind_faint([low, high]: [DVec3; 2], ray: &reference::Ray) -> f64 {
 fn a_faint_hull_has_a_front_and_a_ground() {
     let Some(gpu) = common::gpu() else { return };
     let case = one_box();
-    let mut renderer = Renderer::new(gpu, &case.grid).unwrap();
+    let mut renderer = GpuRenderer::new(gpu, &case.grid).unwrap();
     let scene = plain(camera(205.0, 35.0, 1.0), 0.0);
     let view = with(&view::resolve(&scene, &case).unwrap(), FAINT);
     let gray = blended(&view, faint_color(view.background)).x;
@@ -61,7 +61,7 @@ fn what_is_drawn_is_never_taken_for_the_background() {
     models.extend(common::data("reek/REEK.EGRID"));
     for model in models {
         let case = load::open(&model).unwrap();
-        let mut renderer = Renderer::new(gpu.clone(), &case.grid).unwrap();
+        let mut renderer = GpuRenderer::new(gpu.clone(), &case.grid).unwrap();
         for (background, blending, is_empty) in [
             ("#ffffff", Blending::Display, false),
             ("#ffffff", Blending::Display, true),

@@ -153,7 +153,7 @@ fn strategies_agree_with_the_reference() {
     models.extend(common::data("editnnc/9_EDITNNC.EGRID"));
     for model in models {
         let case = load::open(&model).unwrap();
-        let mut renderer = Renderer::new(gpu.clone(), &case.grid).unwrap();
+        let mut renderer = GpuRenderer::new(gpu.clone(), &case.grid).unwrap();
         for look in LOOKS {
             let view = look.view(&case);
             let truth = picture(&mut renderer, &case, &view, None);
@@ -184,7 +184,7 @@ fn strategies_agree_with_the_reference() {
 fn light_falls_on_surfaces_as_on_samples() {
     let Some(gpu) = common::gpu() else { return };
     let case = load::open(&common::sample()).unwrap();
-    let mut renderer = Renderer::new(gpu, &case.grid).unwrap();
+    let mut renderer = GpuRenderer::new(gpu, &case.grid).unwrap();
     // Nothing stands between the hull and the viewer, but much between it and a light.
     let low = LightSpec::Directional {
         direction: [1.0, 0.4, -0.2],

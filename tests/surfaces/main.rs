@@ -15,6 +15,7 @@ use strataray::image::metrics::{ciede2000_map, psnr_8bit};
 use strataray::image::{Blending, Image};
 use strataray::reference;
 use strataray::render::Renderer;
+use strataray::render::gpu::GpuRenderer;
 use strataray::scene::lighting::LightSpec;
 use strataray::scene::{
     CameraSpec, ClipSpec, CutFace, FramingCamera, Hull, Inactive, Interpolation, LightMode,
@@ -61,7 +62,12 @@ fn camera(azimuth_degrees: f64, elevation_degrees: f64, zoom: f64) -> CameraSpec
 }
 
 /// The picture by a strategy, or by the reference where there is none.
-fn picture(renderer: &mut Renderer, case: &Case, view: &View, by: Option<StrategyKind>) -> Image {
+fn picture(
+    renderer: &mut GpuRenderer,
+    case: &Case,
+    view: &View,
+    by: Option<StrategyKind>,
+) -> Image {
     let Some(strategy) = by else {
         return reference::render(&case.grid, view, &|_| true).unwrap();
     };
@@ -69,8 +75,7 @@ fn picture(renderer: &mut Renderer, case: &Case, view: &View, by: Option<Strateg
         strategy,
         ..view.clone()
     };
-    let frame = renderer.render(&case.grid, &view, &|_| true).unwrap();
-    let frame = frame.unwrap();
+    let frame = renderer.render(&view, &|_| true).unwrap();
     assert_eq!(frame.stats.lost_rays, 0);
     frame.image
 }
@@ -186,7 +191,7 @@ fn edges_are_as_wide_at_any_distance() {
     let Some(gpu) = common::gpu() else { return };
     let planes = [0.0, 100.0, 200.0, 300.0];
     let case = boxes(&planes, &planes, &[1000.0, 1020.0, 1040.0], &|_| 0.5);
-    let mut renderer = Renderer::new(gpu, &case.grid).unwrap();
+    let mut renderer = GpuRenderer::new(gpu, &case.grid).unwrap();
     let section = ClipSpec {
         point: [0.0, 0.0, -1010.0],
         normal: [0.0, 0.0, -1.0],
@@ -243,7 +248,7 @@ fn edges_are_as_wide_at_any_distance() {
 fn what_is_not_shown_leaves_no_trace() {
     let Some(gpu) = common::gpu() else { return };
     let case = load::open(&common::sample()).unwrap();
-    let mut renderer = Renderer::new(gpu, &case.grid).unwrap();
+    let mut renderer = GpuRenderer::new(gpu, &case.grid).unwrap();
     let scene = Scene {
         size: [16, 12],
         camera: camera(205.0, 35.0, 1.0),

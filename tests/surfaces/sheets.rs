@@ -31,7 +31,7 @@ fn a_sheet_is_blended_between_what_is_before_and_behind_it() {
     let of_east = "FAULTS\n 'E' 1 1 1 1 1 1 'J' /\n 'F' 2 2 1 1 1 1 'X-' /\n/\n";
     for (keywords, sheet) in [("", UNNAMED), (of_west, PALETTE[0]), (of_east, PALETTE[1])] {
         let case = blocks(30.0, keywords);
-        let mut renderer = Renderer::new(gpu.clone(), &case.grid).unwrap();
+        let mut renderer = GpuRenderer::new(gpu.clone(), &case.grid).unwrap();
         // From the west, so that rays cross the fault.
         let view = view::resolve(&plain(camera(270.0, 3.0, 1.0), 0.6), &case).unwrap();
         let view = with(&view, FAULTS);
@@ -68,7 +68,7 @@ fn sheets_beyond_the_fourth_are_left_out() {
         ..Shape::default()
     }
     .case();
-    let mut renderer = Renderer::new(gpu, &case.grid).unwrap();
+    let mut renderer = GpuRenderer::new(gpu, &case.grid).unwrap();
     let view = view::resolve(&plain(camera(270.0, 0.0, 1.0), 0.0), &case).unwrap();
     let view = with(&view, FAULTS);
     for by in all() {

@@ -2,15 +2,11 @@
 
 use std::cell::Cell;
 use std::path::Path;
-use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use anyhow::Context;
 use serde::Serialize;
-use strataray::case::Case;
-use strataray::render::gpu::illumination::LightTimes;
-use strataray::render::gpu::{Gpu, GpuBytes};
-use strataray::render::{Frame, Renderer};
+use strataray::render::{DeviceBytes, Executor, Frame, LightTimes, Renderer};
 use strataray::scene::Scene;
 use strataray::view::{self, View};
 
@@ -73,14 +69,14 @@ pub struct StrategyTimes {
     pub point_locations: u64,
     pub cell_crossings: u64,
     pub lost_samples: u64,
-    pub gpu_bytes: GpuBytes,
+    pub gpu_bytes: DeviceBytes,
 }
 
 /// Opens a case and renders it by each of the scenes.
 pub fn case(
     path: &Path,
     scenes: &[Scene],
-    gpu: &Arc<Gpu>,
+    executor: &dyn Executor,
     frames: u32,
     reporter: &Reporter,
 ) -> anyhow::Result<CaseTimes> {
@@ -94,13 +90,13 @@ pub fn case(
     let View { property, step, .. } = view?;
     let (field, property_time) = timed(|| case.field(&property, step));
     field?;
-    let (renderer, upload) = timed(|| Renderer::new(gpu.clone(), &case.grid));
-    let mut renderer = renderer?;
+    let mut renderer = executor.renderer(&case.grid)?;
+    let setup = renderer.setup_times();
     let mut strategies = Vec::new();
     let mut light = None;
     for scene in scenes {
         let view = view::resolve(scene, &case)?;
-        let times = strategy(&mut renderer, &case, &view, frames, reporter);
+        let times = strategy(&mut *renderer, &view, frames, reporter);
         let what = || format!("{} by {}", case.about.name, view.strategy.name());
         let (times, light_times) = times.with_context(what)?;
         strategies.push(times);
@@ -109,7 +105,6 @@ pub fn case(
     }
     let light = light.unwrap_or_default();
     let dims = case.grid.dims();
-    let acceleration = renderer.acceleration_time();
     Ok(CaseTimes {
         case: case.about.name.clone(),
         dims: [dims.ni, dims.nj, dims.nk],
@@ -120,8 +115,8 @@ pub fn case(
         topology_ms: ms(topology),
         property_ms: ms(property_time),
         read_ms: ms(read),
-        upload_ms: ms(upload.saturating_sub(acceleration)),
-        acceleration_ms: ms(acceleration),
+        upload_ms: ms(setup.upload),
+        acceleration_ms: ms(setup.acceleration),
         light_field_ms: ms(light.field),
         light_extinction_ms: ms(light.extinction),
         light_volumes_ms: ms(light.volumes),
@@ -132,8 +127,7 @@ pub fn case(
 }
 
 fn strategy(
-    renderer: &mut Renderer,
-    case: &Case,
+    renderer: &mut dyn Renderer,
     view: &View,
     frames: u32,
     reporter: &Reporter,
@@ -149,9 +143,9 @@ fn strategy(
                 longest_wait.set(longest_wait.get().max(wait));
                 progress(fraction)
             };
-            renderer.render(&case.grid, view, &told)
-        })?;
-        let mut frame = frame.context("the image was canceled")?;
+            renderer.render(view, &told)
+        });
+        let mut frame = frame.context("there is no image to time")?;
         frame.stats.cpu = cpu_time().saturating_sub(cpu);
         Ok(frame)
     };

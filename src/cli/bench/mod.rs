@@ -70,16 +70,17 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let options = &arguments.options;
     options.set_threads()?;
     let mut scene = options.plain_scene()?;
-    let gpu = options.open_gpu(&reporter)?;
+    let executor = options.open_executor(&reporter)?;
+    let info = executor.info();
     if options.size.is_none() && options.scene.is_none() {
-        scene.size = match gpu.is_software() {
+        scene.size = match info.is_software {
             true => SOFTWARE_SIZE,
             false => GPU_SIZE,
         };
     }
     let mut bench = Bench {
         version: env!("CARGO_PKG_VERSION"),
-        adapter: gpu.describe(),
+        adapter: info.adapter,
         threads: rayon::current_num_threads(),
         size: scene.size,
         frames: arguments.frames,
@@ -94,7 +95,13 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
     };
     for case in cases {
         let files = Files::new(case, &reporter)?;
-        let times = measure::case(&files.path, &scenes, &gpu, arguments.frames, &reporter)?;
+        let times = measure::case(
+            &files.path,
+            &scenes,
+            &*executor,
+            arguments.frames,
+            &reporter,
+        )?;
         bench.cases.push(times);
         if let Some(moves) = arguments.turn {
             let turning = turning::case(&files.path, moves as usize, &reporter)?;

@@ -1,7 +1,7 @@
 //! Layouts of bind groups, read from the shaders themselves.
 
-use super::error::GpuError;
 use super::shader::compose;
+use crate::render::RenderError;
 
 /// Bind groups that all strategies share: 0 frame, 1 grid, 2 transfer function.
 pub(super) const SHARED_GROUPS: usize = 3;
@@ -38,7 +38,7 @@ impl SharedLayouts {
     ///
     /// # Errors
     /// When one of them is not valid, with the compiler's words.
-    pub fn new(device: &wgpu::Device, parameters: Parameters) -> Result<Self, GpuError> {
+    pub fn new(device: &wgpu::Device, parameters: Parameters) -> Result<Self, RenderError> {
         let module = parse("groups", &parameters.declared(compose("groups")?))?;
         let groups = 0..SHARED_GROUPS as u32;
         Ok(Self {
@@ -53,8 +53,8 @@ impl SharedLayouts {
     }
 }
 
-pub(super) fn parse(name: &str, text: &str) -> Result<wgpu::naga::Module, GpuError> {
-    wgpu::naga::front::wgsl::parse_str(text).map_err(|e| GpuError::Shader {
+pub(super) fn parse(name: &str, text: &str) -> Result<wgpu::naga::Module, RenderError> {
+    wgpu::naga::front::wgsl::parse_str(text).map_err(|e| RenderError::Shader {
         name: name.to_owned(),
         message: e.emit_to_string(text),
     })

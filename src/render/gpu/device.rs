@@ -3,23 +3,23 @@
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
 use super::bind_groups::{Parameters, SharedLayouts};
-use super::error::GpuError;
+use crate::render::RenderError;
 
 /// The first error of what was recorded or submitted, until someone asks.
 #[derive(Debug, Default)]
-pub(super) struct LateError(Mutex<Option<GpuError>>);
+pub(super) struct LateError(Mutex<Option<RenderError>>);
 
 impl LateError {
     /// Keeps an error, unless there is one already.
-    pub fn keep(&self, error: GpuError) {
+    pub fn keep(&self, error: RenderError) {
         self.slot().get_or_insert(error);
     }
 
-    fn take(&self) -> Option<GpuError> {
+    fn take(&self) -> Option<RenderError> {
         self.slot().take()
     }
 
-    fn slot(&self) -> MutexGuard<'_, Option<GpuError>> {
+    fn slot(&self) -> MutexGuard<'_, Option<RenderError>> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
@@ -47,13 +47,13 @@ impl Gpu {
     ///
     /// # Errors
     /// When there is no (such) adapter, or it lacks a limit.
-    pub fn new(wanted: Option<&str>) -> Result<Self, GpuError> {
+    pub fn new(wanted: Option<&str>) -> Result<Self, RenderError> {
         Self::open(&best_adapter(wanted)?)
     }
 
-    fn open(adapter: &wgpu::Adapter) -> Result<Self, GpuError> {
+    fn open(adapter: &wgpu::Adapter) -> Result<Self, RenderError> {
         let info = adapter.get_info();
-        let unsuitable = |reason: String| GpuError::Unsuitable {
+        let unsuitable = |reason: String| RenderError::Unsuitable {
             adapter: info.name.clone(),
             reason,
         };
@@ -98,7 +98,7 @@ impl Gpu {
         device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
             let words = error.to_string();
             let words: Vec<&str> = words.split_whitespace().collect();
-            keep.keep(GpuError::Device(words.join(" ")));
+            keep.keep(RenderError::Device(words.join(" ")));
         }));
         let lost = Arc::new(OnceLock::new());
         let keep_lost = lost.clone();
@@ -139,9 +139,9 @@ impl Gpu {
     ///
     /// # Errors
     /// When there was one.
-    pub fn check(&self) -> Result<(), GpuError> {
+    pub fn check(&self) -> Result<(), RenderError> {
         if let Some(why) = self.lost.get() {
-            return Err(GpuError::Lost(why.clone()));
+            return Err(RenderError::Lost(why.clone()));
         }
         self.late_error.take().map_or(Ok(()), Err)
     }
@@ -150,10 +150,10 @@ impl Gpu {
     ///
     /// # Errors
     /// When the device was lost or reported an error.
-    pub fn wait(&self) -> Result<(), GpuError> {
+    pub fn wait(&self) -> Result<(), RenderError> {
         self.device
             .poll(wgpu::PollType::wait_indefinitely())
-            .map_err(|e| GpuError::Device(e.to_string()))?;
+            .map_err(|e| RenderError::Device(e.to_string()))?;
         self.check()
     }
 
@@ -165,7 +165,7 @@ impl Gpu {
         &self,
         what: &'static str,
         content: &[T],
-    ) -> Result<wgpu::Buffer, GpuError> {
+    ) -> Result<wgpu::Buffer, RenderError> {
         let bytes: &[u8] = bytemuck::cast_slice(content);
         let needed = bytes.len() as u64;
         let limits = self.device.limits();
@@ -173,7 +173,7 @@ impl Gpu {
             .max_storage_buffer_binding_size
             .min(limits.max_buffer_size);
         if needed > limit {
-            return Err(GpuError::TooLarge {
+            return Err(RenderError::TooLarge {
                 what,
                 needed,
                 limit,
@@ -284,7 +284,7 @@ impl Gpu {
     ///
     /// # Errors
     /// When the device was lost or reported an error.
-    pub fn read(&self, source: &wgpu::Buffer, bytes: u64) -> Result<Vec<u8>, GpuError> {
+    pub fn read(&self, source: &wgpu::Buffer, bytes: u64) -> Result<Vec<u8>, RenderError> {
         let staging = self.staging(bytes);
         let mut encoder = self.device.create_command_encoder(&Default::default());
         encoder.copy_buffer_to_buffer(source, 0, &staging, 0, bytes);
@@ -306,12 +306,12 @@ impl Gpu {
     ///
     /// # Errors
     /// When the device was lost or reported an error.
-    pub fn map(&self, staging: &wgpu::Buffer) -> Result<Vec<u8>, GpuError> {
+    pub fn map(&self, staging: &wgpu::Buffer) -> Result<Vec<u8>, RenderError> {
         staging.map_async(wgpu::MapMode::Read, .., |_| ());
         self.wait()?;
         let view = staging
             .get_mapped_range(..)
-            .map_err(|e| GpuError::Device(e.to_string()))?;
+            .map_err(|e| RenderError::Device(e.to_string()))?;
         let content = view.to_vec();
         drop(view);
         staging.unmap();
@@ -320,7 +320,7 @@ impl Gpu {
 }
 
 /// The adapter that [`Gpu::new`] opens.
-fn best_adapter(wanted: Option<&str>) -> Result<wgpu::Adapter, GpuError> {
+fn best_adapter(wanted: Option<&str>) -> Result<wgpu::Adapter, RenderError> {
     let instance =
         wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
     let mut adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::all()));
@@ -330,11 +330,11 @@ fn best_adapter(wanted: Option<&str>) -> Result<wgpu::Adapter, GpuError> {
         |name: &str| wanted.is_none_or(|w| name.to_lowercase().contains(&w.to_lowercase()));
     match (names.iter().position(|n| matches(n)), wanted) {
         (Some(at), _) => Ok(adapters.swap_remove(at)),
-        (None, Some(wanted)) if !names.is_empty() => Err(GpuError::NoSuchAdapter {
+        (None, Some(wanted)) if !names.is_empty() => Err(RenderError::NoSuchAdapter {
             wanted: wanted.to_owned(),
             known: names.join(", "),
         }),
-        _ => Err(GpuError::NoAdapter),
+        _ => Err(RenderError::NoAdapter),
     }
 }
 

@@ -7,11 +7,11 @@
 use glam::DVec3;
 
 use super::device::Gpu;
-use super::error::GpuError;
 use super::layout::{BlurInfo, MAX_CLIP_PLANES};
 use super::pipeline::{Pipeline, flag};
 use super::slabs::Slabs;
 use super::volume::Volume;
+use crate::render::RenderError;
 use crate::transfer::TransferFunction;
 use crate::view::voxels::Shape;
 
@@ -149,73 +149,69 @@ const BLUR_WORK: u64 = 8;
 const MOST_LEVELS: u32 = 12;
 
 impl Blurs {
-    /// Makes a pyramid in the place of an existing one; `None` where it was cancelled.
+    /// Makes a pyramid in the place of an existing one.
     ///
     /// `group` is bind group 2 with transfer function and values.
     ///
     /// # Errors
     /// When the device reports an error.
-    pub fn make(
+    pub async fn make(
         &mut self,
         slabs: &mut Slabs<'_>,
         source: &Source<'_>,
         transfer: &TransferFunction,
         group: &wgpu::BindGroup,
         before: Option<Pyramid>,
-    ) -> Result<Option<Pyramid>, GpuError> {
+    ) -> Result<Pyramid, RenderError> {
         let size = source.values.shape.size;
         let shape = Shape::single(size, MOST_LEVELS);
         let made = Pyramid::new(slabs.gpu, shape, source, transfer, before);
         let mut below = Volume::new(slabs.gpu, Shape::single(size, 1));
-        if !self.opacities(slabs, source, group, &below)? {
-            return Ok(None);
-        }
+        self.opacities(slabs, source, group, &below).await?;
         for level in 0..shape.levels {
             if level > 1 {
                 // Blurred from means of what nothing has blurred: what a level loses beyond the box is not
                 // lost to those above.
                 let means = Volume::new(slabs.gpu, Shape::single(shape.at(level - 1), 1));
                 let filter = Filter::Mean;
-                if !self.filtered(slabs, source, group, filter, &below, (&means, 0))? {
-                    return Ok(None);
-                }
+                self.filtered(slabs, source, group, filter, &below, (&means, 0))
+                    .await?;
                 below = means;
             }
             let filter = Filter::Gaussian(level);
             let target = (&made.volume, level);
-            if !self.filtered(slabs, source, group, filter, &below, target)? {
-                return Ok(None);
-            }
+            self.filtered(slabs, source, group, filter, &below, target)
+                .await?;
         }
-        Ok(Some(made))
+        Ok(made)
     }
 
     /// Makes the opacities of a unit of length alone, without any blur; otherwise as [`Self::make`].
     ///
     /// # Errors
     /// When the device reports an error.
-    pub fn make_sharp(
+    pub async fn make_sharp(
         &mut self,
         slabs: &mut Slabs<'_>,
         source: &Source<'_>,
         transfer: &TransferFunction,
         group: &wgpu::BindGroup,
         before: Option<Pyramid>,
-    ) -> Result<Option<Pyramid>, GpuError> {
+    ) -> Result<Pyramid, RenderError> {
         let shape = Shape::single(source.values.shape.size, 1);
         let made = Pyramid::new(slabs.gpu, shape, source, transfer, before);
-        let done = self.opacities(slabs, source, group, &made.volume)?;
-        Ok(done.then_some(made))
+        self.opacities(slabs, source, group, &made.volume).await?;
+        Ok(made)
     }
 
     /// Opacities of a unit of length from the values.
-    fn opacities(
+    async fn opacities(
         &mut self,
         slabs: &mut Slabs<'_>,
         source: &Source<'_>,
         group: &wgpu::BindGroup,
         target: &Volume,
-    ) -> Result<bool, GpuError> {
+    ) -> Result<(), RenderError> {
         let pass = Pass {
             work: Work::Values,
             writes_depths: false,
@@ -229,10 +225,11 @@ impl Blurs {
         // Values come from the bind group; this is only there to be bound.
         let read = Volume::new(slabs.gpu, Shape::single([1; 3], 1)).level(0);
         self.pass(slabs, source, group, pass, line, &read, (target, 0))
+            .await
     }
 
     /// Filters opacities along x, y and depth in turn: into a level of the pyramid, or into their means.
-    fn filtered(
+    async fn filtered(
         &mut self,
         slabs: &mut Slabs<'_>,
         source: &Source<'_>,
@@ -240,7 +237,7 @@ impl Blurs {
         filter: Filter,
         below: &Volume,
         (target, level): (&Volume, u32),
-    ) -> Result<bool, GpuError> {
+    ) -> Result<(), RenderError> {
         let before = below.shape.size;
         let after = target.shape.at(level);
         let partly =
@@ -268,15 +265,14 @@ impl Blurs {
                 deviation,
             };
             let to = between.get(axis).map_or((target, level), |v| (v, 0));
-            if !self.pass(slabs, source, group, pass, line, &read, to)? {
-                return Ok(false);
-            }
+            self.pass(slabs, source, group, pass, line, &read, to)
+                .await?;
         }
-        Ok(true)
+        Ok(())
     }
 
     #[allow(clippy::too_many_arguments, reason = "what one pass reads and writes")]
-    fn pass(
+    async fn pass(
         &mut self,
         slabs: &mut Slabs<'_>,
         source: &Source<'_>,
@@ -285,11 +281,13 @@ impl Blurs {
         line: Line,
         read: &wgpu::TextureView,
         (target, level): (&Volume, u32),
-    ) -> Result<bool, GpuError> {
+    ) -> Result<(), RenderError> {
         let gpu = slabs.gpu;
         let info = gpu.uniform("blur", &source.info(line));
         let pipeline = self.pipeline(gpu, pass)?;
-        target.make_level(slabs, level, BLUR_WORK, &|encoder, slab, voxels| {
+        let dispatch = |encoder: &mut wgpu::CommandEncoder,
+                        slab: &super::layout::Slab,
+                        voxels: &wgpu::Buffer| {
             let slab_info = gpu.uniform("slab", slab);
             let own = [
                 info.as_entire_binding(),
@@ -300,10 +298,11 @@ impl Blurs {
             let groups = [(2, group), (3, &gpu.bind(&pipeline.own, &own))];
             let [width, height, depth] = slab.size;
             pipeline.dispatch(encoder, &groups, [width.div_ceil(2), height, depth]);
-        })
+        };
+        target.make_level(slabs, level, BLUR_WORK, &dispatch).await
     }
 
-    fn pipeline(&mut self, gpu: &Gpu, pass: Pass) -> Result<&Pipeline, GpuError> {
+    fn pipeline(&mut self, gpu: &Gpu, pass: Pass) -> Result<&Pipeline, RenderError> {
         let at = match self.0.iter().position(|(p, _)| *p == pass) {
             Some(at) => at,
             None => {

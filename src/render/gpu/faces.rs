@@ -3,12 +3,12 @@
 use rayon::prelude::*;
 
 use super::device::Gpu;
-use super::error::GpuError;
 use super::grid_upload::GpuGrid;
 use super::pipeline::RasterPipeline;
 use super::round::{Place, Round};
 use crate::model::topology::Face;
 use crate::model::{Dims, Grid, Ijk};
+use crate::render::RenderError;
 
 /// Which face a pixel gets; the order is that of the shader's constants.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -42,7 +42,7 @@ impl FaceList {
     ///
     /// # Errors
     /// When it exceeds what the adapter holds.
-    pub fn new(gpu: &Gpu, grid: &GpuGrid, numbers: &[u32]) -> Result<Self, GpuError> {
+    pub fn new(gpu: &Gpu, grid: &GpuGrid, numbers: &[u32]) -> Result<Self, RenderError> {
         Ok(Self {
             drawn: grid.versions.drawn,
             numbers: gpu.storage("faces", numbers)?,
@@ -73,7 +73,7 @@ impl BoundaryFaces {
         model: &Grid,
         grid: &GpuGrid,
         drawn: &[bool],
-    ) -> Result<&FaceList, GpuError> {
+    ) -> Result<&FaceList, RenderError> {
         let known = self.list.take().filter(|l| l.drawn == grid.versions.drawn);
         let list = match known {
             Some(known) => known,
@@ -109,7 +109,7 @@ impl FaceRaster {
     ///
     /// # Errors
     /// When the driver refuses it.
-    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+    pub fn new(gpu: &Gpu) -> Result<Self, RenderError> {
         Ok(Self {
             pipeline: RasterPipeline::new(gpu, "faces", &[FORMAT])?,
             bound: None,
@@ -187,11 +187,11 @@ pub(super) fn texture(gpu: &Gpu, size: [u32; 2], format: wgpu::TextureFormat) ->
 ///
 /// # Errors
 /// When 32 bits do not number all faces of the grid.
-pub fn numbers(model: &Grid, faces: &[(Ijk, Face)]) -> Result<Vec<u32>, GpuError> {
+pub fn numbers(model: &Grid, faces: &[(Ijk, Face)]) -> Result<Vec<u32>, RenderError> {
     let dims = model.dims();
     let needed = 6 * dims.cells() as u64;
     if needed >= u64::from(u32::MAX) {
-        return Err(GpuError::TooLarge {
+        return Err(RenderError::TooLarge {
             what: "numbering the faces",
             needed,
             limit: u64::from(u32::MAX),

@@ -6,79 +6,20 @@ use bytemuck::Zeroable;
 use glam::DVec3;
 
 use super::device::Gpu;
-use super::error::GpuError;
 use super::grid_upload::GpuGrid;
 use super::layout::{self, Frame, Tile};
 use super::round::Round;
 use super::surfaces::SurfacePainter;
 use super::target;
-use super::tiles::{self, Pace, Rect};
+use super::tiles::{self, Pace, Rect, Tiles};
 use super::uniforms::{clip_planes, ghost};
 use crate::image::Image;
+use crate::render::RenderError;
 use crate::render::gpu::strategy::RenderStrategy;
+use crate::render::job::Progress;
+use crate::render::stats::FrameStats;
 use crate::view::View;
 use crate::view::surfaces::HEADLIGHT_ASIDE;
-
-/// What a frame cost.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct FrameStats {
-    /// Time of the rays: by the adapter's clock where it has one, else by the host's.
-    pub frame: Duration,
-    /// Wall time of the frame with readback.
-    pub wall: Duration,
-    /// CPU time of the process meanwhile, filled in by who measures it.
-    pub cpu: Duration,
-    /// Longest single submission.
-    pub longest_submission: Duration,
-    /// Lattice samples inside drawn cells.
-    pub samples: u64,
-    /// Newton iterations.
-    pub newton_iterations: u64,
-    /// Steps from a cell to its neighbor.
-    pub topological_steps: u64,
-    /// Point locations through the acceleration grid.
-    pub grid_fallbacks: u64,
-    /// Pixels whose alpha is not zero.
-    pub covered_pixels: u64,
-    /// Times that rays came into the drawn model. PLTS: first samples inside, at the start of the ray or behind one
-    /// outside. LIBC: boundary faces through which rays began to walk, and rays that start inside; faces of faults
-    /// count where rays are set not to walk across. SRG: rays that meet the model, once each. None where cells are
-    /// solid, for there no ray is cast.
-    pub entries: u64,
-    /// Lookups of a point without a cell to start from: those of `grid_fallbacks`, which are all of PLTS's that no
-    /// neighbor answers and those that set LIBC's rays right, and points of opaque sections. SRG looks up no others,
-    /// for its samples come from the volume.
-    pub point_locations: u64,
-    /// Cells that rays passed through, each time. PLTS: in which they have samples; LIBC: all, down to those between
-    /// two samples. None by SRG, whose rays know no cells, nor where cells are solid.
-    pub cell_crossings: u64,
-    /// Lattice samples that lie inside a drawn cell and were found in none.
-    ///
-    /// PLTS: the faces of a cell enclose the sample. Asked are the cell of the last sample before those that are not
-    /// found, that of the first one after them, and each one that a thorough search has tried; in a cell that
-    /// encloses a point, winding around it, the trilinear map takes it. Holes, faults that gape and hidden cells are
-    /// thus not counted, nor what is within a thousandth of a cell of its faces.
-    /// LIBC: samples are found by the segments that they lie on, so that only a ray that lost its way can lose one:
-    /// it is counted where neither walk nor point location go on and the last cell encloses the next sample.
-    /// SRG: none, for samples come from the volume; nor where cells are solid.
-    pub lost_samples: u64,
-    /// Rays that have reached their end.
-    pub finished_rays: u64,
-    /// Entries into the model of the ray that has most of them.
-    pub peels: u64,
-    /// Rays that lost their way at an edge or vertex and were set right by point location.
-    pub recovered_rays: u64,
-    /// Rays that could not be set right.
-    pub lost_rays: u64,
-    /// Loop iterations of all rays and surface points, about.
-    pub work: u64,
-    /// Times that a ray paused within what it was doing.
-    pub pauses: u64,
-    /// Number of submissions.
-    pub submissions: u32,
-    /// Bytes of the picture on the device.
-    pub target_bytes: u64,
-}
 
 /// What a frame is made with.
 pub struct Drawing<'a> {
@@ -122,18 +63,18 @@ struct Bound<'a> {
 }
 
 impl FrameRenderer {
-    /// Renders a view; `None` where `progress` cancelled it.
+    /// Renders a view.
     ///
     /// # Errors
     /// When the picture is too large for the adapter or the device reports an error.
-    pub fn render(
+    pub async fn render(
         &mut self,
         gpu: &Gpu,
         grid: &GpuGrid,
         drawing: Drawing<'_>,
         view: &View,
-        progress: &dyn Fn(f64) -> bool,
-    ) -> Result<Option<(Image, FrameStats)>, GpuError> {
+        progress: &Progress,
+    ) -> Result<(Image, FrameStats), RenderError> {
         let start = Instant::now();
         let Drawing {
             light,
@@ -142,7 +83,7 @@ impl FrameRenderer {
         } = drawing;
         let limit = gpu.device.limits().max_texture_dimension_2d;
         if view.size.iter().any(|&n| n > limit) {
-            return Err(GpuError::Unsuitable {
+            return Err(RenderError::Unsuitable {
                 adapter: gpu.info.name.clone(),
                 reason: format!("images are limited to {limit} pixels in each direction"),
             });
@@ -188,30 +129,30 @@ impl FrameRenderer {
                 layers: (room.rays / LAYER_BYTES) as u32,
             };
             if let Some(surfaces) = &mut surfaces {
-                bound.find_surfaces(surfaces, part, &mut self.painting, &mut stats)?;
+                let painting = &mut self.painting;
+                bound
+                    .find_surfaces(surfaces, part, painting, &mut stats, progress)
+                    .await?;
             }
-            let draw = |rect, pace: &mut Pace| {
-                bound.draw(&mut *strategy, part.tile(rect), pace, &mut stats)
-            };
-            let area = part.rect.area();
-            let so_far =
-                |fraction| progress((done as f64 + fraction * area as f64) / pixels as f64);
-            if !tiles::cover(part.rect, &mut self.pace, least_work, draw, &so_far)? {
-                return Ok(None);
+            let mut tiles = Tiles::of(part.rect);
+            while let Some(tile) = tiles.next(self.pace.area(least_work)) {
+                let pace = &mut self.pace;
+                bound
+                    .draw(&mut *strategy, part.tile(tile), pace, &mut stats, progress)
+                    .await?;
+                done += tile.area();
+                progress.reached(done as f64 / pixels as f64).await;
             }
-            done += area;
         }
         let pixels = target::read(gpu, &target, view.size)?;
         stats.covered_pixels = pixels.iter().filter(|pixel| pixel[3] != 0.0).count() as u64;
         stats.wall = start.elapsed();
-        Ok(Some((
-            Image {
-                size: view.size,
-                blending: view.blending,
-                pixels,
-            },
-            stats,
-        )))
+        let image = Image {
+            size: view.size,
+            blending: view.blending,
+            pixels,
+        };
+        Ok((image, stats))
     }
 }
 
@@ -276,13 +217,14 @@ impl Bound<'_> {
     }
 
     /// Finds the surface points of a part, and then their colors in as many submissions as these need.
-    fn find_surfaces(
+    async fn find_surfaces(
         &self,
         surfaces: &mut SurfacePainter,
         part: Part,
         pace: &mut Pace,
         stats: &mut FrameStats,
-    ) -> Result<(), GpuError> {
+        progress: &Progress,
+    ) -> Result<(), RenderError> {
         let uniform = part.tile(part.rect);
         let round = self.round(&uniform, 0);
         self.submit(&uniform, |encoder| surfaces.peel(&round, encoder), stats)?;
@@ -298,19 +240,21 @@ impl Bound<'_> {
                 let took = self.submit(&uniform, record, stats)?;
                 pace.learn(took, stats.work - before);
                 next += count;
+                progress.rest().await;
             }
         }
         Ok(())
     }
 
     /// Makes one tile, in as many submissions as its rays need.
-    fn draw(
+    async fn draw(
         &self,
         strategy: &mut dyn RenderStrategy,
         tile: Tile,
         pace: &mut Pace,
         stats: &mut FrameStats,
-    ) -> Result<(), GpuError> {
+        progress: &Progress,
+    ) -> Result<(), RenderError> {
         let mut uniform = tile;
         let goal = stats.finished_rays + u64::from(tile.size[0]) * u64::from(tile.size[1]);
         let most = WORK_LIMIT[usize::from(!self.gpu.is_software())];
@@ -329,6 +273,9 @@ impl Bound<'_> {
             pace.learn(took, stats.work - now.work);
             before = now;
             uniform.resume = 1;
+            if stats.finished_rays < goal {
+                progress.rest().await;
+            }
         }
         Ok(())
     }
@@ -353,7 +300,7 @@ impl Bound<'_> {
         uniform: &Tile,
         record: impl FnOnce(&mut wgpu::CommandEncoder),
         stats: &mut FrameStats,
-    ) -> Result<Duration, GpuError> {
+    ) -> Result<Duration, RenderError> {
         let gpu = self.gpu;
         gpu.queue
             .write_buffer(&self.tile, 0, bytemuck::bytes_of(uniform));
@@ -369,7 +316,7 @@ impl Bound<'_> {
         let content = gpu.map(&self.staging)?;
         let wall = start.elapsed();
         let (ticks, counters) = content.split_at(TICKS as usize);
-        stats.count(&bytemuck::pod_collect_to_vec(counters));
+        count(stats, &bytemuck::pod_collect_to_vec(counters));
         let ticks: Vec<u64> = bytemuck::pod_collect_to_vec(ticks);
         let by_adapter = gpu.timestamp_period_ns.map(|period| {
             Duration::from_nanos(
@@ -386,28 +333,26 @@ impl Bound<'_> {
     }
 }
 
-impl FrameStats {
-    /// Takes over the shader's counters, pairs of low and high words.
-    fn count(&mut self, words: &[u32]) {
-        let count = |n: u32| {
-            let at = 2 * n as usize;
-            u64::from(words[at]) | u64::from(words[at + 1]) << 32
-        };
-        self.samples = count(layout::COUNT_SAMPLES);
-        self.newton_iterations = count(layout::COUNT_ITERATIONS);
-        self.topological_steps = count(layout::COUNT_STEPS);
-        self.grid_fallbacks = count(layout::COUNT_FALLBACKS);
-        self.entries = count(layout::COUNT_ENTRIES);
-        self.point_locations = self.grid_fallbacks + count(layout::COUNT_SECTIONS);
-        self.cell_crossings = count(layout::COUNT_CROSSINGS);
-        self.lost_samples = count(layout::COUNT_LOST_SAMPLES);
-        self.finished_rays = count(layout::COUNT_FINISHED);
-        self.work = count(layout::COUNT_WORK);
-        self.peels = count(layout::COUNT_PEELS);
-        self.recovered_rays = count(layout::COUNT_RECOVERED);
-        self.lost_rays = count(layout::COUNT_LOST);
-        self.pauses = count(layout::COUNT_PAUSED);
-    }
+/// Takes over the shader's counters, pairs of low and high words.
+fn count(stats: &mut FrameStats, words: &[u32]) {
+    let count = |n: u32| {
+        let at = 2 * n as usize;
+        u64::from(words[at]) | u64::from(words[at + 1]) << 32
+    };
+    stats.samples = count(layout::COUNT_SAMPLES);
+    stats.newton_iterations = count(layout::COUNT_ITERATIONS);
+    stats.topological_steps = count(layout::COUNT_STEPS);
+    stats.grid_fallbacks = count(layout::COUNT_FALLBACKS);
+    stats.entries = count(layout::COUNT_ENTRIES);
+    stats.point_locations = stats.grid_fallbacks + count(layout::COUNT_SECTIONS);
+    stats.cell_crossings = count(layout::COUNT_CROSSINGS);
+    stats.lost_samples = count(layout::COUNT_LOST_SAMPLES);
+    stats.finished_rays = count(layout::COUNT_FINISHED);
+    stats.work = count(layout::COUNT_WORK);
+    stats.peels = count(layout::COUNT_PEELS);
+    stats.recovered_rays = count(layout::COUNT_RECOVERED);
+    stats.lost_rays = count(layout::COUNT_LOST);
+    stats.pauses = count(layout::COUNT_PAUSED);
 }
 
 fn queries(gpu: &Gpu) -> Option<(wgpu::QuerySet, wgpu::Buffer)> {

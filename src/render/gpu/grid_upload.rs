@@ -6,58 +6,11 @@ use rayon::prelude::*;
 use super::accel::AccelGrid;
 use super::columns::{self, ColumnShape};
 use super::device::Gpu;
-use super::error::GpuError;
 use super::layout::{COLUMN_FLAG, GridInfo, LIST_GAPPED, LIST_OFFSET};
 use super::pipeline::flag;
 use crate::model::{CellField, Grid, Ijk, VertexField};
+use crate::render::{DeviceBytes, RenderError};
 use crate::scene::Interpolation;
-
-/// Bytes on the device by purpose.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, serde::Serialize)]
-pub struct GpuBytes {
-    /// Pillars, depth lists, drawn cells.
-    pub geometry: u64,
-    /// Acceleration grid.
-    pub acceleration: u64,
-    /// Values of the property shown.
-    pub property: u64,
-    /// Resampled grids.
-    pub resampled: u64,
-    /// Light and occlusion volumes.
-    pub lighting: u64,
-    /// Pictures.
-    pub targets: u64,
-}
-
-impl GpuBytes {
-    /// All of them.
-    pub fn total(self) -> u64 {
-        let Self {
-            geometry,
-            acceleration,
-            property,
-            resampled,
-            lighting,
-            targets,
-        } = self;
-        geometry + acceleration + property + resampled + lighting + targets
-    }
-}
-
-impl std::ops::Add for GpuBytes {
-    type Output = Self;
-
-    fn add(self, other: Self) -> Self {
-        Self {
-            geometry: self.geometry + other.geometry,
-            acceleration: self.acceleration + other.acceleration,
-            property: self.property + other.property,
-            resampled: self.resampled + other.resampled,
-            lighting: self.lighting + other.lighting,
-            targets: self.targets + other.targets,
-        }
-    }
-}
 
 /// What is constant in shaders that locate points in a grid.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -124,7 +77,7 @@ impl GpuGrid {
     ///
     /// # Errors
     /// When an array exceeds what the adapter holds.
-    pub fn new(gpu: &Gpu, grid: &Grid) -> Result<Self, GpuError> {
+    pub fn new(gpu: &Gpu, grid: &Grid) -> Result<Self, RenderError> {
         let bounds = grid.bounds().unwrap_or([DVec3::ZERO, DVec3::ONE]);
         let origin = round_origin(bounds);
         let start = std::time::Instant::now();
@@ -133,7 +86,7 @@ impl GpuGrid {
         let acceleration_time = start.elapsed();
         let dims = grid.dims();
         if grid.depths().len() > LIST_OFFSET as usize {
-            return Err(GpuError::TooLarge {
+            return Err(RenderError::TooLarge {
                 what: "depth lists",
                 needed: 4 * grid.depths().len() as u64,
                 limit: 4 * u64::from(LIST_OFFSET),
@@ -202,7 +155,7 @@ impl GpuGrid {
         gpu: &Gpu,
         grid: &Grid,
         is_ghost: Option<&[bool]>,
-    ) -> Result<Self, GpuError> {
+    ) -> Result<Self, RenderError> {
         let mut made = Self::new(gpu, grid)?;
         made.versions.drawn = self.versions.drawn + 1;
         made.versions.values = self.versions.values + 1;
@@ -225,7 +178,7 @@ impl GpuGrid {
         field: &CellField,
         drawn: &[bool],
         interpolation: Interpolation,
-    ) -> Result<(), GpuError> {
+    ) -> Result<(), RenderError> {
         let words = drawn_words(grid, drawn);
         if words != self.drawn_words {
             self.drawn_cells = gpu.storage("drawn cells", &words)?;
@@ -276,7 +229,7 @@ impl GpuGrid {
 
     /// Empties the bins of the lower half of x, so that tests have a grid in which points are lost.
     #[cfg(test)]
-    pub(crate) fn lose_half(&mut self, gpu: &Gpu, grid: &Grid) -> Result<(), GpuError> {
+    pub(crate) fn lose_half(&mut self, gpu: &Gpu, grid: &Grid) -> Result<(), RenderError> {
         let mut accel = AccelGrid::new(grid, &columns::shapes(grid), self.origin);
         for row in accel.bins.chunks_exact_mut(accel.size[0] as usize) {
             let half = row.len() / 2;
@@ -288,9 +241,9 @@ impl GpuGrid {
     }
 
     /// Bytes by purpose.
-    pub fn bytes(&self) -> GpuBytes {
+    pub fn bytes(&self) -> DeviceBytes {
         let sum = |buffers: &[&wgpu::Buffer]| buffers.iter().map(|b| b.size()).sum();
-        GpuBytes {
+        DeviceBytes {
             geometry: sum(&[
                 &self.info,
                 &self.pillars,
@@ -300,7 +253,7 @@ impl GpuGrid {
             ]) + self.ghost_cells.as_ref().map_or(0, wgpu::Buffer::size),
             acceleration: sum(&[&self.bins, &self.bin_columns]),
             property: sum(&[&self.values]),
-            ..GpuBytes::default()
+            ..DeviceBytes::default()
         }
     }
 }

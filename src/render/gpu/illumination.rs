@@ -4,13 +4,12 @@
 //! transfer function and clip planes; a light volume follows the pyramid and its emitter, which for occlusion
 //! is the camera (campagnolo-2021, 3.3.3).
 
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use glam::{DVec3, Vec3};
 
 use super::cones::ConeTable;
 use super::device::Gpu;
-use super::error::GpuError;
 use super::extinction::{Blurs, Pyramid};
 use super::grid_upload::{GpuGrid, Versions};
 use super::layout::{self, Emitter, LightingInfo, Slab};
@@ -21,6 +20,9 @@ use super::tiles::Pace;
 use super::transfer_tables::TransferTables;
 use super::uniforms::{clip_planes, ghost};
 use super::volume::Volume;
+use crate::render::RenderError;
+use crate::render::job::Progress;
+use crate::render::stats::LightTimes;
 use crate::scene::lighting::LightMode;
 use crate::view::View;
 use crate::view::lighting::{Cone, Lighting, SPOT_EDGE, Source};
@@ -91,17 +93,6 @@ fn mode(mode: LightMode) -> u32 {
         LightMode::Preilluminated => layout::LIGHT_VOLUME,
         LightMode::MonteCarlo => layout::LIGHT_RAYS,
     }
-}
-
-/// Times that bringing the light up to date took, by stage; zero where nothing was to be done.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct LightTimes {
-    /// Values by point location.
-    pub field: Duration,
-    /// Extinction pyramid.
-    pub extinction: Duration,
-    /// Light volumes, and gradients.
-    pub volumes: Duration,
 }
 
 /// How often each part has been made. The numbers never fall, so that what was made from a part that a
@@ -194,7 +185,7 @@ impl Illumination {
     ///
     /// # Errors
     /// When the driver refuses one.
-    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+    pub fn new(gpu: &Gpu) -> Result<Self, RenderError> {
         let none: [LightingInfo; 1] = bytemuck::Zeroable::zeroed();
         let one = |voxel| Shape {
             voxel,
@@ -222,51 +213,48 @@ impl Illumination {
         })
     }
 
-    /// Brings the light of a view up to date; false where it was cancelled.
+    /// Brings the light of a view up to date.
     ///
     /// # Errors
     /// When a volume exceeds what the adapter holds, or the device reports an error.
-    pub fn update(
+    pub async fn update(
         &mut self,
         gpu: &Gpu,
         grid: &GpuGrid,
         view: &View,
         tables: &TransferTables,
-        progress: &dyn Fn(f64) -> bool,
-    ) -> Result<bool, GpuError> {
+        progress: &Progress,
+    ) -> Result<(), RenderError> {
         self.times = LightTimes::default();
         if !Shading::of(&view.lighting).is_on() {
             self.work = 0;
             self.forget();
-            return Ok(true);
+            return Ok(());
         }
         let start = Instant::now();
-        if !self.fill(gpu, grid, view, progress)? {
-            return Ok(false);
-        }
+        self.fill(gpu, grid, view, progress).await?;
         self.times.field = start.elapsed();
         let start = Instant::now();
-        if !self.blur(gpu, grid, view, tables, progress)? {
-            return Ok(false);
-        }
+        self.blur(gpu, grid, view, tables, progress).await?;
         self.times.extinction = start.elapsed();
         let start = Instant::now();
         let emitters = emitters(grid, view, gpu.is_software())?;
         self.upload(gpu, grid, view, &emitters)?;
-        let done = self.illuminate(gpu, view, tables, &emitters, progress)?
-            && self.slope(gpu, view, tables, progress)?;
+        self.illuminate(gpu, view, tables, &emitters, progress)
+            .await?;
+        self.slope(gpu, view, tables, progress).await?;
         self.times.volumes = start.elapsed();
-        Ok(done)
+        Ok(())
     }
 
     /// Fills the volume of values where cells, values or sizes have changed.
-    fn fill(
+    async fn fill(
         &mut self,
         gpu: &Gpu,
         grid: &GpuGrid,
         view: &View,
-        progress: &dyn Fn(f64) -> bool,
-    ) -> Result<bool, GpuError> {
+        progress: &Progress,
+    ) -> Result<(), RenderError> {
         let shape = Shape {
             voxel: Voxel::Packed,
             ..Shape::single(view.lighting.size(), 1)
@@ -275,7 +263,7 @@ impl Illumination {
         let before = before.filter(|f| f.volume.shape == shape);
         if before.as_ref().is_some_and(|f| f.versions == grid.versions) {
             self.field = before;
-            return Ok(true);
+            return Ok(());
         }
         check_size(gpu, shape.size)?;
         let volume = before.map_or_else(|| Volume::new(gpu, shape), |f| f.volume);
@@ -284,29 +272,29 @@ impl Illumination {
             .statistics()
             .map_or([0.0, 1.0], |s| [s.min, s.max]);
         let mut slabs = Slabs::new(gpu, &mut self.pace, progress);
-        let done = self
-            .resampler
-            .fill(&mut slabs, grid, &volume, range, view.interpolation)?;
-        self.made.fields += u64::from(done);
-        self.field = done.then_some(Field {
+        self.resampler
+            .fill(&mut slabs, grid, &volume, range, view.interpolation)
+            .await?;
+        self.made.fields += 1;
+        self.field = Some(Field {
             versions: grid.versions,
             range,
             volume,
         });
-        Ok(done)
+        Ok(())
     }
 
     /// Makes the pyramid where the values, the transfer function or the clip planes have changed.
-    fn blur(
+    async fn blur(
         &mut self,
         gpu: &Gpu,
         grid: &GpuGrid,
         view: &View,
         tables: &TransferTables,
-        progress: &dyn Fn(f64) -> bool,
-    ) -> Result<bool, GpuError> {
+        progress: &Progress,
+    ) -> Result<(), RenderError> {
         let Some(field) = &self.field else {
-            return Ok(false);
+            return Ok(());
         };
         let source = super::extinction::Source {
             values: &field.volume,
@@ -331,24 +319,22 @@ impl Illumination {
             self.opacities = None;
         } else if is_stale(&self.opacities) {
             let before = self.opacities.take();
-            self.opacities =
-                self.blurs
-                    .make_sharp(&mut slabs, &source, &view.transfer, &group, before)?;
-            if self.opacities.is_none() {
-                return Ok(false);
-            }
+            let made = self
+                .blurs
+                .make_sharp(&mut slabs, &source, &view.transfer, &group, before);
+            self.opacities = Some(made.await?);
         }
         if !shading.traces_cones() {
             self.pyramid = None;
         } else if is_stale(&self.pyramid) {
             let before = self.pyramid.take();
-            self.pyramid = self
+            let made = self
                 .blurs
-                .make(&mut slabs, &source, &view.transfer, &group, before)?;
-            self.made.pyramids += u64::from(self.pyramid.is_some());
-            return Ok(self.pyramid.is_some());
+                .make(&mut slabs, &source, &view.transfer, &group, before);
+            self.pyramid = Some(made.await?);
+            self.made.pyramids += 1;
         }
-        Ok(true)
+        Ok(())
     }
 
     /// Uploads what shaders need to know.
@@ -358,7 +344,7 @@ impl Illumination {
         grid: &GpuGrid,
         view: &View,
         emitters: &Emitters,
-    ) -> Result<(), GpuError> {
+    ) -> Result<(), RenderError> {
         let lighting = &view.lighting;
         let space = LightSpace::new(grid, view);
         let range = self.field.as_ref().map_or([0.0, 1.0], |f| f.range);
@@ -393,19 +379,19 @@ impl Illumination {
     }
 
     /// Makes the light volumes whose emitter or pyramid has changed.
-    fn illuminate(
+    async fn illuminate(
         &mut self,
         gpu: &Gpu,
         view: &View,
         tables: &TransferTables,
         emitters: &Emitters,
-        progress: &dyn Fn(f64) -> bool,
-    ) -> Result<bool, GpuError> {
+        progress: &Progress,
+    ) -> Result<(), RenderError> {
         let size = view.lighting.light_size();
         let count = emitters.volumes.len() as u32;
         if count == 0 {
             self.lights = None;
-            return Ok(true);
+            return Ok(());
         }
         let shape = Shape::single([size[0], size[1], size[2] * count], 1);
         check_size(gpu, shape.size)?;
@@ -435,42 +421,37 @@ impl Illumination {
             let work = u64::from(cone_work(&emitter));
             let range = [from, from + size[2]];
             let illuminate = &self.illuminate;
-            let done = lights.volume.make_slices(
-                &mut slabs,
-                0,
-                range,
-                work,
-                &|encoder, slab, voxels| {
-                    run(gpu, illuminate, encoder, slab, &which, voxels, &group, 2);
-                },
-            )?;
-            if !done {
-                return Ok(false);
-            }
+            let dispatch = |encoder: &mut _, slab: &Slab, voxels: &wgpu::Buffer| {
+                run(gpu, illuminate, encoder, slab, &which, voxels, &group, 2);
+            };
+            lights
+                .volume
+                .make_slices(&mut slabs, 0, range, work, &dispatch)
+                .await?;
             lights.made[n] = Some(lit);
             self.made.light_volumes += 1;
         }
         lights.size = size;
         self.lights = Some(lights);
-        Ok(true)
+        Ok(())
     }
 
     /// Makes the gradients where highlights need them.
-    fn slope(
+    async fn slope(
         &mut self,
         gpu: &Gpu,
         view: &View,
         tables: &TransferTables,
-        progress: &dyn Fn(f64) -> bool,
-    ) -> Result<bool, GpuError> {
+        progress: &Progress,
+    ) -> Result<(), RenderError> {
         let (Some(field), true) = (&self.field, view.lighting.blinn_phong) else {
             self.gradients = None;
-            return Ok(true);
+            return Ok(());
         };
         // Values that are constant in a cell have no gradient.
         if view.interpolation == crate::scene::Interpolation::Cell {
             self.gradients = None;
-            return Ok(true);
+            return Ok(());
         }
         let shape = Shape {
             voxel: Voxel::Quad,
@@ -485,7 +466,7 @@ impl Illumination {
                 && g.position_scale == position_scale
         });
         if is_known {
-            return Ok(true);
+            return Ok(());
         }
         self.gradients = None;
         let volume = Volume::new(gpu, shape);
@@ -493,16 +474,19 @@ impl Illumination {
         let which = gpu.uniform("emitter", &[0u32; 4]);
         let mut slabs = Slabs::new(gpu, &mut self.pace, progress);
         let gradient = &self.gradient;
-        let done = volume.make_level(&mut slabs, 0, GRADIENT_WORK, &|encoder, slab, voxels| {
+        let dispatch = |encoder: &mut _, slab: &Slab, voxels: &wgpu::Buffer| {
             run(gpu, gradient, encoder, slab, &which, voxels, &group, 1);
-        })?;
-        self.gradients = done.then_some(Gradients {
+        };
+        volume
+            .make_level(&mut slabs, 0, GRADIENT_WORK, &dispatch)
+            .await?;
+        self.gradients = Some(Gradients {
             volume,
             field: self.made.fields,
             scale,
             position_scale,
         });
-        Ok(done)
+        Ok(())
     }
 
     /// Bind group 2: transfer function and light.
@@ -594,11 +578,11 @@ fn run(
     pipeline.dispatch(encoder, &groups, [width.div_ceil(wide), height, depth]);
 }
 
-fn check_size(gpu: &Gpu, size: [u32; 3]) -> Result<(), GpuError> {
+fn check_size(gpu: &Gpu, size: [u32; 3]) -> Result<(), RenderError> {
     let limit = gpu.device.limits().max_texture_dimension_3d;
     match size.iter().all(|&n| n <= limit) {
         true => Ok(()),
-        false => Err(GpuError::Unsuitable {
+        false => Err(RenderError::Unsuitable {
             adapter: gpu.info.name.clone(),
             reason: format!(
                 "light volumes of {} x {} x {} voxels are asked for and {limit} each way are possible; use smaller ones or fewer lights",
@@ -644,7 +628,7 @@ impl LightSpace {
     }
 }
 
-fn emitters(grid: &GpuGrid, view: &View, software: bool) -> Result<Emitters, GpuError> {
+fn emitters(grid: &GpuGrid, view: &View, software: bool) -> Result<Emitters, RenderError> {
     let lighting = &view.lighting;
     let space = LightSpace::new(grid, view);
     let mut all = Emitters {
@@ -692,7 +676,7 @@ impl Emitters {
         lighting: &Lighting,
         space: &LightSpace,
         software: bool,
-    ) -> Result<(), GpuError> {
+    ) -> Result<(), RenderError> {
         let mut emitter = emitter;
         if let Some(cone) = cone.filter(|_| mode != LightMode::Off) {
             let table = ConeTable::of(&cone, space.sigma);
@@ -715,7 +699,7 @@ impl Emitters {
                     let steps = cone.length / space.sigma / Lighting::REFERENCE_STEP;
                     let work = steps * f64::from(lighting.rays);
                     if software && work > MOST_RAY_WORK {
-                        return Err(GpuError::Device(format!(
+                        return Err(RenderError::Device(format!(
                             "lighting.rays: {} over cones of {steps:.0} steps are too many for a software adapter; use at most {:.0}, or a smaller volume or length",
                             lighting.rays,
                             (MOST_RAY_WORK / steps).floor().max(1.0)

@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use super::bind_groups::{SHARED_GROUPS, bindings, layout, parse};
 use super::device::{Gpu, LateError};
-use super::error::GpuError;
 use super::shader::compose;
+use crate::render::RenderError;
 
 /// A shader's module with the layout of its pipeline.
 struct Compiled {
@@ -17,18 +17,18 @@ struct Compiled {
 
 impl Compiled {
     /// Invocations of a workgroup of an entry: each has its own.
-    fn workgroup(&self, name: &str, entry: &str) -> Result<[u32; 3], GpuError> {
+    fn workgroup(&self, name: &str, entry: &str) -> Result<[u32; 3], RenderError> {
         let found = self.entries.iter().find(|e| e.name == entry);
         found
             .map(|e| e.workgroup_size)
-            .ok_or_else(|| GpuError::Shader {
+            .ok_or_else(|| RenderError::Shader {
                 name: name.to_owned(),
                 message: format!("has no entry {entry}"),
             })
     }
 }
 
-fn compile(gpu: &Gpu, name: &str) -> Result<Compiled, GpuError> {
+fn compile(gpu: &Gpu, name: &str) -> Result<Compiled, RenderError> {
     let text = gpu.layouts.parameters.declared(compose(name)?);
     let module = parse(name, &text)?;
     let used = |group: usize| bindings(&module).any(|(g, _)| g as usize == group);
@@ -66,12 +66,12 @@ fn compile(gpu: &Gpu, name: &str) -> Result<Compiled, GpuError> {
 fn checked<T>(
     gpu: &Gpu,
     name: &str,
-    make: impl FnOnce() -> Result<T, GpuError>,
-) -> Result<T, GpuError> {
+    make: impl FnOnce() -> Result<T, RenderError>,
+) -> Result<T, RenderError> {
     let scope = gpu.device.push_error_scope(wgpu::ErrorFilter::Validation);
     let made = make()?;
     match pollster::block_on(scope.pop()) {
-        Some(error) => Err(GpuError::Shader {
+        Some(error) => Err(RenderError::Shader {
             name: name.to_owned(),
             message: error.to_string(),
         }),
@@ -104,7 +104,7 @@ impl Pipeline {
     ///
     /// # Errors
     /// When it is not valid, with the compiler's words.
-    pub fn new(gpu: &Gpu, name: &str) -> Result<Self, GpuError> {
+    pub fn new(gpu: &Gpu, name: &str) -> Result<Self, RenderError> {
         Self::variant(gpu, name, "main", &[])
     }
 
@@ -117,7 +117,7 @@ impl Pipeline {
         name: &str,
         entry: &str,
         constants: &[(&str, f64)],
-    ) -> Result<Self, GpuError> {
+    ) -> Result<Self, RenderError> {
         checked(gpu, name, || {
             let compiled = compile(gpu, name)?;
             let workgroup = compiled.workgroup(name, entry)?;
@@ -162,7 +162,7 @@ impl Pipeline {
     pub fn record(&self, pass: &mut wgpu::ComputePass<'_>, size: [u32; 3]) {
         let groups = self.groups_for(size);
         if groups.iter().any(|&n| n > self.most_groups) {
-            self.late_error.keep(GpuError::TooManyGroups {
+            self.late_error.keep(RenderError::TooManyGroups {
                 shader: self.name.clone(),
                 groups,
                 limit: self.most_groups,
@@ -194,7 +194,11 @@ impl RasterPipeline {
     ///
     /// # Errors
     /// When it is not valid, with the compiler's words.
-    pub fn new(gpu: &Gpu, name: &str, targets: &[wgpu::TextureFormat]) -> Result<Self, GpuError> {
+    pub fn new(
+        gpu: &Gpu,
+        name: &str,
+        targets: &[wgpu::TextureFormat],
+    ) -> Result<Self, RenderError> {
         checked(gpu, name, || {
             let compiled = compile(gpu, name)?;
             let targets: Vec<_> = targets

@@ -3,26 +3,15 @@
 use glam::DVec3;
 
 use super::device::Gpu;
-use super::error::GpuError;
 use super::grid_upload::{Constants, GpuGrid};
 use super::layout::{self, Found, NOT_FOUND};
 use super::pipeline::Pipeline;
 use crate::model::{Grid, Ijk};
+use crate::render::{Located, RenderError};
 use crate::scene::Interpolation;
 
 /// Points of one submission: short enough for slow adapters.
 const BATCH: usize = 16 * 1024;
-
-/// A point that lies in a cell.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Located {
-    /// The cell.
-    pub ijk: Ijk,
-    /// (s, t, r) in [-1, 1]^3.
-    pub parameters: DVec3,
-    /// Value of the field there.
-    pub value: f64,
-}
 
 /// Locates points given in grid space; `None` where a point lies in no drawn cell.
 ///
@@ -34,7 +23,7 @@ pub fn locate(
     grid: &Grid,
     points_in_grid: &[DVec3],
     interpolation: Interpolation,
-) -> Result<Vec<Option<Located>>, GpuError> {
+) -> Result<Vec<Option<Located>>, RenderError> {
     Probe::new(gpu, gpu_grid)?.locate(gpu, gpu_grid, grid, points_in_grid, interpolation)
 }
 
@@ -49,7 +38,7 @@ impl Probe {
     ///
     /// # Errors
     /// When the driver refuses it.
-    pub fn new(gpu: &Gpu, gpu_grid: &GpuGrid) -> Result<Self, GpuError> {
+    pub fn new(gpu: &Gpu, gpu_grid: &GpuGrid) -> Result<Self, RenderError> {
         let constants = gpu_grid.constants();
         Ok(Self {
             pipeline: Pipeline::variant(gpu, "probe", "main", &constants.pairs())?,
@@ -73,7 +62,7 @@ impl Probe {
         grid: &Grid,
         points_in_grid: &[DVec3],
         interpolation: Interpolation,
-    ) -> Result<Vec<Option<Located>>, GpuError> {
+    ) -> Result<Vec<Option<Located>>, RenderError> {
         let grid_group = gpu_grid.bind(gpu);
         let mut located = Vec::with_capacity(points_in_grid.len());
         for batch in points_in_grid.chunks(BATCH) {

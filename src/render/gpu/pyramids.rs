@@ -1,10 +1,10 @@
 //! Pyramids over a resampled volume: averages, and how rays may pass its bricks.
 
 use super::device::Gpu;
-use super::error::GpuError;
 use super::layout::{BRICK, BricksInfo, LUT_SIZE, Slab};
 use super::pipeline::Pipeline;
 use super::transfer_tables::extinctions;
+use crate::render::RenderError;
 
 use super::slabs::Slabs;
 use super::volume::Volume;
@@ -148,9 +148,9 @@ impl PyramidMaker {
     ///
     /// # Errors
     /// When the driver refuses one.
-    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+    pub fn new(gpu: &Gpu) -> Result<Self, RenderError> {
         let entry = |name| Pipeline::variant(gpu, "pyramids", name, &[]);
-        let both = |entry, constant| -> Result<_, GpuError> {
+        let both = |entry, constant| -> Result<_, RenderError> {
             let variant = |value| Pipeline::variant(gpu, "pyramids", entry, &[(constant, value)]);
             Ok([variant(0.0)?, variant(1.0)?])
         };
@@ -185,52 +185,51 @@ impl PyramidMaker {
         pipeline.dispatch(encoder, &groups, what.size);
     }
 
-    /// Makes the coarser levels of a volume, each from the one below; false where it was cancelled.
+    /// Makes the coarser levels of a volume, each from the one below.
     ///
     /// # Errors
     /// When the device reports an error.
-    pub fn average(
+    pub async fn average(
         &self,
         slabs: &mut Slabs<'_>,
         volume: &Volume,
         bricks: &Bricks,
-    ) -> Result<bool, GpuError> {
+    ) -> Result<(), RenderError> {
         let gpu = slabs.gpu;
         let average = &self.average[usize::from(volume.shape.voxel == Voxel::Quad)];
         for level in 1..volume.shape.levels {
             let finer = volume.level(level - 1);
-            let done =
-                volume.make_level(slabs, level, AVERAGE_WORK, &|encoder, slab, voxels| {
-                    let what = What {
-                        slab: *slab,
-                        volume: &finer,
-                        voxels,
-                        size: slab.size,
-                    };
-                    self.record(average, gpu, encoder, bricks, &what);
-                })?;
-            if !done {
-                return Ok(false);
-            }
+            let dispatch = |encoder: &mut wgpu::CommandEncoder, slab: &Slab, voxels: &_| {
+                let what = What {
+                    slab: *slab,
+                    volume: &finer,
+                    voxels,
+                    size: slab.size,
+                };
+                self.record(average, gpu, encoder, bricks, &what);
+            };
+            volume
+                .make_level(slabs, level, AVERAGE_WORK, &dispatch)
+                .await?;
         }
-        Ok(true)
+        Ok(())
     }
 
-    /// Finds range and presence of each brick; false where it was cancelled.
+    /// Finds range and presence of each brick.
     ///
     /// # Errors
     /// When the device reports an error.
-    pub fn summarize(
+    pub async fn summarize(
         &self,
         slabs: &mut Slabs<'_>,
         volume: &Volume,
         bricks: &Bricks,
-    ) -> Result<bool, GpuError> {
+    ) -> Result<(), RenderError> {
         let gpu = slabs.gpu;
         let finest = volume.level(0);
         let unused = gpu.scratch("no voxels", UNUSED_BYTES);
         let work = u64::from(BRICK + 2).pow(3);
-        slabs.cover(bricks.shape.count, [u32::MAX, 1], work, &|encoder, slab| {
+        let record = |encoder: &mut wgpu::CommandEncoder, slab: &Slab| {
             let what = What {
                 slab: *slab,
                 volume: &finest,
@@ -238,7 +237,10 @@ impl PyramidMaker {
                 size: slab.size,
             };
             self.record(&self.summarize, gpu, encoder, bricks, &what);
-        })
+        };
+        slabs
+            .cover(bricks.shape.count, [u32::MAX, 1], work, &record)
+            .await
     }
 
     /// Weighs the bricks by a transfer function and classifies them.
@@ -254,7 +256,7 @@ impl PyramidMaker {
         volume: &Volume,
         bricks: &Bricks,
         by: &Classifier<'_>,
-    ) -> Result<(), GpuError> {
+    ) -> Result<(), RenderError> {
         let info = by.info(volume, bricks);
         gpu.queue
             .write_buffer(&bricks.info, 0, bytemuck::bytes_of(&info));

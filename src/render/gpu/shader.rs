@@ -1,6 +1,6 @@
 //! Shader sources: `#import name` by stem from `shaders/shared/`, each once.
 
-use super::error::GpuError;
+use crate::render::RenderError;
 
 macro_rules! sources {
     ($($name:literal => $path:literal),* $(,)?) => {
@@ -66,19 +66,19 @@ pub const ENTRIES: [&str; 12] = [
 ///
 /// # Errors
 /// When an imported name does not exist.
-pub fn compose(name: &str) -> Result<String, GpuError> {
+pub fn compose(name: &str) -> Result<String, RenderError> {
     let mut text = String::new();
     append(name, &mut Vec::new(), &mut text)?;
     Ok(text)
 }
 
-fn append(name: &str, done: &mut Vec<String>, text: &mut String) -> Result<(), GpuError> {
+fn append(name: &str, done: &mut Vec<String>, text: &mut String) -> Result<(), RenderError> {
     if done.iter().any(|d| d == name) {
         return Ok(());
     }
     done.push(name.to_owned());
     let source = SOURCES.iter().find(|(n, _)| *n == name).map(|(_, s)| *s);
-    let source = source.ok_or_else(|| GpuError::Shader {
+    let source = source.ok_or_else(|| RenderError::Shader {
         name: name.to_owned(),
         message: "is imported but does not exist".into(),
     })?;

@@ -1,9 +1,10 @@
 //! Work on volumes in parts, each short enough for a slow adapter.
 
 use super::device::Gpu;
-use super::error::GpuError;
 use super::layout::Slab;
 use super::tiles::Pace;
+use crate::render::RenderError;
+use crate::render::job::Progress;
 
 /// Makes volumes and pyramids in parts, each short enough for a slow adapter.
 pub struct Slabs<'a> {
@@ -11,13 +12,13 @@ pub struct Slabs<'a> {
     pub gpu: &'a Gpu,
     /// What the adapter does in the time of a submission.
     pub pace: &'a mut Pace,
-    /// Told the fraction done; returns false to cancel.
-    pub progress: &'a dyn Fn(f64) -> bool,
+    /// Told the fraction done.
+    pub progress: &'a Progress,
 }
 
 impl<'a> Slabs<'a> {
     /// Work at a pace that it goes on learning.
-    pub fn new(gpu: &'a Gpu, pace: &'a mut Pace, progress: &'a dyn Fn(f64) -> bool) -> Self {
+    pub fn new(gpu: &'a Gpu, pace: &'a mut Pace, progress: &'a Progress) -> Self {
         Self {
             gpu,
             pace,
@@ -25,20 +26,20 @@ impl<'a> Slabs<'a> {
         }
     }
 
-    /// Submits `record` for slabs that cover `size`; false where it was cancelled.
+    /// Submits `record` for slabs that cover `size`.
     ///
     /// A slab has whole rows, at most `deepest` slices, and at most `most_rows` rows; each element of it
     /// costs about `work` loop iterations.
     ///
     /// # Errors
     /// When the device reports an error.
-    pub fn cover(
+    pub async fn cover(
         &mut self,
         size: [u32; 3],
         [most_rows, deepest]: [u32; 2],
         work: u64,
         record: &dyn Fn(&mut wgpu::CommandEncoder, &Slab),
-    ) -> Result<bool, GpuError> {
+    ) -> Result<(), RenderError> {
         for z in (0..size[2]).step_by(deepest as usize) {
             let depth = deepest.min(size[2] - z);
             let row_work = work * u64::from(size[0]) * u64::from(depth);
@@ -55,12 +56,10 @@ impl<'a> Slabs<'a> {
                 self.submit(&slab, rows * row_work, record)?;
                 y += rows as u32;
                 let slices = f64::from(z) + f64::from(depth) * f64::from(y) / f64::from(size[1]);
-                if !(self.progress)(slices / f64::from(size[2])) {
-                    return Ok(false);
-                }
+                self.progress.reached(slices / f64::from(size[2])).await;
             }
         }
-        Ok(true)
+        Ok(())
     }
 
     fn submit(
@@ -68,7 +67,7 @@ impl<'a> Slabs<'a> {
         slab: &Slab,
         work: u64,
         record: &dyn Fn(&mut wgpu::CommandEncoder, &Slab),
-    ) -> Result<(), GpuError> {
+    ) -> Result<(), RenderError> {
         let start = std::time::Instant::now();
         let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
         record(&mut encoder, slab);

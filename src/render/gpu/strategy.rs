@@ -1,9 +1,11 @@
 //! What a strategy is to a frame.
 
 use crate::model::Grid;
+use crate::render::DeviceBytes;
 use crate::render::gpu::faces::FaceList;
 use crate::render::gpu::illumination::Shading;
-use crate::render::gpu::{Gpu, GpuBytes, GpuError, GpuGrid, Round, grid_upload, surfaces};
+use crate::render::gpu::{Gpu, GpuGrid, Round, grid_upload, surfaces};
+use crate::render::job::{Progress, Work};
 use crate::view::{Surfaces, View};
 
 /// What a strategy prepares from.
@@ -18,8 +20,8 @@ pub struct Preparation<'a> {
     pub view: &'a View,
     /// The boundary faces of the drawn cells, for a strategy that draws them.
     pub faces: Option<&'a FaceList>,
-    /// Told the fraction done; returns false to cancel.
-    pub progress: &'a dyn Fn(f64) -> bool,
+    /// Told the fraction done.
+    pub progress: &'a Progress,
 }
 
 /// Options that are constants of every strategy's pipelines.
@@ -73,17 +75,15 @@ pub trait RenderStrategy {
         false
     }
 
-    /// Brings up to date what the strategy keeps beside the grid; false where it was cancelled.
+    /// Brings up to date what the strategy keeps beside the grid.
     ///
     /// # Errors
     /// When the device refuses.
-    fn prepare(&mut self, _what: &Preparation<'_>) -> Result<bool, GpuError> {
-        Ok(true)
-    }
+    fn prepare<'a>(&'a mut self, what: &'a Preparation<'a>) -> Work<'a, ()>;
 
     /// Bytes of what the strategy keeps beside the grid.
-    fn bytes(&self) -> GpuBytes {
-        GpuBytes::default()
+    fn bytes(&self) -> DeviceBytes {
+        DeviceBytes::default()
     }
 
     /// Records one round of a tile.

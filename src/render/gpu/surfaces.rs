@@ -9,7 +9,6 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use super::device::Gpu;
-use super::error::GpuError;
 use super::faces::{self, FORMAT, FaceList, FaceTarget};
 use super::grid_upload::GpuGrid;
 use super::illumination::Shading;
@@ -18,6 +17,7 @@ use super::pipeline::{Pipeline, RasterPipeline, flag};
 use super::round::{Place, Round};
 use crate::image::Blending;
 use crate::model::Grid;
+use crate::render::RenderError;
 use crate::scene::Hull;
 use crate::view::surfaces::{FAINT_BEHIND, FAINT_FRONT, PALETTE, UNNAMED, faint_color};
 use crate::view::{Surfaces, View};
@@ -100,7 +100,7 @@ impl SurfacePainter {
     ///
     /// # Errors
     /// When the driver refuses one.
-    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+    pub fn new(gpu: &Gpu) -> Result<Self, RenderError> {
         Ok(Self {
             peel: RasterPipeline::new(gpu, "peel", &[FORMAT])?,
             paint: Pipeline::new(gpu, "paint")?,
@@ -134,7 +134,7 @@ impl SurfacePainter {
         view: &View,
         boundary: Option<&FaceList>,
         work: u32,
-    ) -> Result<(), GpuError> {
+    ) -> Result<(), RenderError> {
         let look = (view.surfaces, Shading::of(&view.lighting));
         if look != self.look {
             let surfaces = constants(look.0).into_iter();
@@ -267,7 +267,7 @@ impl Shown {
         grid: &GpuGrid,
         view: &View,
         boundary: Option<&FaceList>,
-    ) -> Result<Self, GpuError> {
+    ) -> Result<Self, RenderError> {
         let surfaces = view.surfaces;
         let faults = match surfaces.faults {
             true => faults(model, view)?,
@@ -300,7 +300,7 @@ impl Shown {
 }
 
 /// Numbers of the fault faces in rising order, and of their colors.
-fn faults(model: &Grid, view: &View) -> Result<Vec<(u32, u32)>, GpuError> {
+fn faults(model: &Grid, view: &View) -> Result<Vec<(u32, u32)>, RenderError> {
     let faces = view.fault_faces(model);
     let places: Vec<_> = faces.iter().map(|f| (f.0, f.1)).collect();
     let color = |fault: Option<usize>| fault.map_or(PALETTE.len(), |n| n % PALETTE.len()) as u32;

@@ -1,7 +1,7 @@
 //! The picture on the device, and its way back.
 
 use super::device::Gpu;
-use super::error::GpuError;
+use crate::render::RenderError;
 
 /// A texture of premultiplied RGBA that shaders write.
 pub fn create(gpu: &Gpu, size: [u32; 2]) -> wgpu::Texture {
@@ -14,7 +14,7 @@ pub fn read(
     gpu: &Gpu,
     target: &wgpu::Texture,
     [width, height]: [u32; 2],
-) -> Result<Vec<[f32; 4]>, GpuError> {
+) -> Result<Vec<[f32; 4]>, RenderError> {
     const BAND_BYTES: u32 = 32 << 20;
     let row = (16 * width).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
     let rows = (BAND_BYTES / row).clamp(1, height);

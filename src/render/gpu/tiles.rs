@@ -92,34 +92,27 @@ pub fn parts(whole: Rect, most: u64) -> Vec<Rect> {
     }
 }
 
-/// Calls `draw` for tiles that cover a rectangle, as large as the pace allows.
-///
-/// `least` is the loop iterations that each ray makes in a submission at least. `progress` is told the
-/// fraction done and returns false to cancel; the result is false then.
-///
-/// # Errors
-/// The first error of `draw`.
-pub fn cover<E>(
-    whole: Rect,
-    pace: &mut Pace,
-    least: u64,
-    mut draw: impl FnMut(Rect, &mut Pace) -> Result<(), E>,
-    progress: &dyn Fn(f64) -> bool,
-) -> Result<bool, E> {
-    let (mut done, mut left) = (0, vec![whole]);
-    while let Some(rect) = left.pop() {
-        if rect.area() > pace.area(least) {
-            let [first, second] = rect.halves();
-            left.extend([second, first]);
-            continue;
-        }
-        draw(rect, pace)?;
-        done += rect.area();
-        if !progress(done as f64 / whole.area() as f64) {
-            return Ok(false);
-        }
+/// Tiles that cover a rectangle.
+pub struct Tiles {
+    left: Vec<Rect>,
+}
+
+impl Tiles {
+    /// All of a rectangle is left.
+    pub fn of(whole: Rect) -> Self {
+        Self { left: vec![whole] }
     }
-    Ok(true)
+
+    /// The next tile, of at most so many pixels; `None` where all have been taken.
+    pub fn next(&mut self, most: u64) -> Option<Rect> {
+        let mut rect = self.left.pop()?;
+        while rect.area() > most.max(1) {
+            let [first, second] = rect.halves();
+            self.left.push(second);
+            rect = first;
+        }
+        Some(rect)
+    }
 }
 
 #[cfg(test)]
@@ -154,7 +147,8 @@ mod tests {
         for size in [[1, 1], [1000, 3], [333, 257]] {
             let mut hits = vec![0u8; (size[0] * size[1]) as usize];
             let mut n = 0u32;
-            let draw = |r: Rect, pace: &mut Pace| -> Result<(), ()> {
+            let (mut pace, mut tiles) = (Pace::default(), Tiles::of(at_origin(size)));
+            while let Some(r) = tiles.next(pace.area(500)) {
                 n += 1;
                 pace.learn(Duration::from_millis(u64::from(n % 5) * 50), 100_000);
                 for y in r.origin[1]..r.origin[1] + r.size[1] {
@@ -162,12 +156,7 @@ mod tests {
                         hits[(x + size[0] * y) as usize] += 1;
                     }
                 }
-                Ok(())
-            };
-            assert_eq!(
-                cover(at_origin(size), &mut Pace::default(), 500, draw, &|_| true),
-                Ok(true)
-            );
+            }
             assert!(hits.iter().all(|&h| h == 1));
         }
     }
@@ -187,27 +176,17 @@ mod tests {
     }
 
     #[test]
-    fn submissions_stay_within_the_budget_and_cancel_works() {
+    fn submissions_stay_within_the_budget() {
         // An adapter of 50 ns a loop iteration, on which the rays of the right half never rest.
         let mut longest = Duration::ZERO;
-        let slow = |r: Rect, pace: &mut Pace| -> Result<(), ()> {
+        let (mut pace, mut tiles) = (Pace::default(), Tiles::of(at_origin([1000, 500])));
+        while let Some(r) = tiles.next(pace.area(500)) {
             let limit = u64::from(pace.work_limit(r.area(), 500, 6000));
             let each = if r.origin[0] < 500 { 3 } else { limit };
             let took = Duration::from_nanos(50 * each * r.area());
             pace.learn(took, each * r.area());
             longest = longest.max(took);
-            Ok(())
-        };
-        assert_eq!(
-            cover(
-                at_origin([1000, 500]),
-                &mut Pace::default(),
-                500,
-                slow,
-                &|f| f < 0.9
-            ),
-            Ok(false)
-        );
+        }
         assert!(
             longest <= Duration::from_millis(100) && longest > Duration::from_millis(20),
             "{longest:?}"

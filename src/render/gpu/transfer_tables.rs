@@ -1,9 +1,9 @@
 //! The transfer function on the device.
 
 use super::device::Gpu;
-use super::error::GpuError;
 use super::layout::LUT_SIZE;
 use crate::image::Blending;
+use crate::render::RenderError;
 use crate::transfer::TransferFunction;
 use crate::view::View;
 
@@ -22,7 +22,7 @@ impl TransferTables {
     ///
     /// # Errors
     /// When the device refuses.
-    pub fn new(gpu: &Gpu, view: &View) -> Result<Self, GpuError> {
+    pub fn new(gpu: &Gpu, view: &View) -> Result<Self, RenderError> {
         let table = transfer_table(view);
         Ok(Self {
             integrals: gpu.storage("transfer integrals", &transfer_integrals(&table))?,

@@ -1,9 +1,9 @@
 //! Volumes on the device over the box of the active cells, made in slabs.
 
 use super::device::Gpu;
-use super::error::GpuError;
 use super::layout::{RUN, Slab, VolumeInfo};
 use super::slabs::Slabs;
+use crate::render::RenderError;
 use crate::view::voxels::{Shape, Voxel};
 
 /// Bytes of the buffer through which voxels come into the texture: no adapter needs to write it from a
@@ -82,7 +82,7 @@ impl Volume {
     ///
     /// # Errors
     /// When the device reports an error.
-    pub fn read(&self, gpu: &Gpu, level: u32) -> Result<Vec<u32>, GpuError> {
+    pub fn read(&self, gpu: &Gpu, level: u32) -> Result<Vec<u32>, RenderError> {
         let slab = Slab {
             first: [0; 3],
             row: self.shape.row(level),
@@ -100,34 +100,34 @@ impl Volume {
         Ok(rows.flat_map(|r| &r[..of(slab.size[0])]).copied().collect())
     }
 
-    /// Makes the voxels of a level by `dispatch`, which writes a slab of them to a buffer; false where it
-    /// was cancelled. A voxel costs about `work` loop iterations.
+    /// Makes the voxels of a level by `dispatch`, which writes a slab of them to a buffer. A voxel costs about `work` loop iterations.
     ///
     /// # Errors
     /// When the device reports an error.
-    pub fn make_level(
+    pub async fn make_level(
         &self,
         slabs: &mut Slabs<'_>,
         level: u32,
         work: u64,
         dispatch: &dyn Fn(&mut wgpu::CommandEncoder, &Slab, &wgpu::Buffer),
-    ) -> Result<bool, GpuError> {
+    ) -> Result<(), RenderError> {
         let size = self.shape.at(level);
         self.make_slices(slabs, level, [0, size[2]], work, dispatch)
+            .await
     }
 
     /// As [`Self::make_level`], for the slices from the first of `range` to before the last alone.
     ///
     /// # Errors
     /// When the device reports an error.
-    pub fn make_slices(
+    pub async fn make_slices(
         &self,
         slabs: &mut Slabs<'_>,
         level: u32,
         [from, to]: [u32; 2],
         work: u64,
         dispatch: &dyn Fn(&mut wgpu::CommandEncoder, &Slab, &wgpu::Buffer),
-    ) -> Result<bool, GpuError> {
+    ) -> Result<(), RenderError> {
         let [width, height, _] = self.shape.at(level);
         let row = self.shape.row(level);
         let bytes = |rows| {
@@ -142,7 +142,7 @@ impl Volume {
         let most_rows = (SLAB_BYTES / bytes(1)).clamp(1, u64::from(height)) as u32;
         let voxels = slabs.gpu.scratch("voxels", bytes(most_rows));
         let size = [width, height, to - from];
-        slabs.cover(size, [most_rows, RUN], work, &|encoder, slab| {
+        let record = |encoder: &mut wgpu::CommandEncoder, slab: &Slab| {
             let [x, y, z] = slab.first;
             let slab = Slab {
                 first: [x, y, from + z],
@@ -153,7 +153,8 @@ impl Volume {
             encoder.clear_buffer(&voxels, 0, Some(self.shape.slab_bytes(&slab)));
             dispatch(encoder, &slab, &voxels);
             self.take(&slab, &voxels, encoder);
-        })
+        };
+        slabs.cover(size, [most_rows, RUN], work, &record).await
     }
 
     /// Records the copy of a slab of voxels into its level.

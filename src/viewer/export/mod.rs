@@ -11,9 +11,8 @@ use std::thread::JoinHandle;
 use super::state::Layout;
 use crate::case::Case;
 use crate::picture::film::{Film, FilmFormat, FilmShape};
-use crate::picture::filming::shoot;
-use crate::render::Renderer;
-use crate::render::gpu::Gpu;
+use crate::picture::filming::{FilmingError, shoot};
+use crate::render::{self, RenderError};
 use crate::scene::Scene;
 use crate::view::{Sequence, Turn, step};
 
@@ -108,8 +107,8 @@ impl Export {
                 !shared_cancel.load(Ordering::Relaxed)
             };
             let made = match make(&spec, &path, &progress) {
-                Ok(true) => Ok(format!("saved {}", path.display())),
-                Ok(false) => Err(format!(
+                Ok(()) => Ok(format!("saved {}", path.display())),
+                Err(error) if is_canceled(&*error) => Err(format!(
                     "{} was canceled; nothing was written",
                     path.display()
                 )),
@@ -163,8 +162,16 @@ impl Drop for Export {
 
 pub(super) type Fallible<T> = Result<T, Box<dyn std::error::Error>>;
 
-/// Makes the file; false where it was canceled.
-fn make(spec: &ExportSpec, path: &Path, progress: &dyn Fn(f64) -> bool) -> Fallible<bool> {
+/// True where nobody wants the file any more.
+fn is_canceled(error: &(dyn std::error::Error + 'static)) -> bool {
+    let of_image = error.downcast_ref::<RenderError>();
+    let of_film = error.downcast_ref::<FilmingError>();
+    matches!(of_image, Some(RenderError::Canceled))
+        || matches!(of_film, Some(FilmingError::Render(RenderError::Canceled)))
+}
+
+/// Makes the file.
+fn make(spec: &ExportSpec, path: &Path, progress: &dyn Fn(f64) -> bool) -> Fallible<()> {
     let case = &spec.case;
     let (fps, sequence) = match spec.kind {
         Kind::Still => return still::still(spec, path, progress),
@@ -173,7 +180,7 @@ fn make(spec: &ExportSpec, path: &Path, progress: &dyn Fn(f64) -> bool) -> Falli
             // Looking at all values is a small part of the work.
             let looks = |part: f64| progress(0.05 * part);
             let Some(sequence) = Sequence::over_steps(&spec.scene, case, &steps, &looks)? else {
-                return Ok(false);
+                return Err(RenderError::Canceled.into());
             };
             (fps, sequence)
         }
@@ -192,9 +199,9 @@ fn make(spec: &ExportSpec, path: &Path, progress: &dyn Fn(f64) -> bool) -> Falli
         hold: 0.0,
     };
     let film = Film::create(path, shape)?;
-    let mut renderer = Renderer::new(Arc::new(Gpu::new(None)?), &case.grid)?;
+    let mut renderer = render::executor(None)?.renderer(&case.grid)?;
     Ok(shoot(
-        &mut renderer,
+        &mut *renderer,
         case,
         &sequence,
         film,
@@ -239,7 +246,7 @@ mod tests {
 
     #[test]
     fn pictures_and_films_are_written_or_not_at_all() {
-        if Gpu::new(None).is_err() {
+        if render::executor(None).is_err() {
             assert!(std::env::var_os("REQUIRE_GPU").is_none());
             return;
         }

@@ -7,20 +7,18 @@ use super::{Compared, ExportSpec, Fallible};
 use crate::case::Case;
 use crate::image::metrics::{Comparison, ciede2000_map};
 use crate::image::{Image, Rgb8};
-use crate::model::Grid;
 use crate::picture::compared::{
     beside, cropped, differing, draw_legend, halves, wipe, write_own, write_title,
 };
 use crate::picture::{Annotations, Format, Shot, difference_colors, write_exr, write_png};
-use crate::render::Renderer;
-use crate::render::gpu::Gpu;
+use crate::render::{self, Executor, Renderer};
 use crate::scene::Scene;
 use crate::view::View;
 use crate::viewer::state::Layout;
 use crate::viewer::studio::{DIFFERENCE_SCALE, difference_title};
 
-/// Makes one picture; false where it was canceled.
-pub fn still(spec: &ExportSpec, path: &Path, progress: &dyn Fn(f64) -> bool) -> Fallible<bool> {
+/// Makes one picture.
+pub fn still(spec: &ExportSpec, path: &Path, progress: &dyn Fn(f64) -> bool) -> Fallible<()> {
     let format = Format::from_path(path)?;
     let mut renderer = StillRenderer::new()?;
     if format == Format::Exr {
@@ -32,29 +30,26 @@ pub fn still(spec: &ExportSpec, path: &Path, progress: &dyn Fn(f64) -> bool) -> 
             .into());
         }
         let shot = Shot::of(&spec.scene, &spec.case, true)?;
-        let Some(image) = renderer.image(&spec.case, &shot.view, progress)? else {
-            return Ok(false);
-        };
+        let image = renderer.image(&spec.case, &shot.view, progress)?;
         write_exr(path, &image)?;
-        return Ok(true);
+        return Ok(());
     }
     let picture = match &spec.compared {
         Some(compared) => renderer.both(spec, compared, progress)?,
-        None => renderer
-            .picture(spec, &spec.case, &spec.scene, progress)?
-            .map(|p| p.rgb),
-    };
-    let Some(picture) = picture else {
-        return Ok(false);
+        None => {
+            renderer
+                .picture(spec, &spec.case, &spec.scene, progress)?
+                .rgb
+        }
     };
     write_png(path, picture.size, &picture.pixels)?;
-    Ok(true)
+    Ok(())
 }
 
 /// The device, and the grid that it has.
 struct StillRenderer {
-    gpu: Arc<Gpu>,
-    renderer: Option<(Arc<Grid>, Renderer)>,
+    executor: Arc<dyn Executor>,
+    renderer: Option<Box<dyn Renderer>>,
 }
 
 /// A picture as it is seen, and its view.
@@ -66,57 +61,52 @@ struct Finished {
 impl StillRenderer {
     fn new() -> Fallible<Self> {
         Ok(Self {
-            gpu: Arc::new(Gpu::new(None)?),
+            executor: render::executor(None)?,
             renderer: None,
         })
     }
 
-    /// The image of a view; `None` where it was canceled.
+    /// The image of a view.
     fn image(
         &mut self,
-        case: &Arc<Case>,
+        case: &Case,
         view: &View,
         progress: &dyn Fn(f64) -> bool,
-    ) -> Fallible<Option<Image>> {
+    ) -> Fallible<Image> {
         let kept = self.renderer.take();
-        let kept = match kept.filter(|(grid, _)| Arc::ptr_eq(grid, &case.grid)) {
-            Some(kept) => kept,
-            None => (
-                case.grid.clone(),
-                Renderer::new(self.gpu.clone(), &case.grid)?,
-            ),
+        let renderer = match kept.filter(|kept| Arc::ptr_eq(kept.grid(), &case.grid)) {
+            Some(kept) => self.renderer.insert(kept),
+            None => self.renderer.insert(self.executor.renderer(&case.grid)?),
         };
-        let renderer = &mut self.renderer.insert(kept).1;
-        let frame = renderer.render(&case.grid, view, progress)?;
-        Ok(frame.map(|frame| frame.image))
+        Ok(renderer.render(view, progress)?.image)
     }
 
-    /// A scene with what is written and marked on it; `None` where it was canceled.
+    /// A scene with what is written and marked on it.
     fn picture(
         &mut self,
         spec: &ExportSpec,
         case: &Arc<Case>,
         scene: &Scene,
         progress: &dyn Fn(f64) -> bool,
-    ) -> Fallible<Option<Finished>> {
+    ) -> Fallible<Finished> {
         let shot = Shot {
             marked: spec.marked.clone(),
             ..Shot::of(scene, case, spec.plain)?
         };
         let image = self.image(case, &shot.view, progress)?;
-        Ok(image.map(|image| Finished {
+        Ok(Finished {
             rgb: shot.finished(&image, case),
             view: shot.view,
-        }))
+        })
     }
 
-    /// Two pictures as the window shows them; `None` where that was canceled.
+    /// Two pictures as the window shows them.
     fn both(
         &mut self,
         spec: &ExportSpec,
         compared: &Compared,
         progress: &dyn Fn(f64) -> bool,
-    ) -> Fallible<Option<Rgb8>> {
+    ) -> Fallible<Rgb8> {
         let size = spec.scene.size;
         let sizes = match compared.layout {
             Layout::Beside => halves(size),
@@ -140,20 +130,17 @@ impl StillRenderer {
                 ..scene.clone()
             };
             let half = |part: f64| progress(0.5 * (part + n as f64));
-            match self.picture(spec, cases[n], &scene, &half)? {
-                Some(picture) => made.push(picture),
-                None => return Ok(None),
-            }
+            made.push(self.picture(spec, cases[n], &scene, &half)?);
         }
         let [a, b] = made.try_into().map_err(|_| "two images were not made")?;
         if is_colors {
-            return Ok(Some(color_difference(&a.rgb, &b.rgb)?));
+            return color_difference(&a.rgb, &b.rgb);
         }
         let texts = match spec.plain {
             true => [String::new(), String::new()],
             false => differing([(cases[0], &a.view), (cases[1], &b.view)]),
         };
-        Ok(Some(match compared.layout {
+        Ok(match compared.layout {
             Layout::Wipe(at) => wiped(cases[0], [a, b], &texts, at, spec.plain),
             _ => {
                 let pictures = [(a, &texts[0]), (b, &texts[1])].map(|(mut p, text)| {
@@ -163,7 +150,7 @@ impl StillRenderer {
                 });
                 beside([&pictures[0], &pictures[1]])
             }
-        }))
+        })
     }
 }
 
@@ -237,7 +224,7 @@ mod tests {
 
     fn saved(spec: &ExportSpec, folder: &Path) -> Vec<[u8; 3]> {
         let file = folder.join("saved.png");
-        assert!(still(spec, &file, &|_| true).unwrap());
+        still(spec, &file, &|_| true).unwrap();
         let picture = image::open(&file).unwrap().into_rgb8();
         assert_eq!([picture.width(), picture.height()], SIZE);
         picture.pixels().map(|p| p.0).collect()
@@ -254,7 +241,7 @@ mod tests {
 
     #[test]
     fn what_is_on_screen_is_saved() {
-        if Gpu::new(None).is_err() {
+        if render::executor(None).is_err() {
             assert!(std::env::var_os("REQUIRE_GPU").is_none());
             return;
         }
@@ -301,7 +288,7 @@ mod tests {
 
     #[test]
     fn marks_of_selected_cells_are_saved() {
-        if Gpu::new(None).is_err() {
+        if render::executor(None).is_err() {
             assert!(std::env::var_os("REQUIRE_GPU").is_none());
             return;
         }

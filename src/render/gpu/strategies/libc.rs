@@ -5,9 +5,11 @@
 //! and exit of a cell (campagnolo-2021, 4.1.2). Cost: one step a cell, whatever the number of samples;
 //! one drawing of the faces a peel.
 
+use crate::render::RenderError;
 use crate::render::gpu::faces::{FaceMode, FaceRaster, FaceTarget};
 use crate::render::gpu::strategy::{Common, Preparation, RenderStrategy};
-use crate::render::gpu::{Gpu, GpuError, Pipeline, Place, Round, flag, tiles};
+use crate::render::gpu::{Gpu, Pipeline, Place, Round, flag, tiles};
+use crate::render::job::Work;
 use crate::scene::{Integration, Interpolation, LibcSettings};
 
 /// The strategy with its compiled shaders.
@@ -32,7 +34,7 @@ struct Variant {
 }
 
 impl Variant {
-    fn compile(self, gpu: &Gpu) -> Result<Pipeline, GpuError> {
+    fn compile(self, gpu: &Gpu) -> Result<Pipeline, RenderError> {
         // Many rays a sample are more than a segment can wait for.
         let by_segment =
             self.settings.integration == Integration::Segments && !self.common.casts_rays();
@@ -54,7 +56,7 @@ impl Libc {
     ///
     /// # Errors
     /// When the driver refuses one.
-    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+    pub fn new(gpu: &Gpu) -> Result<Self, RenderError> {
         let variant = Variant {
             settings: LibcSettings::default(),
             interpolation: Interpolation::Vertex,
@@ -96,28 +98,30 @@ impl RenderStrategy for Libc {
         true
     }
 
-    fn prepare(&mut self, what: &Preparation<'_>) -> Result<bool, GpuError> {
-        let variant = Variant {
-            settings: what.view.libc,
-            interpolation: what.view.interpolation,
-            common: Common::of(what),
-        };
-        if variant != self.variant {
-            if variant.common != self.variant.common {
-                let common: Vec<_> = variant.common.pairs().collect();
-                self.begin = Pipeline::variant(what.gpu, "libc", "begin", &common)?;
-                self.set_right = Pipeline::variant(what.gpu, "libc", "set_right", &common)?;
+    fn prepare<'a>(&'a mut self, what: &'a Preparation<'a>) -> Work<'a, ()> {
+        Box::pin(async move {
+            let variant = Variant {
+                settings: what.view.libc,
+                interpolation: what.view.interpolation,
+                common: Common::of(what),
+            };
+            if variant != self.variant {
+                if variant.common != self.variant.common {
+                    let common: Vec<_> = variant.common.pairs().collect();
+                    self.begin = Pipeline::variant(what.gpu, "libc", "begin", &common)?;
+                    self.set_right = Pipeline::variant(what.gpu, "libc", "set_right", &common)?;
+                }
+                self.walk = variant.compile(what.gpu)?;
+                self.variant = variant;
             }
-            self.walk = variant.compile(what.gpu)?;
-            self.variant = variant;
-        }
-        let margin = match what.grid.layers_cross {
-            // Cells may overlap anywhere: every entry counts.
-            true => f32::MAX,
-            false => what.view.fault_gap() as f32,
-        };
-        self.faces.update(what.gpu, what.faces, margin);
-        Ok(true)
+            let margin = match what.grid.layers_cross {
+                // Cells may overlap anywhere: every entry counts.
+                true => f32::MAX,
+                false => what.view.fault_gap() as f32,
+            };
+            self.faces.update(what.gpu, what.faces, margin);
+            Ok(())
+        })
     }
 
     fn encode(&mut self, round: &Round<'_>, encoder: &mut wgpu::CommandEncoder) {

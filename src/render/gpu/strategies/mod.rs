@@ -5,15 +5,16 @@ pub mod plts;
 pub mod solid;
 pub mod srg;
 
+use super::Gpu;
 use super::strategy::RenderStrategy;
-use super::{Gpu, GpuError};
+use crate::render::RenderError;
 use crate::scene::StrategyKind;
 
 /// Compiles a strategy for a device.
 ///
 /// # Errors
 /// When the driver refuses its shader.
-pub fn create(kind: StrategyKind, gpu: &Gpu) -> Result<Box<dyn RenderStrategy>, GpuError> {
+pub fn create(kind: StrategyKind, gpu: &Gpu) -> Result<Box<dyn RenderStrategy>, RenderError> {
     Ok(match kind {
         StrategyKind::Libc => Box::new(libc::Libc::new(gpu)?),
         StrategyKind::Plts => Box::new(plts::Plts::new(gpu)?),

@@ -5,8 +5,10 @@
 //! acceleration grid where the topology ends (campagnolo-2021, 4.1.3). Cost: about one Newton iteration
 //! a sample inside a cell, a point location at each entry into the model.
 
+use crate::render::RenderError;
 use crate::render::gpu::strategy::{Common, Preparation, RenderStrategy};
-use crate::render::gpu::{Gpu, GpuError, Pipeline, Place, Round};
+use crate::render::gpu::{Gpu, Pipeline, Place, Round};
+use crate::render::job::Work;
 
 /// The strategy with its compiled shader.
 pub struct Plts {
@@ -20,7 +22,7 @@ impl Plts {
     ///
     /// # Errors
     /// When the driver refuses it.
-    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+    pub fn new(gpu: &Gpu) -> Result<Self, RenderError> {
         Ok(Self {
             pipeline: Pipeline::new(gpu, "plts")?,
             constants: Common::default(),
@@ -33,14 +35,16 @@ impl RenderStrategy for Plts {
         32
     }
 
-    fn prepare(&mut self, what: &Preparation<'_>) -> Result<bool, GpuError> {
-        let constants = Common::of(what);
-        if constants != self.constants {
-            let pairs: Vec<_> = constants.pairs().collect();
-            self.pipeline = Pipeline::variant(what.gpu, "plts", "main", &pairs)?;
-            self.constants = constants;
-        }
-        Ok(true)
+    fn prepare<'a>(&'a mut self, what: &'a Preparation<'a>) -> Work<'a, ()> {
+        Box::pin(async move {
+            let constants = Common::of(what);
+            if constants != self.constants {
+                let pairs: Vec<_> = constants.pairs().collect();
+                self.pipeline = Pipeline::variant(what.gpu, "plts", "main", &pairs)?;
+                self.constants = constants;
+            }
+            Ok(())
+        })
     }
 
     fn encode(&mut self, round: &Round<'_>, encoder: &mut wgpu::CommandEncoder) {

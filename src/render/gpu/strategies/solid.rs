@@ -1,8 +1,10 @@
 //! Solid cells among nothing: their surfaces and sections are all of the picture. No strategy of its own that
 //! users choose, for there are no rays to cast.
 
+use crate::render::RenderError;
 use crate::render::gpu::strategy::{Common, Preparation, RenderStrategy};
-use crate::render::gpu::{Gpu, GpuError, Pipeline, Place, Round, flag};
+use crate::render::gpu::{Gpu, Pipeline, Place, Round, flag};
+use crate::render::job::Work;
 
 /// What blends surfaces and sections, with its compiled shader.
 pub struct Solid {
@@ -16,7 +18,7 @@ impl Solid {
     ///
     /// # Errors
     /// When the driver refuses it.
-    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+    pub fn new(gpu: &Gpu) -> Result<Self, RenderError> {
         Ok(Self {
             pipeline: Pipeline::new(gpu, "solid")?,
             constants: (false, Common::default()),
@@ -33,16 +35,18 @@ impl RenderStrategy for Solid {
         1
     }
 
-    fn prepare(&mut self, what: &Preparation<'_>) -> Result<bool, GpuError> {
-        let sections = what.view.clip.iter().any(|plane| plane.opaque);
-        let constants = (sections, Common::of(what));
-        if constants != self.constants {
-            let own = [("SECTIONS", flag(sections))];
-            let pairs: Vec<_> = own.into_iter().chain(constants.1.pairs()).collect();
-            self.pipeline = Pipeline::variant(what.gpu, "solid", "main", &pairs)?;
-            self.constants = constants;
-        }
-        Ok(true)
+    fn prepare<'a>(&'a mut self, what: &'a Preparation<'a>) -> Work<'a, ()> {
+        Box::pin(async move {
+            let sections = what.view.clip.iter().any(|plane| plane.opaque);
+            let constants = (sections, Common::of(what));
+            if constants != self.constants {
+                let own = [("SECTIONS", flag(sections))];
+                let pairs: Vec<_> = own.into_iter().chain(constants.1.pairs()).collect();
+                self.pipeline = Pipeline::variant(what.gpu, "solid", "main", &pairs)?;
+                self.constants = constants;
+            }
+            Ok(())
+        })
     }
 
     fn encode(&mut self, round: &Round<'_>, encoder: &mut wgpu::CommandEncoder) {

@@ -14,7 +14,9 @@ use crate::render::gpu::slabs::Slabs;
 use crate::render::gpu::strategy::{Common, Preparation, RenderStrategy};
 use crate::render::gpu::tiles::Pace;
 use crate::render::gpu::volume::Volume;
-use crate::render::gpu::{Gpu, GpuBytes, GpuError, Pipeline, Place, Round, Versions, flag};
+use crate::render::gpu::{Gpu, Pipeline, Place, Round, Versions, flag};
+use crate::render::job::Work;
+use crate::render::{DeviceBytes, RenderError};
 use crate::scene::SrgSettings;
 use crate::transfer::TransferFunction;
 use crate::view::View;
@@ -110,7 +112,7 @@ struct Variant {
 }
 
 impl Variant {
-    fn compile(self, gpu: &Gpu, entry: &str) -> Result<Pipeline, GpuError> {
+    fn compile(self, gpu: &Gpu, entry: &str) -> Result<Pipeline, RenderError> {
         let own = [
             ("SECTIONS", flag(self.sections)),
             ("WEIGHTED", flag(self.weighted)),
@@ -139,7 +141,7 @@ impl Srg {
     ///
     /// # Errors
     /// When the driver refuses one.
-    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+    pub fn new(gpu: &Gpu) -> Result<Self, RenderError> {
         let variant = Variant::of(&SrgSettings::default(), false, Common::default());
         Ok(Self {
             begin: variant.compile(gpu, "begin")?,
@@ -161,13 +163,13 @@ impl Srg {
         self.fills
     }
 
-    /// Fills the volume anew where values, cells or shape have changed; false where it was cancelled.
-    fn fill(&mut self, what: &Preparation<'_>, shape: Shape) -> Result<bool, GpuError> {
+    /// Fills the volume anew where values, cells or shape have changed.
+    async fn fill(&mut self, what: &Preparation<'_>, shape: Shape) -> Result<(), RenderError> {
         let filled = self.filled.take().filter(|f| f.volume.shape == shape);
         let versions = what.grid.versions;
         if filled.as_ref().is_some_and(|f| f.versions == versions) {
             self.filled = filled;
-            return Ok(true);
+            return Ok(());
         }
         let volume = filled.map_or_else(|| Volume::new(what.gpu, shape), |f| f.volume);
         let statistics = what.view.field.statistics();
@@ -175,41 +177,38 @@ impl Srg {
         let bricks = Bricks::unused(what.gpu, shape.size);
         let mut slabs = slabs(what, &mut self.pace);
         let interpolation = what.view.interpolation;
-        let done = self
-            .resampler
-            .fill(&mut slabs, what.grid, &volume, range, interpolation)?
-            && self.pyramids.average(&mut slabs, &volume, &bricks)?;
-        self.fills += u64::from(done);
-        self.filled = done.then_some(Filled {
+        self.resampler
+            .fill(&mut slabs, what.grid, &volume, range, interpolation)
+            .await?;
+        self.pyramids.average(&mut slabs, &volume, &bricks).await?;
+        self.fills += 1;
+        self.filled = Some(Filled {
             versions,
             range,
             volume,
             bricks,
             classified: None,
         });
-        Ok(done)
+        Ok(())
     }
 
     /// Makes the bricks where they are asked for and not there, and classifies them anew where transfer
-    /// function or settings have changed; false where it was cancelled.
-    fn classify(
+    /// function or settings have changed.
+    async fn classify(
         &mut self,
         what: &Preparation<'_>,
         settings: &SrgSettings,
-    ) -> Result<bool, GpuError> {
+    ) -> Result<(), RenderError> {
         let Some(filled) = &mut self.filled else {
-            return Ok(false);
+            return Ok(());
         };
         let limits = limits(settings, what.view.sampling_step);
         if !limits.are_never() && !filled.bricks.are_used() {
             let bricks = Bricks::new(what.gpu, filled.volume.shape.size);
             let mut slabs = slabs(what, &mut self.pace);
-            if !self
-                .pyramids
-                .summarize(&mut slabs, &filled.volume, &bricks)?
-            {
-                return Ok(false);
-            }
+            self.pyramids
+                .summarize(&mut slabs, &filled.volume, &bricks)
+                .await?;
             filled.bricks = bricks;
             filled.classified = None;
         }
@@ -226,7 +225,7 @@ impl Srg {
                 .classify(what.gpu, volume, bricks, &classifier)?;
             filled.classified = Some(by);
         }
-        Ok(true)
+        Ok(())
     }
 }
 
@@ -252,29 +251,32 @@ impl RenderStrategy for Srg {
         true
     }
 
-    fn prepare(&mut self, what: &Preparation<'_>) -> Result<bool, GpuError> {
-        let view = what.view;
-        let settings = useful(view);
-        let sections = view.clip.iter().any(|plane| plane.opaque);
-        let variant = Variant::of(&settings, sections, Common::of(what));
-        if variant != self.variant {
-            self.begin = variant.compile(what.gpu, "begin")?;
-            self.march = variant.compile(what.gpu, "march")?;
-            self.variant = variant;
-        }
-        self.faces.update(what.gpu, what.faces, 0.0);
-        let budget = settings.budget_bytes();
-        let limit = what.gpu.device.limits().max_texture_dimension_3d;
-        let ghosts = view.ghosts.is_some();
-        let shape = shape(what.model.dims(), &settings, ghosts, budget, limit);
-        Ok(self.fill(what, shape)? && self.classify(what, &settings)?)
+    fn prepare<'a>(&'a mut self, what: &'a Preparation<'a>) -> Work<'a, ()> {
+        Box::pin(async move {
+            let view = what.view;
+            let settings = useful(view);
+            let sections = view.clip.iter().any(|plane| plane.opaque);
+            let variant = Variant::of(&settings, sections, Common::of(what));
+            if variant != self.variant {
+                self.begin = variant.compile(what.gpu, "begin")?;
+                self.march = variant.compile(what.gpu, "march")?;
+                self.variant = variant;
+            }
+            self.faces.update(what.gpu, what.faces, 0.0);
+            let budget = settings.budget_bytes();
+            let limit = what.gpu.device.limits().max_texture_dimension_3d;
+            let ghosts = view.ghosts.is_some();
+            let shape = shape(what.model.dims(), &settings, ghosts, budget, limit);
+            self.fill(what, shape).await?;
+            self.classify(what, &settings).await
+        })
     }
 
-    fn bytes(&self) -> GpuBytes {
+    fn bytes(&self) -> DeviceBytes {
         let volume = |f: &Filled| f.volume.shape.bytes() + f.bricks.bytes();
-        GpuBytes {
+        DeviceBytes {
             resampled: self.filled.as_ref().map_or(0, volume),
-            ..GpuBytes::default()
+            ..DeviceBytes::default()
         }
     }
 

@@ -1,28 +1,30 @@
-//! A device with one grid on it, which makes pictures of views and remakes only what a view changes.
+//! A device with one grid on it.
 
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use glam::DVec3;
 
-use crate::image::Image;
 use crate::model::{CellField, Grid};
 use crate::render::gpu::faces::{BoundaryFaces, FaceList};
-use crate::render::gpu::illumination::{Illumination, LightTimes};
-use crate::render::gpu::probe::{Located, Probe};
+use crate::render::gpu::illumination::Illumination;
+use crate::render::gpu::probe::Probe;
 use crate::render::gpu::strategies::solid::Solid;
-use crate::render::gpu::strategies::{self};
 use crate::render::gpu::strategy::{Preparation, RenderStrategy};
 use crate::render::gpu::surfaces::SurfacePainter;
 use crate::render::gpu::transfer_tables::TransferTables;
-use crate::render::gpu::{Drawing, FrameRenderer, FrameStats, Gpu, GpuBytes, GpuError, GpuGrid};
+use crate::render::gpu::{Drawing, FrameRenderer, Gpu, GpuGrid, strategies};
+use crate::render::job::{Job, Progress};
+use crate::render::{DeviceBytes, Frame, Located, RenderError, Renderer, SetupTimes};
 use crate::scene::{Interpolation, StrategyKind};
 use crate::view::View;
 use crate::view::ghosts::{Ghosts, shown_grid};
 
-/// Makes pictures of one grid.
-pub struct Renderer {
+/// Makes images of one grid.
+pub struct GpuRenderer {
     gpu: Arc<Gpu>,
+    model: Arc<Grid>,
+    times: SetupTimes,
     grid: GpuGrid,
     frames: FrameRenderer,
     tables: Option<TransferTables>,
@@ -47,38 +49,24 @@ struct Shown {
     ghosts: Option<Arc<Ghosts>>,
 }
 
-/// A picture and what it cost.
-pub struct Frame {
-    /// The picture.
-    pub image: Image,
-    /// What its rays cost.
-    pub stats: FrameStats,
-    /// Time to bring field, selection and what the strategy keeps up to date.
-    pub prepare: Duration,
-    /// Of it, what bringing the light up to date took.
-    pub light: LightTimes,
-    /// Bytes on the device by purpose.
-    pub bytes: GpuBytes,
-}
-
-impl Frame {
-    /// The frame whose rays took the median time; `None` of none.
-    pub fn median(mut frames: Vec<Self>) -> Option<Self> {
-        frames.sort_by_key(|f| f.stats.frame);
-        let middle = frames.len() / 2;
-        (middle < frames.len()).then(|| frames.swap_remove(middle))
-    }
-}
-
-impl Renderer {
+impl GpuRenderer {
     /// Uploads a grid.
     ///
     /// # Errors
     /// When the adapter cannot hold it.
-    pub fn new(gpu: Arc<Gpu>, grid: &Grid) -> Result<Self, GpuError> {
+    pub fn new(gpu: Arc<Gpu>, grid: &Arc<Grid>) -> Result<Self, RenderError> {
+        let start = Instant::now();
+        let on_device = GpuGrid::new(&gpu, grid)?;
+        let acceleration = on_device.acceleration_time;
+        let light = Illumination::new(&gpu)?;
         Ok(Self {
-            grid: GpuGrid::new(&gpu, grid)?,
-            light: Illumination::new(&gpu)?,
+            model: grid.clone(),
+            times: SetupTimes {
+                upload: start.elapsed().saturating_sub(acceleration),
+                acceleration,
+            },
+            grid: on_device,
+            light,
             tables: None,
             faces: BoundaryFaces::default(),
             surfaces: None,
@@ -91,33 +79,23 @@ impl Renderer {
         })
     }
 
-    /// Time that building the acceleration grid took.
-    pub fn acceleration_time(&self) -> Duration {
-        self.grid.acceleration_time
-    }
-
     /// The device.
-    pub fn gpu(&self) -> &Gpu {
+    pub fn gpu(&self) -> &Arc<Gpu> {
         &self.gpu
     }
 
-    /// Renders a view of `grid` (the one given to [`Self::new`]); `None` where `progress`, which is
-    /// told the fraction done, returned false.
-    ///
-    /// # Errors
-    /// When the picture or the values are too large for the adapter, or the device reports an error.
-    pub fn render(
-        &mut self,
-        grid: &Grid,
-        view: &View,
-        progress: &dyn Fn(f64) -> bool,
-    ) -> Result<Option<Frame>, GpuError> {
+    /// The light, as the last image had it.
+    pub fn light(&self) -> &Illumination {
+        &self.light
+    }
+
+    async fn frame(&mut self, view: &View, progress: Progress) -> Result<Frame, RenderError> {
         let start = Instant::now();
         self.gpu.check()?;
-        self.show(grid, view)?;
-        let (of_case, grid) = (grid, shown_grid(grid, view.ghosts.as_ref()));
+        self.prepare(view)?;
         let Self {
             gpu,
+            model,
             grid: on_device,
             frames,
             tables,
@@ -126,13 +104,14 @@ impl Renderer {
             surfaces,
             ..
         } = self;
+        let (of_case, grid) = (&**model, shown_grid(model, view.ghosts.as_ref()));
         let tables = match tables.take().filter(|t| t.are_of(view)) {
             Some(known) => tables.insert(known),
             None => tables.insert(TransferTables::new(gpu, view)?),
         };
-        if !light.update(gpu, on_device, view, tables, progress)? {
-            return Ok(None);
-        }
+        light
+            .update(gpu, on_device, view, tables, &progress)
+            .await?;
         let strategy = match view.casts_rays() {
             true => strategy(gpu, &mut self.strategies, view.strategy)?,
             false => solid(gpu, &mut self.solid)?,
@@ -151,11 +130,9 @@ impl Renderer {
             grid: on_device,
             view,
             faces,
-            progress,
+            progress: &progress,
         };
-        if !strategy.prepare(&preparation)? {
-            return Ok(None);
-        }
+        strategy.prepare(&preparation).await?;
         gpu.wait()?;
         let prepare = start.elapsed();
         let lists = surfaces.as_ref().map_or(0, |s| s.bytes(view));
@@ -164,58 +141,37 @@ impl Renderer {
             surfaces,
             strategy,
         };
-        let made = frames.render(gpu, on_device, drawing, view, progress)?;
-        Ok(made.map(|(image, stats)| Frame {
+        let (image, stats) = frames
+            .render(gpu, on_device, drawing, view, &progress)
+            .await?;
+        Ok(Frame {
             image,
             stats,
             prepare,
             light: light.times,
             bytes: on_device.bytes()
                 + strategy.bytes()
-                + GpuBytes {
+                + DeviceBytes {
                     geometry: faces.map_or(0, FaceList::bytes) + lists,
                     targets: stats.target_bytes,
                     lighting: light.bytes(),
-                    ..GpuBytes::default()
+                    ..DeviceBytes::default()
                 },
-        }))
+        })
+    }
+}
+
+impl Renderer for GpuRenderer {
+    fn grid(&self) -> &Arc<Grid> {
+        &self.model
     }
 
-    /// The light, as the last picture had it.
-    pub fn light(&self) -> &Illumination {
-        &self.light
+    fn setup_times(&self) -> SetupTimes {
+        self.times
     }
 
-    /// Locates points of world space in the drawn cells of a view of `grid` (the one given to [`Self::new`]);
-    /// `None` where a point lies in none.
-    ///
-    /// # Errors
-    /// When the device reports an error.
-    pub fn locate(
-        &mut self,
-        grid: &Grid,
-        view: &View,
-        points: &[DVec3],
-    ) -> Result<Vec<Option<Located>>, GpuError> {
-        self.show(grid, view)?;
-        let grid = shown_grid(grid, view.ghosts.as_ref());
-        let probe = match self.probe.take().filter(|p| p.fits(&self.grid)) {
-            Some(known) => self.probe.insert(known),
-            None => self.probe.insert(Probe::new(&self.gpu, &self.grid)?),
-        };
-        let to_grid = |p: &DVec3| view.spaces.grid_from_world.transform_point3(*p);
-        let points: Vec<DVec3> = points.iter().map(to_grid).collect();
-        probe.locate(&self.gpu, &self.grid, grid, &points, view.interpolation)
-    }
-
-    /// Brings field and selection of a view of `grid`, the one given to [`Self::new`], to the device.
-    /// Rendering does so by itself; done before,
-    /// it is no part of what the first picture takes.
-    ///
-    /// # Errors
-    /// When the values are too large for the adapter.
-    pub fn show(&mut self, grid: &Grid, view: &View) -> Result<(), GpuError> {
-        let grid = shown_grid(grid, view.ghosts.as_ref());
+    fn prepare(&mut self, view: &View) -> Result<(), RenderError> {
+        let grid = shown_grid(&self.model, view.ghosts.as_ref());
         let wanted = Shown {
             field: view.field.clone(),
             drawn: view.drawn.clone(),
@@ -240,6 +196,26 @@ impl Renderer {
         }
         Ok(())
     }
+
+    fn start<'a>(&'a mut self, view: &'a View) -> Job<'a, Frame> {
+        Job::new(|progress| Box::pin(self.frame(view, progress)))
+    }
+
+    fn locate(
+        &mut self,
+        view: &View,
+        points: &[DVec3],
+    ) -> Result<Vec<Option<Located>>, RenderError> {
+        self.prepare(view)?;
+        let grid = shown_grid(&self.model, view.ghosts.as_ref());
+        let probe = match self.probe.take().filter(|p| p.fits(&self.grid)) {
+            Some(known) => self.probe.insert(known),
+            None => self.probe.insert(Probe::new(&self.gpu, &self.grid)?),
+        };
+        let to_grid = |p: &DVec3| view.spaces.grid_from_world.transform_point3(*p);
+        let points: Vec<DVec3> = points.iter().map(to_grid).collect();
+        probe.locate(&self.gpu, &self.grid, grid, &points, view.interpolation)
+    }
 }
 
 /// What finds the surfaces of a view, compiled when it is first asked for; `None` where it shows none.
@@ -247,7 +223,7 @@ fn surfaces_of<'a>(
     gpu: &Gpu,
     compiled: &'a mut Option<SurfacePainter>,
     view: &View,
-) -> Result<Option<&'a mut SurfacePainter>, GpuError> {
+) -> Result<Option<&'a mut SurfacePainter>, RenderError> {
     if !view.surfaces.are_shown() {
         return Ok(None);
     }
@@ -262,7 +238,7 @@ fn surfaces_of<'a>(
 fn solid<'a>(
     gpu: &Gpu,
     compiled: &'a mut Option<Solid>,
-) -> Result<&'a mut dyn RenderStrategy, GpuError> {
+) -> Result<&'a mut dyn RenderStrategy, RenderError> {
     let solid = match compiled.take() {
         Some(known) => known,
         None => Solid::new(gpu)?,
@@ -275,7 +251,7 @@ fn strategy<'a>(
     gpu: &Gpu,
     compiled: &'a mut Vec<(StrategyKind, Box<dyn RenderStrategy>)>,
     kind: StrategyKind,
-) -> Result<&'a mut dyn RenderStrategy, GpuError> {
+) -> Result<&'a mut dyn RenderStrategy, RenderError> {
     let at = match compiled.iter().position(|(k, _)| *k == kind) {
         Some(at) => at,
         None => {
@@ -337,11 +313,8 @@ mod tests {
             sampling_step: 3.0,
             ..view
         };
-        let mut renderer = Renderer::new(gpu, &case.grid).unwrap();
-        let stats = |renderer: &mut Renderer| {
-            let frame = renderer.render(&case.grid, &view, &|_| true).unwrap();
-            frame.unwrap().stats
-        };
+        let mut renderer = GpuRenderer::new(gpu, &case.grid).unwrap();
+        let stats = |renderer: &mut GpuRenderer| renderer.render(&view, &|_| true).unwrap().stats;
         let whole = stats(&mut renderer);
         assert!(
             whole.samples > 10_000 && whole.lost_samples == 0,

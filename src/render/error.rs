@@ -1,8 +1,12 @@
-//! What can go wrong on a device.
+//! Why there is no image.
 
-/// Why the GPU cannot be used.
+/// Why there is no image.
 #[derive(Debug, thiserror::Error)]
-pub enum GpuError {
+#[non_exhaustive]
+pub enum RenderError {
+    /// Whoever asked for it does not want it any more.
+    #[error("it was canceled")]
+    Canceled,
     /// No adapter at all.
     #[error(
         "no GPU adapter was found; install a Vulkan driver (on Debian the package mesa-vulkan-drivers has a software one)"
