@@ -2,8 +2,7 @@
 
 use std::io;
 
-use rayon::prelude::*;
-
+use crate::parallel;
 use crate::records::refused;
 
 /// Refuses dimensions, array lengths and coordinates with which the file could not be read again.
@@ -38,14 +37,15 @@ pub(crate) fn check<T: Sync>(
     Ok(())
 }
 
-/// Values looked at between two questions whether another thread has found one.
+/// Values that a thread looks at before it takes the next ones.
 const PIECE: usize = 1 << 14;
 
 /// Number from 1 of the first value that is not as it should be.
 pub(crate) fn first_not<T: Sync>(values: &[T], is: impl Fn(&T) -> bool + Sync) -> Option<usize> {
-    let pieces = values.par_chunks(PIECE).enumerate();
-    pieces.find_map_first(|(piece, values)| {
+    let pieces = values.chunks(PIECE).enumerate().collect();
+    let found = parallel::map(pieces, |(piece, values)| {
         let at = values.iter().position(|v| !is(v))?;
         Some(piece * PIECE + at + 1)
-    })
+    });
+    found.into_iter().flatten().next()
 }

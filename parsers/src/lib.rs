@@ -6,6 +6,7 @@
 //! allocates by a count that the remaining bytes do not cover.
 
 pub mod arrays;
+mod bytes;
 pub mod calendar;
 pub mod case;
 pub mod cells;
@@ -14,10 +15,12 @@ pub mod egrid;
 pub mod error;
 mod geometry;
 pub mod init;
-pub mod mapped;
+#[cfg(feature = "mmap")]
+mod mapped;
+mod parallel;
 pub mod records;
 pub mod restart;
 pub mod units;
 
+pub use bytes::FileBytes;
 pub use error::{At, ParseError, Warning, Warnings};
-pub use mapped::MappedFile;

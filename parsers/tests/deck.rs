@@ -10,7 +10,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use strataray_parsers::deck::{Grdecl, UnitSystem};
+use strataray_parsers::deck::{Grdecl, MemoryFiles, UnitSystem};
 use strataray_parsers::{ParseError, Warnings};
 
 /// One cell, with all corners at depth 0 or 1.
@@ -23,10 +23,11 @@ fn read(path: &Path) -> (Result<Grdecl, ParseError>, Vec<String>) {
 }
 
 fn read_bytes(text: &[u8]) -> (Result<Grdecl, ParseError>, Vec<String>) {
-    let directory = tempfile::tempdir().unwrap();
-    let path = directory.path().join("TEST.GRDECL");
-    fs::write(&path, text).unwrap();
-    read(&path)
+    let name = Path::new("TEST.GRDECL");
+    let files = MemoryFiles::from_iter([(name, text.to_vec())]);
+    let mut warnings = Warnings::default();
+    let grid = Grdecl::read_from(&files, name, &[], &mut warnings);
+    (grid, warnings.iter().map(ToString::to_string).collect())
 }
 
 fn ok(text: &str) -> Grdecl {

@@ -4,10 +4,9 @@
 //! values with repeat counts beside them; only when the sum of all counts is known to be right
 //! is the array itself allocated, so no repeat count can ask for memory on its own.
 
-use rayon::prelude::*;
-
 use super::lexer::{Mistake, is_undefined, line_end, repeat, shown, token_end};
 use super::numbers::{leading_number, number, sixteen_bytes, visible};
+use crate::parallel;
 
 /// Bytes of text a thread converts at a time: small against the caches, large against the cost of a task.
 const PIECE: usize = 1 << 18;
@@ -39,12 +38,10 @@ struct Piece {
 
 /// Reads all numbers of `data`; a mistake's place counts from the start of `data`.
 pub(super) fn runs(data: &[u8], rule: Rule) -> Result<Runs, Mistake> {
-    let pieces = cut(data)
-        .into_par_iter()
-        .map(|(start, text)| piece(text, rule).map_err(|mistake| mistake.moved(start)))
-        .collect::<Vec<_>>()
-        .into_iter()
-        .collect::<Result<Vec<Piece>, _>>()?;
+    let pieces = parallel::map(cut(data), |(start, text)| {
+        piece(text, rule).map_err(|mistake| mistake.moved(start))
+    });
+    let pieces = pieces.into_iter().collect::<Result<Vec<Piece>, _>>()?;
     let count = pieces
         .iter()
         .fold(0, |sum: usize, piece| sum.saturating_add(piece.count));
@@ -59,15 +56,12 @@ impl Runs {
         let mut array = vec![0.0; self.count];
         let mut rest = array.as_mut_slice();
         let mut parts = Vec::with_capacity(self.pieces.len());
-        for piece in &self.pieces {
+        for piece in self.pieces {
             let (part, behind) = rest.split_at_mut(piece.count);
-            parts.push(part);
+            parts.push((piece, part));
             rest = behind;
         }
-        parts
-            .into_par_iter()
-            .zip(self.pieces)
-            .for_each(|(part, piece)| piece.expand_into(part));
+        parallel::map(parts, |(piece, part)| piece.expand_into(part));
         Some(array)
     }
 }

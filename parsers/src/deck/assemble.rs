@@ -2,8 +2,6 @@
 
 use std::path::Path;
 
-use rayon::prelude::*;
-
 use super::array::{Rule, Runs, runs};
 use super::cells::{CellArray, CellArrays};
 use super::edit::{Edit, Place, cells_of};
@@ -14,6 +12,7 @@ use super::{DeckCells, FaultFaces, Grdecl, GridUnit, blocks, faults};
 use crate::arrays::is_table;
 use crate::egrid::Egrid;
 use crate::error::{At, ParseError, Warnings};
+use crate::geometry::first_not;
 
 /// Every value must be there and be a finite number.
 pub(super) const GEOMETRY: Rule = Rule {
@@ -108,14 +107,18 @@ fn named_grid(
     found: &mut Found,
     warnings: &mut Warnings,
 ) -> Result<Option<[Vec<f64>; 2]>, ParseError> {
-    let Some((place, path)) = found.grid_file.take() else {
+    let Some((place, file)) = found.grid_file.take() else {
         return Ok(None);
     };
     if found.coord.is_some() && found.zcorn.is_some() {
         place.warn(warnings, "GDFILE is not read: the deck has COORD and ZCORN");
         return Ok(None);
     }
-    let read = Egrid::read(&path, warnings);
+    let path = file
+        .as_ref()
+        .map(|file| file.path().to_owned())
+        .unwrap_or_default();
+    let read = file.and_then(|file| Egrid::from_bytes(file, warnings));
     let grid = read.map_err(|error| {
         let message = format!("its grid cannot be read: {error}");
         place.source.error(place.at, &place.keyword, message)
@@ -139,7 +142,7 @@ fn named_grid(
     });
     found.grid_unit = found.grid_unit.take().or(unit);
     found.files.push(path);
-    let wide = |values: Vec<f32>| values.into_par_iter().map(f64::from).collect();
+    let wide = |values: Vec<f32>| values.into_iter().map(f64::from).collect();
     Ok(Some([wide(grid.coord), wide(grid.zcorn)]))
 }
 
@@ -261,11 +264,10 @@ pub(super) fn is_swallowed_keyword(block: &Block, mistake: &Mistake) -> bool {
 fn activity(array: &CellArray) -> Result<Vec<i32>, ParseError> {
     let values = &array.values;
     let whole = |&value: &f64| value.fract() == 0.0 && (0.0..=255.0).contains(&value);
-    if let Some(cell) = values.par_iter().position_first(|value| !whole(value)) {
+    if let Some(cell) = first_not(values, whole) {
         let message = format!(
-            "the value {} of cell {} is not 0 or another small whole number",
-            values[cell],
-            cell + 1
+            "the value {} of cell {cell} is not 0 or another small whole number",
+            values[cell - 1]
         );
         let Place { source, at, .. } = &array.place;
         return Err(source.error(*at, &array.name, message));
@@ -274,7 +276,7 @@ fn activity(array: &CellArray) -> Result<Vec<i32>, ParseError> {
         clippy::cast_possible_truncation,
         reason = "all values are whole and at most 255"
     )]
-    Ok(values.par_iter().map(|&value| value as i32).collect())
+    Ok(values.iter().map(|&value| value as i32).collect())
 }
 
 /// The fault faces that lie inside the grid, with their multipliers.

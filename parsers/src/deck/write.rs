@@ -2,10 +2,9 @@
 
 use std::io::{self, BufWriter, Write};
 
-use rayon::prelude::*;
-
 use super::GridUnit;
 use crate::geometry;
+use crate::parallel;
 use crate::records::refused;
 
 /// Values that a thread turns into text at a time.
@@ -159,9 +158,8 @@ impl<W: Write> DeckWriter<W> {
     fn array<T: Number>(&mut self, name: &str, values: &[T]) -> io::Result<()> {
         writeln!(self.out, "{name}")?;
         // A few pieces a thread at a time, so that the text of no more is in memory.
-        for group in values.chunks(4 * PIECE * rayon::current_num_threads()) {
-            let texts: Vec<_> = group.par_chunks(PIECE).map(text).collect();
-            for text in texts {
+        for group in values.chunks(4 * PIECE * parallel::threads()) {
+            for text in parallel::map(group.chunks(PIECE).collect(), text) {
                 self.out.write_all(&text)?;
             }
         }

@@ -7,6 +7,7 @@ mod write;
 
 use std::path::Path;
 
+use crate::bytes::FileBytes;
 use crate::error::{At, ParseError, Warnings};
 use crate::geometry::first_not;
 use crate::records::{Entry, RecordFile};
@@ -82,7 +83,19 @@ impl Egrid {
     /// When the file is damaged, lacks a keyword, is no corner-point grid, or an array has the
     /// wrong length.
     pub fn read(path: &Path, warnings: &mut Warnings) -> Result<Self, ParseError> {
-        let file = RecordFile::open(path)?;
+        Self::from_bytes(FileBytes::open(path)?, warnings)
+    }
+
+    /// As [`Self::read`], for a file that is in memory.
+    ///
+    /// # Errors
+    /// As [`Self::read`].
+    pub fn from_bytes(
+        file: impl Into<FileBytes>,
+        warnings: &mut Warnings,
+    ) -> Result<Self, ParseError> {
+        let file = RecordFile::from_bytes(file)?;
+        let path = file.path();
         let entries = file.entries();
         // The global grid comes first; sections of local grids start at LGR, and NNC lists follow.
         let first_local = entries

@@ -1,9 +1,8 @@
 //! Decoding of arrays, in parallel when they are large.
 
-use rayon::prelude::*;
-
 use super::{Entry, Kind, RecordFile, i32_at};
 use crate::error::{At, ParseError};
+use crate::parallel;
 
 /// Blocks that one task decodes.
 const BLOCKS_A_TASK: usize = 64;
@@ -91,7 +90,7 @@ impl RecordFile {
             rest = others;
             tasks.push((group, mine));
         }
-        tasks.into_par_iter().for_each(|(group, out)| {
+        parallel::map(tasks, |(group, out)| {
             let elements = group.iter().flat_map(|b| b.as_chunks::<N>().0);
             for (value, bytes) in out.iter_mut().zip(elements) {
                 *value = convert(*bytes);

@@ -1,8 +1,8 @@
 //! The index of a record file: headers, found by skipping over the data.
 
 use super::{Entry, Kind, i32_at};
+use crate::bytes::FileBytes;
 use crate::error::{At, ParseError};
-use crate::mapped::MappedFile;
 
 /// Header record with its markers.
 const HEADER: u64 = 24;
@@ -25,7 +25,7 @@ struct Header<'a> {
 }
 
 /// The complete arrays from the start, and what stopped the indexing before the end.
-pub(super) fn index(file: &MappedFile) -> (Vec<Entry>, Option<ParseError>) {
+pub(super) fn index(file: &FileBytes) -> (Vec<Entry>, Option<ParseError>) {
     let bytes = file.bytes();
     let mut entries = Vec::new();
     let stop = |f: Fault| ParseError::new(file.path(), At::Byte(f.at), &f.keyword, f.message);

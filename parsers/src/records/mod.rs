@@ -10,8 +10,8 @@ mod write;
 
 use std::path::Path;
 
+use crate::bytes::FileBytes;
 use crate::error::{At, ParseError, Warnings};
-use crate::mapped::MappedFile;
 
 pub use write::RecordWriter;
 pub(crate) use write::refused;
@@ -103,21 +103,29 @@ impl Entry {
     }
 }
 
-/// A mapped file with the index of its arrays.
+/// A file with the index of its arrays.
 #[derive(Debug)]
 pub struct RecordFile {
-    file: MappedFile,
+    file: FileBytes,
     entries: Vec<Entry>,
     is_cut: bool,
 }
 
 impl RecordFile {
-    /// Maps a file and indexes its arrays.
+    /// Opens a file and indexes its arrays.
     ///
     /// # Errors
     /// When the file cannot be read, is not such a file, or ends within an array.
     pub fn open(path: &Path) -> Result<Self, ParseError> {
-        let file = MappedFile::open(path)?;
+        Self::from_bytes(FileBytes::open(path)?)
+    }
+
+    /// As [`Self::open`], for a file that is in memory.
+    ///
+    /// # Errors
+    /// When it is not such a file, or ends within an array.
+    pub fn from_bytes(file: impl Into<FileBytes>) -> Result<Self, ParseError> {
+        let file = file.into();
         let (entries, broken) = index::index(&file);
         match broken {
             Some(error) => Err(error),
@@ -135,7 +143,18 @@ impl RecordFile {
     /// # Errors
     /// When the file cannot be read or holds no complete array.
     pub fn open_lenient(path: &Path, warnings: &mut Warnings) -> Result<Self, ParseError> {
-        let file = MappedFile::open(path)?;
+        Self::from_bytes_lenient(FileBytes::open(path)?, warnings)
+    }
+
+    /// As [`Self::open_lenient`], for a file that is in memory.
+    ///
+    /// # Errors
+    /// When it holds no complete array.
+    pub fn from_bytes_lenient(
+        file: impl Into<FileBytes>,
+        warnings: &mut Warnings,
+    ) -> Result<Self, ParseError> {
+        let file = file.into();
         let (entries, broken) = index::index(&file);
         let is_cut = broken.is_some();
         if let Some(error) = broken {
@@ -149,7 +168,7 @@ impl RecordFile {
                     error.message
                 ),
             };
-            warnings.push(path, error.at, message);
+            warnings.push(file.path(), error.at, message);
         }
         Ok(Self {
             file,
@@ -168,7 +187,7 @@ impl RecordFile {
         &self.entries
     }
 
-    /// The path that was opened.
+    /// The path that was opened, or the name that was given.
     pub fn path(&self) -> &Path {
         self.file.path()
     }
@@ -213,9 +232,7 @@ pub(crate) mod tests {
     }
 
     fn open(bytes: &[u8]) -> Result<RecordFile, ParseError> {
-        let file = tempfile::NamedTempFile::new().unwrap();
-        std::fs::write(file.path(), bytes).unwrap();
-        RecordFile::open(file.path())
+        RecordFile::from_bytes(("CASE.INIT", bytes.to_vec()))
     }
 
     fn reals(n: usize) -> Vec<u8> {
@@ -286,6 +303,7 @@ pub(crate) mod tests {
         }
     }
 
+    #[cfg(feature = "mmap")]
     #[test]
     fn err_file_that_is_cut_off_while_open() {
         let bytes = array("PORO", "REAL", 4, &reals(5000), 1000);
@@ -303,10 +321,9 @@ pub(crate) mod tests {
     fn ok_half_written_file_keeps_complete_arrays() {
         let mut bytes = array("SWAT", "REAL", 4, &reals(10), 1000);
         bytes.extend(array("SGAS", "REAL", 4, &reals(10), 1000));
-        let file = tempfile::NamedTempFile::new().unwrap();
-        std::fs::write(file.path(), &bytes[..bytes.len() - 9]).unwrap();
+        bytes.truncate(bytes.len() - 9);
         let mut warnings = Warnings::default();
-        let kept = RecordFile::open_lenient(file.path(), &mut warnings).unwrap();
+        let kept = RecordFile::from_bytes_lenient(("CASE.INIT", bytes), &mut warnings).unwrap();
         assert_eq!(kept.entries().len(), 1);
         assert_eq!(warnings.iter().count(), 1);
     }
