@@ -6,6 +6,7 @@
 
 use super::lexer::{Mistake, is_undefined, line_end, repeat, shown, token_end};
 use super::numbers::{leading_number, number, sixteen_bytes, visible};
+use crate::geometry::zeros;
 use crate::parallel;
 
 /// Bytes of text a thread converts at a time: small against the caches, large against the cost of a task.
@@ -51,9 +52,7 @@ pub(super) fn runs(data: &[u8], rule: Rule) -> Result<Runs, Mistake> {
 impl Runs {
     /// The array with repeat counts expanded; `None` where there is not enough memory.
     pub(super) fn expand(self) -> Option<Vec<f64>> {
-        // A plain allocation would end the process where memory is short, so ask first.
-        Vec::<f64>::new().try_reserve_exact(self.count).ok()?;
-        let mut array = vec![0.0; self.count];
+        let mut array = zeros(self.count)?;
         let mut rest = array.as_mut_slice();
         let mut parts = Vec::with_capacity(self.pieces.len());
         for piece in self.pieces {

@@ -12,7 +12,7 @@ use super::{DeckCells, FaultFaces, Grdecl, GridUnit, blocks, faults};
 use crate::arrays::is_table;
 use crate::egrid::Egrid;
 use crate::error::{At, ParseError, Warnings};
-use crate::geometry::first_not;
+use crate::geometry::{Lengths, first_not, unaddressable};
 
 /// Every value must be there and be a finite number.
 pub(super) const GEOMETRY: Rule = Rule {
@@ -43,12 +43,14 @@ pub(super) fn assemble(
     let Some(dims) = found.dims else {
         return Err(swallowed(&found).unwrap_or_else(|| missing(path, &found)));
     };
-    let cells = checked_cells(path, dims, found.bytes, file.is_some())?;
+    let lengths = checked_lengths(path, dims)?;
+    if file.is_none() {
+        check_text(path, dims, found.bytes)?;
+    }
     let corners = match (&found.coord, &found.zcorn, file) {
         (Some(coord), Some(zcorn), _) => {
-            let pillars = (dims[0] + 1).saturating_mul(dims[1] + 1);
-            let coord = array(coord, GEOMETRY, pillars.saturating_mul(6))?;
-            Some([coord, array(zcorn, GEOMETRY, cells.saturating_mul(8))?])
+            let coord = array(coord, GEOMETRY, lengths.coord)?;
+            Some([coord, array(zcorn, GEOMETRY, lengths.zcorn)?])
         }
         (_, _, Some(corners)) => Some(corners),
         _ => None,
@@ -85,12 +87,14 @@ pub(super) fn assemble(
     })
 }
 
-/// What the decks say of the cells of a grid that was read from elsewhere.
+/// What the decks say of the cells of a grid that was read from elsewhere; `path` is the first of them.
 pub(super) fn cells(
+    path: &Path,
     mut found: Found,
     dims: [usize; 3],
     warnings: &mut Warnings,
 ) -> Result<DeckCells, ParseError> {
+    checked_lengths(path, dims)?;
     let mut arrays = CellArrays::play(&mut found, dims, warnings)?;
     arrays.take("ACTNUM");
     Ok(DeckCells {
@@ -146,22 +150,23 @@ fn named_grid(
     Ok(Some([wide(grid.coord), wide(grid.zcorn)]))
 }
 
-/// The number of cells, where the text can be of so many.
-fn checked_cells(
-    path: &Path,
-    dims: [usize; 3],
-    bytes: usize,
-    has_file: bool,
-) -> Result<usize, ParseError> {
-    let cells = dims.iter().product();
-    if !has_file && cells / MOST_CELLS_A_BYTE > bytes {
+/// The lengths of the arrays, where they can be addressed.
+fn checked_lengths(path: &Path, dims: [usize; 3]) -> Result<Lengths, ParseError> {
+    Lengths::of(dims)
+        .ok_or_else(|| ParseError::new(path, At::File, "SPECGRID", unaddressable(dims)))
+}
+
+/// Refuses more cells than `bytes` of text can describe.
+fn check_text(path: &Path, dims: [usize; 3], bytes: usize) -> Result<(), ParseError> {
+    let cells: usize = dims.iter().product();
+    if cells / MOST_CELLS_A_BYTE > bytes {
         let message = format!(
             "{} cells cannot be described by {bytes} bytes of text",
             product_text(dims)
         );
         return Err(ParseError::new(path, At::File, "SPECGRID", message));
     }
-    Ok(cells)
+    Ok(())
 }
 
 /// Applies a record of ADDZCORN: all corners of the cells in its box.

@@ -4,9 +4,7 @@ use super::GridUnit;
 use super::edit::CellBox;
 use super::lexer::{Item, Mistake, shown};
 use super::numbers::number;
-
-/// Most cells of a grid, so that cell numbers fit in 32 bits with room to spare.
-const MOST_CELLS: usize = 1 << 31;
+use crate::geometry::MOST_CELLS;
 
 /// SPECGRID or DIMENS: three counts, for SPECGRID also coordinate systems and `T` for a radial grid.
 pub(super) fn dims(items: &[Item], at: usize) -> Result<[usize; 3], Mistake> {
@@ -30,7 +28,7 @@ pub(super) fn dims(items: &[Item], at: usize) -> Result<[usize; 3], Mistake> {
     let cells = dims
         .iter()
         .try_fold(1_usize, |cells, &dim| cells.checked_mul(dim));
-    if cells.is_none_or(|cells| cells >= MOST_CELLS) {
+    if cells.is_none_or(|cells| cells > MOST_CELLS) {
         let [ni, nj, nk] = dims;
         return Err(Mistake::new(
             at,

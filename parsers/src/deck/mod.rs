@@ -229,6 +229,7 @@ impl DeckCells {
     ) -> Result<Self, ParseError> {
         let paths: Vec<_> = paths.iter().map(PathBuf::as_path).collect();
         let found = scan::scan(files, &paths, warnings)?;
-        assemble::cells(found, dims, warnings)
+        let first = paths.first().copied().unwrap_or(Path::new(""));
+        assemble::cells(first, found, dims, warnings)
     }
 }

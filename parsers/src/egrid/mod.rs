@@ -9,7 +9,7 @@ use std::path::Path;
 
 use crate::bytes::FileBytes;
 use crate::error::{At, ParseError, Warnings};
-use crate::geometry::first_not;
+use crate::geometry::{Lengths, MOST_CELLS, first_not, unaddressable};
 use crate::records::{Entry, RecordFile};
 
 /// Unit of the grid's coordinates.
@@ -116,21 +116,23 @@ impl Egrid {
         };
         let head = need("GRIDHEAD")?;
         let dims = dimensions(&file, head)?;
-        let cells = dims[0] * dims[1] * dims[2];
-        let pillars = (dims[0] + 1) * (dims[1] + 1);
-        let mut coord = sized(&file, need("COORD")?, 6 * pillars, true)?;
-        if coord.len() > 6 * pillars {
+        let Some(lengths) = Lengths::of(dims) else {
+            return Err(file.error(head, unaddressable(dims)));
+        };
+        let cells = lengths.cells;
+        let mut coord = sized(&file, need("COORD")?, lengths.coord, true)?;
+        if coord.len() > lengths.coord {
             warnings.push(
                 path,
                 At::File,
                 "COORD has several coordinate reservoirs; the first is used for all layers",
             );
-            coord.truncate(6 * pillars);
+            coord.truncate(lengths.coord);
         }
-        let zcorn = sized(&file, need("ZCORN")?, 8 * cells, false)?;
+        let zcorn = sized(&file, need("ZCORN")?, lengths.zcorn, false)?;
         let of_cells = |name: &str| match find(name) {
             None => Ok(None),
-            Some(entry) if entry.count as usize == cells => file.i32s(entry).map(Some),
+            Some(entry) if entry.count == cells as u64 => file.i32s(entry).map(Some),
             Some(entry) => {
                 let found = entry.count;
                 Err(file.error(entry, format!("expected {cells} values, found {found}")))
@@ -193,7 +195,7 @@ fn dimensions(file: &RecordFile, head: &Entry) -> Result<[usize; 3], ParseError>
         .iter()
         .try_fold(1usize, |product, &n| product.checked_mul(n));
     match cells {
-        Some(1..=0x7fff_ffff) => Ok(dims),
+        Some(1..=MOST_CELLS) => Ok(dims),
         _ => Err(file.error(
             head,
             format!("dimensions {ni} x {nj} x {nk} are not possible"),
@@ -233,9 +235,8 @@ fn sized(
     expected: usize,
     more_allowed: bool,
 ) -> Result<Vec<f32>, ParseError> {
-    let found = entry.count as usize;
-    let fits =
-        found == expected || more_allowed && found > expected && found.is_multiple_of(expected);
+    let (found, needed) = (entry.count, expected as u64);
+    let fits = found == needed || more_allowed && found > needed && found.is_multiple_of(needed);
     if !fits {
         return Err(file.error(entry, format!("expected {expected} values, found {found}")));
     }

@@ -1,7 +1,8 @@
 //! Decoding of arrays, in parallel when they are large.
 
-use super::{Entry, Kind, RecordFile, i32_at};
+use super::{Entry, Kind, RecordFile, bytes_at, i32_at};
 use crate::error::{At, ParseError};
+use crate::geometry::zeros;
 use crate::parallel;
 
 /// Blocks that one task decodes.
@@ -80,8 +81,12 @@ impl RecordFile {
         convert: impl Fn([u8; N]) -> T + Sync,
     ) -> Result<Vec<T>, ParseError> {
         let blocks = self.blocks(entry)?;
-        // The index has checked that the file is larger than the values.
-        let mut values = vec![T::default(); entry.count as usize];
+        // The index has checked that the file is larger than the values, but they may be wider here.
+        let count = usize::try_from(entry.count).ok();
+        let Some(mut values) = count.and_then(zeros::<T>) else {
+            let message = format!("not enough memory for {} values", entry.count);
+            return Err(self.error(entry, message));
+        };
         let mut rest = values.as_mut_slice();
         let mut tasks = Vec::with_capacity(blocks.len() / BLOCKS_A_TASK + 1);
         for group in blocks.chunks(BLOCKS_A_TASK) {
@@ -113,11 +118,9 @@ impl RecordFile {
         while at < entry.end {
             let length = i32_at(bytes, at).and_then(|l| u64::try_from(l).ok());
             let block = length
-                .filter(|l| {
-                    l % entry.kind.size().max(1) == 0
-                        && i32_at(bytes, at + 4 + l) == Some(*l as i32)
-                })
-                .and_then(|l| bytes.get(at as usize + 4..(at + 4 + l) as usize));
+                .filter(|l| l % entry.kind.size().max(1) == 0)
+                .filter(|l| i32_at(bytes, at + 4 + l) == Some(*l as i32))
+                .and_then(|l| bytes_at(bytes, at + 4, l));
             let Some(block) = block.filter(|b| !b.is_empty()) else {
                 let message = "the two lengths of a block differ; the file is damaged";
                 return Err(ParseError::new(

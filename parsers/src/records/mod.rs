@@ -205,9 +205,15 @@ impl RecordFile {
 
 /// Big-endian i32 at a byte offset, if the bytes are there.
 fn i32_at(bytes: &[u8], at: u64) -> Option<i32> {
-    let at = usize::try_from(at).ok()?;
-    let four = bytes.get(at..at.checked_add(4)?)?;
+    let four = bytes_at(bytes, at, 4)?;
     Some(i32::from_be_bytes(four.try_into().ok()?))
+}
+
+/// So many bytes at a byte offset, if they are there.
+fn bytes_at(bytes: &[u8], at: u64, length: u64) -> Option<&[u8]> {
+    let start = usize::try_from(at).ok()?;
+    let end = usize::try_from(at.checked_add(length)?).ok()?;
+    bytes.get(start..end)
 }
 
 #[cfg(test)]
