@@ -23,4 +23,4 @@ pub mod restart;
 pub mod units;
 
 pub use bytes::FileBytes;
-pub use error::{At, ParseError, Warning, Warnings};
+pub use error::{At, ErrorKind, ParseError, Warning, Warnings};

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use crate::bytes::FileBytes;
 use crate::calendar;
 use crate::cells::{CellArrays, Head, write_arrays, write_heads};
-use crate::error::{At, ParseError, Warnings};
+use crate::error::{At, ErrorKind, ParseError, Warnings};
 use crate::records::{RecordFile, RecordWriter, refused};
 
 /// One report step of the global grid.
@@ -187,7 +187,13 @@ fn single(report: u32, file: FileBytes, warnings: &mut Warnings) -> Result<Step,
 
 fn no_restart(path: &Path) -> ParseError {
     let message = "is missing; this is not a restart file";
-    ParseError::new(path, At::File, "INTEHEAD", message)
+    ParseError::of(
+        ErrorKind::MissingKeyword,
+        path,
+        At::File,
+        "INTEHEAD",
+        message,
+    )
 }
 
 fn step(

@@ -6,6 +6,7 @@
 
 use super::lexer::{Mistake, is_undefined, line_end, repeat, shown, token_end};
 use super::numbers::{leading_number, number, sixteen_bytes, visible};
+use crate::error::ErrorKind;
 use crate::geometry::zeros;
 use crate::parallel;
 
@@ -163,10 +164,15 @@ fn unusual_token(
     let token = &text[start..end];
     let (count, written) = repeat(token).map_err(|mistake| mistake.moved(start))?;
     let value = if written.is_empty() {
-        rule.default
-            .ok_or_else(|| Mistake::new(start, "a defaulted value (*) is not allowed here"))?
+        rule.default.ok_or_else(|| {
+            Mistake::new(
+                ErrorKind::BadValue,
+                start,
+                "a defaulted value (*) is not allowed here",
+            )
+        })?
     } else {
-        value(written, rule).map_err(|message| Mistake::new(start, message))?
+        value(written, rule).map_err(|message| Mistake::new(ErrorKind::BadValue, start, message))?
     };
     piece.push(value, count);
     Ok(end)

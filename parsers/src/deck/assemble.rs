@@ -11,7 +11,7 @@ use super::skip::is_read;
 use super::{DeckCells, FaultFaces, Grdecl, GridUnit, blocks, faults};
 use crate::arrays::is_table;
 use crate::egrid::Egrid;
-use crate::error::{At, ParseError, Warnings};
+use crate::error::{At, ErrorKind, ParseError, Warnings};
 use crate::geometry::{Lengths, first_not, unaddressable};
 
 /// Every value must be there and be a finite number.
@@ -125,7 +125,7 @@ fn named_grid(
     let read = file.and_then(|file| Egrid::from_bytes(file, warnings));
     let grid = read.map_err(|error| {
         let message = format!("its grid cannot be read: {error}");
-        place.source.error(place.at, &place.keyword, message)
+        place.error(error.kind, message)
     })?;
     if let Some(dims) = found.dims.filter(|dims| *dims != grid.dims) {
         let message = format!(
@@ -134,7 +134,7 @@ fn named_grid(
             path.display(),
             product_text(grid.dims)
         );
-        return Err(place.source.error(place.at, &place.keyword, message));
+        return Err(place.error(ErrorKind::Mismatch, message));
     }
     found.dims = Some(grid.dims);
     found.file_actnum = grid.actnum;
@@ -152,8 +152,7 @@ fn named_grid(
 
 /// The lengths of the arrays, where they can be addressed.
 fn checked_lengths(path: &Path, dims: [usize; 3]) -> Result<Lengths, ParseError> {
-    Lengths::of(dims)
-        .ok_or_else(|| ParseError::new(path, At::File, "SPECGRID", unaddressable(dims)))
+    Lengths::of(dims).ok_or_else(|| too_large(path, unaddressable(dims)))
 }
 
 /// Refuses more cells than `bytes` of text can describe.
@@ -164,9 +163,13 @@ fn check_text(path: &Path, dims: [usize; 3], bytes: usize) -> Result<(), ParseEr
             "{} cells cannot be described by {bytes} bytes of text",
             product_text(dims)
         );
-        return Err(ParseError::new(path, At::File, "SPECGRID", message));
+        return Err(too_large(path, message));
     }
     Ok(())
+}
+
+fn too_large(path: &Path, message: String) -> ParseError {
+    ParseError::of(ErrorKind::TooLarge, path, At::File, "SPECGRID", message)
 }
 
 /// Applies a record of ADDZCORN: all corners of the cells in its box.
@@ -199,6 +202,10 @@ fn missing(path: &Path, found: &Found) -> ParseError {
     });
     let faults = (!found.faults.is_empty()).then_some("FAULTS");
     let names: Vec<_> = names.take(3).chain(faults).collect();
+    let kind = match found.radial {
+        true => ErrorKind::Unsupported,
+        false => ErrorKind::MissingKeyword,
+    };
     let message = if found.radial {
         "the grid is radial; only Cartesian grids are read from text: run the simulator and open the EGRID"
             .to_owned()
@@ -210,7 +217,7 @@ fn missing(path: &Path, found: &Found) -> ParseError {
     } else {
         format!("no grid: {} missing", absent.join(" and "))
     };
-    ParseError::new(path, At::File, "", message)
+    ParseError::of(kind, path, At::File, "", message)
 }
 
 /// The array without a closing `/` that took a missing keyword for its own data, if there is one.
@@ -239,20 +246,24 @@ pub(super) fn numbers(block: &Block, rule: Rule) -> Result<Runs, Mistake> {
 }
 
 pub(super) fn expand(block: &Block, runs: Runs, expected: usize) -> Result<Vec<f64>, ParseError> {
-    let failed = |message| block.source.error(block.data.end, &block.name, message);
+    let failed = |kind, message| {
+        block
+            .source
+            .error(kind, block.data.end, &block.name, message)
+    };
     if runs.count != expected {
-        return Err(failed(format!(
-            "expected {expected} values, found {}",
-            runs.count
-        )));
+        let message = format!("expected {expected} values, found {}", runs.count);
+        return Err(failed(ErrorKind::WrongCount, message));
     }
+    let memory = || format!("not enough memory for {expected} values");
     runs.expand()
-        .ok_or_else(|| failed(format!("not enough memory for {expected} values")))
+        .ok_or_else(|| failed(ErrorKind::TooLarge, memory()))
 }
 
 /// Names the place of `mistake`, and the missing slash where a keyword stands there.
 pub(super) fn error(block: &Block, mut mistake: Mistake) -> ParseError {
     if is_swallowed_keyword(block, &mistake) {
+        mistake.kind = ErrorKind::Malformed;
         mistake.message = format!(
             "{}; is the closing / of {} missing?",
             mistake.message, block.name
@@ -275,7 +286,7 @@ fn activity(array: &CellArray) -> Result<Vec<i32>, ParseError> {
             values[cell - 1]
         );
         let Place { source, at, .. } = &array.place;
-        return Err(source.error(*at, &array.name, message));
+        return Err(source.error(ErrorKind::BadValue, *at, &array.name, message));
     }
     #[allow(
         clippy::cast_possible_truncation,

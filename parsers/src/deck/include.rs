@@ -7,7 +7,7 @@ use super::lexer::{Cursor, Keyword, Token, line_end, record_end};
 use super::scan::{Flow, Scan};
 use super::source::Source;
 use crate::bytes::FileBytes;
-use crate::error::ParseError;
+use crate::error::{ErrorKind, ParseError};
 
 /// Deepest nesting and largest number of included files.
 const DEEPEST: usize = 64;
@@ -51,7 +51,7 @@ impl Scan<'_> {
                 "'{written}' was not found; looked for {}",
                 places.join(" and ")
             );
-            source.error(at, &keyword.name, message)
+            source.error(ErrorKind::NotFound, at, &keyword.name, message)
         })?;
         let file = self.places.files.open(&path);
         self.include_file(source, keyword, at, file)
@@ -107,11 +107,11 @@ impl Scan<'_> {
         let path = file.path();
         if self.open.iter().any(|open| open == path) {
             let message = format!("'{}' includes itself through other files", path.display());
-            return Err(source.error(at, name, message));
+            return Err(source.error(ErrorKind::Malformed, at, name, message));
         }
         if self.open.len() >= DEEPEST || self.opened >= MOST_FILES {
             let message = format!("more than {DEEPEST} nested or {MOST_FILES} included files");
-            return Err(source.error(at, name, message));
+            return Err(source.error(ErrorKind::TooLarge, at, name, message));
         }
         self.file(file, chain)
     }
@@ -125,7 +125,7 @@ fn named_file(
 ) -> Result<(usize, String), ParseError> {
     let missing = || {
         let message = "expected the path of a file, in quotes";
-        source.error(keyword.at, &keyword.name, message)
+        source.error(ErrorKind::Malformed, keyword.at, &keyword.name, message)
     };
     included_path(cursor).ok_or_else(missing)
 }

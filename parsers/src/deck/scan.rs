@@ -11,7 +11,7 @@ use super::skip::{Skipped, ends_records, is_operation, skip_records};
 use super::source::{Places, Source};
 use super::{FaultFaces, GridUnit, faults, header};
 use crate::bytes::FileBytes;
-use crate::error::{ParseError, Warnings};
+use crate::error::{ErrorKind, ParseError, Warnings};
 use crate::units::UnitSystem;
 
 /// An array that is still text.
@@ -161,7 +161,12 @@ impl Scan<'_> {
         let path = source.path();
         let text = source.text();
         if text.iter().take(512).any(|&byte| byte == 0) {
-            return Err(source.error(0, "", "this is a binary file, not a text deck"));
+            return Err(source.error(
+                ErrorKind::NotThisFormat,
+                0,
+                "",
+                "this is a binary file, not a text deck",
+            ));
         }
         self.opened += 1;
         self.found.bytes = self.found.bytes.saturating_add(text.len());
@@ -371,6 +376,7 @@ impl Scan<'_> {
         let name = keyword.name.as_str();
         let end = record_end(cursor.text, keyword.end).ok_or_else(|| {
             source.error(
+                ErrorKind::Truncated,
                 cursor.text.len(),
                 name,
                 "the file ends before the closing / of the array",
@@ -489,7 +495,12 @@ impl Scan<'_> {
                 return Ok(());
             }
         }
-        Err(source.error(skip.at, &skip.name, "no ENDSKIP follows in this file"))
+        Err(source.error(
+            ErrorKind::Truncated,
+            skip.at,
+            &skip.name,
+            "no ENDSKIP follows in this file",
+        ))
     }
 
     pub(super) fn warn(&mut self, source: &Source, at: usize, message: &str) {

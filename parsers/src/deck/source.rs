@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use super::files::DeckFiles;
 use super::lexer::{Mistake, line_end};
 use crate::bytes::FileBytes;
-use crate::error::{At, ParseError};
+use crate::error::{At, ErrorKind, ParseError};
 
 /// A file of a deck.
 pub(super) struct Source {
@@ -73,17 +73,18 @@ impl Source {
 
     pub(super) fn error(
         &self,
+        kind: ErrorKind,
         offset: usize,
         keyword: &str,
         message: impl Into<String>,
     ) -> ParseError {
-        let mut error = ParseError::new(self.path(), self.at(offset), keyword, message);
+        let mut error = ParseError::of(kind, self.path(), self.at(offset), keyword, message);
         error.included_from.clone_from(&self.included_from);
         error
     }
 
     pub(super) fn mistake(&self, keyword: &str, mistake: Mistake) -> ParseError {
-        self.error(mistake.at, keyword, mistake.message)
+        self.error(mistake.kind, mistake.at, keyword, mistake.message)
     }
 }
 

@@ -8,7 +8,7 @@ mod write;
 use std::path::Path;
 
 use crate::bytes::FileBytes;
-use crate::error::{At, ParseError, Warnings};
+use crate::error::{At, ErrorKind, ParseError, Warnings};
 use crate::geometry::{Lengths, MOST_CELLS, first_not, unaddressable};
 use crate::records::{Entry, RecordFile};
 
@@ -106,7 +106,8 @@ impl Egrid {
         let find = |name: &str| global.iter().find(|e| e.name() == name);
         let need = |name: &str| {
             find(name).ok_or_else(|| {
-                ParseError::new(
+                ParseError::of(
+                    ErrorKind::MissingKeyword,
                     path,
                     At::File,
                     name,
@@ -117,7 +118,7 @@ impl Egrid {
         let head = need("GRIDHEAD")?;
         let dims = dimensions(&file, head)?;
         let Some(lengths) = Lengths::of(dims) else {
-            return Err(file.error(head, unaddressable(dims)));
+            return Err(file.error(ErrorKind::TooLarge, head, unaddressable(dims)));
         };
         let cells = lengths.cells;
         let mut coord = sized(&file, need("COORD")?, lengths.coord, true)?;
@@ -135,7 +136,11 @@ impl Egrid {
             Some(entry) if entry.count == cells as u64 => file.i32s(entry).map(Some),
             Some(entry) => {
                 let found = entry.count;
-                Err(file.error(entry, format!("expected {cells} values, found {found}")))
+                Err(file.error(
+                    ErrorKind::WrongCount,
+                    entry,
+                    format!("expected {cells} values, found {found}"),
+                ))
             }
         };
         let actnum = of_cells("ACTNUM")?;
@@ -176,19 +181,21 @@ fn dimensions(file: &RecordFile, head: &Entry) -> Result<[usize; 3], ParseError>
     let values = file.i32s(head)?;
     let [kind, ni, nj, nk, ..] = values[..] else {
         return Err(file.error(
+            ErrorKind::WrongCount,
             head,
             format!("has {} values and needs at least 4", values.len()),
         ));
     };
     if kind != 1 {
         return Err(file.error(
+            ErrorKind::Unsupported,
             head,
             format!("the grid is of type {kind}; only corner-point grids (type 1) are read"),
         ));
     }
     if is_radial(&values) {
         let message = "the grid is radial; only Cartesian corner-point grids are read";
-        return Err(file.error(head, message));
+        return Err(file.error(ErrorKind::Unsupported, head, message));
     }
     let dims = [ni, nj, nk].map(|n| usize::try_from(n).unwrap_or(0));
     let cells = dims
@@ -196,10 +203,14 @@ fn dimensions(file: &RecordFile, head: &Entry) -> Result<[usize; 3], ParseError>
         .try_fold(1usize, |product, &n| product.checked_mul(n));
     match cells {
         Some(1..=MOST_CELLS) => Ok(dims),
-        _ => Err(file.error(
-            head,
-            format!("dimensions {ni} x {nj} x {nk} are not possible"),
-        )),
+        _ => {
+            let kind = match dims.contains(&0) {
+                true => ErrorKind::BadValue,
+                false => ErrorKind::TooLarge,
+            };
+            let message = format!("dimensions {ni} x {nj} x {nk} are not possible");
+            Err(file.error(kind, head, message))
+        }
     }
 }
 
@@ -238,11 +249,19 @@ fn sized(
     let (found, needed) = (entry.count, expected as u64);
     let fits = found == needed || more_allowed && found > needed && found.is_multiple_of(needed);
     if !fits {
-        return Err(file.error(entry, format!("expected {expected} values, found {found}")));
+        return Err(file.error(
+            ErrorKind::WrongCount,
+            entry,
+            format!("expected {expected} values, found {found}"),
+        ));
     }
     let values = file.f32s(entry)?;
     match first_not(&values, |v| v.is_finite()) {
-        Some(number) => Err(file.error(entry, format!("value {number} is not a finite number"))),
+        Some(number) => Err(file.error(
+            ErrorKind::BadValue,
+            entry,
+            format!("value {number} is not a finite number"),
+        )),
         None => Ok(values),
     }
 }
@@ -278,7 +297,7 @@ fn connections(
                 if to.len() != from.len() {
                     let (expected, found) = (from.len(), to.len());
                     let message = format!("expected {expected} values as in NNC1, found {found}");
-                    return Err(file.error(entry, message));
+                    return Err(file.error(ErrorKind::WrongCount, entry, message));
                 }
                 pairs.extend(from.drain(..).zip(to).map(|(a, b)| [a, b]));
             }

@@ -1,7 +1,7 @@
 //! Decoding of arrays, in parallel when they are large.
 
 use super::{Entry, Kind, RecordFile, bytes_at, i32_at};
-use crate::error::{At, ParseError};
+use crate::error::{At, ErrorKind, ParseError};
 use crate::geometry::zeros;
 use crate::parallel;
 
@@ -18,7 +18,7 @@ impl RecordFile {
             Kind::Real => self.decode(entry, f32::from_be_bytes),
             Kind::Inte => self.decode(entry, |b| i32::from_be_bytes(b) as f32),
             Kind::Doub => self.decode(entry, |b| f64::from_be_bytes(b) as f32),
-            _ => Err(self.error(entry, "holds no numbers")),
+            _ => Err(self.error(ErrorKind::WrongType, entry, "holds no numbers")),
         }
     }
 
@@ -32,7 +32,7 @@ impl RecordFile {
             Kind::Inte => self.decode(entry, |b| f64::from(i32::from_be_bytes(b))),
             Kind::Doub => self.decode(entry, f64::from_be_bytes),
             Kind::Logi => self.decode(entry, |b: [u8; 4]| f64::from(u8::from(b != [0; 4]))),
-            _ => Err(self.error(entry, "holds no numbers")),
+            _ => Err(self.error(ErrorKind::WrongType, entry, "holds no numbers")),
         }
     }
 
@@ -43,7 +43,7 @@ impl RecordFile {
     pub fn i32s(&self, entry: &Entry) -> Result<Vec<i32>, ParseError> {
         match entry.kind {
             Kind::Inte => self.decode(entry, i32::from_be_bytes),
-            _ => Err(self.error(entry, "holds no integers")),
+            _ => Err(self.error(ErrorKind::WrongType, entry, "holds no integers")),
         }
     }
 
@@ -54,7 +54,7 @@ impl RecordFile {
     pub fn bools(&self, entry: &Entry) -> Result<Vec<bool>, ParseError> {
         match entry.kind {
             Kind::Logi => self.decode(entry, |b: [u8; 4]| b != [0; 4]),
-            _ => Err(self.error(entry, "holds no logicals")),
+            _ => Err(self.error(ErrorKind::WrongType, entry, "holds no logicals")),
         }
     }
 
@@ -64,7 +64,7 @@ impl RecordFile {
     /// When the array holds no strings or is damaged.
     pub fn strings(&self, entry: &Entry) -> Result<Vec<String>, ParseError> {
         let Kind::Text(length) = entry.kind else {
-            return Err(self.error(entry, "holds no strings"));
+            return Err(self.error(ErrorKind::WrongType, entry, "holds no strings"));
         };
         let blocks = self.blocks(entry)?;
         let strings = blocks
@@ -85,7 +85,7 @@ impl RecordFile {
         let count = usize::try_from(entry.count).ok();
         let Some(mut values) = count.and_then(zeros::<T>) else {
             let message = format!("not enough memory for {} values", entry.count);
-            return Err(self.error(entry, message));
+            return Err(self.error(ErrorKind::TooLarge, entry, message));
         };
         let mut rest = values.as_mut_slice();
         let mut tasks = Vec::with_capacity(blocks.len() / BLOCKS_A_TASK + 1);
@@ -109,7 +109,7 @@ impl RecordFile {
         if !self.file.is_whole() {
             let message =
                 "cannot be read: the file was cut off while it was open; load the case again";
-            return Err(self.error(entry, message));
+            return Err(self.error(ErrorKind::Truncated, entry, message));
         }
         let bytes = self.file.bytes();
         let mut blocks = Vec::new();
@@ -123,7 +123,8 @@ impl RecordFile {
                 .and_then(|l| bytes_at(bytes, at + 4, l));
             let Some(block) = block.filter(|b| !b.is_empty()) else {
                 let message = "the two lengths of a block differ; the file is damaged";
-                return Err(ParseError::new(
+                return Err(ParseError::of(
+                    ErrorKind::Malformed,
                     self.path(),
                     At::Byte(at),
                     entry.name(),
@@ -136,6 +137,7 @@ impl RecordFile {
         }
         if total != entry.count * entry.kind.size() || at != entry.end {
             return Err(self.error(
+                ErrorKind::Malformed,
                 entry,
                 "its blocks do not add up to its count; the file is damaged",
             ));

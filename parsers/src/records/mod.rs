@@ -11,7 +11,7 @@ mod write;
 use std::path::Path;
 
 use crate::bytes::FileBytes;
-use crate::error::{At, ParseError, Warnings};
+use crate::error::{At, ErrorKind, ParseError, Warnings};
 
 pub use write::RecordWriter;
 pub(crate) use write::refused;
@@ -198,8 +198,14 @@ impl RecordFile {
     }
 
     /// An error about an array of this file.
-    pub fn error(&self, entry: &Entry, message: impl Into<String>) -> ParseError {
-        ParseError::new(self.path(), At::Byte(entry.offset), entry.name(), message)
+    pub(crate) fn error(
+        &self,
+        kind: ErrorKind,
+        entry: &Entry,
+        message: impl Into<String>,
+    ) -> ParseError {
+        let at = At::Byte(entry.offset);
+        ParseError::of(kind, self.path(), at, entry.name(), message)
     }
 }
 
@@ -287,25 +293,6 @@ pub(crate) mod tests {
             bytes[12..16].copy_from_slice(&count.to_be_bytes());
             let error = open(&bytes).unwrap_err().to_string();
             assert!(error.contains("PORO"), "{count}: {error}");
-        }
-    }
-
-    #[test]
-    fn err_flipped_bytes_never_panic() {
-        let mut random = fastrand::Rng::with_seed(11);
-        let mut bytes = array("PORO", "REAL", 4, &reals(300), 100);
-        bytes.extend(array("NAMES", "CHAR", 8, b"ONE     TWO     ", 105));
-        for _ in 0..3000 {
-            let mut flipped = bytes.clone();
-            for _ in 0..random.usize(1..4) {
-                let at = random.usize(0..flipped.len());
-                flipped[at] ^= 1 << random.u8(0..8);
-            }
-            if let Ok(file) = open(&flipped) {
-                for entry in file.entries() {
-                    let _ = (file.f64s(entry), file.strings(entry));
-                }
-            }
         }
     }
 

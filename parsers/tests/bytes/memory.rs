@@ -1,18 +1,17 @@
 //! Files in memory are read as files on disk are.
-#![allow(missing_docs, clippy::unwrap_used, reason = "tests")]
 
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use strataray_parsers::cells::{CellArrays, Head};
+use strataray_parsers::cells::CellArrays;
 use strataray_parsers::deck::{DeckCells, Folders, Grdecl, MemoryFiles};
 use strataray_parsers::egrid::Egrid;
 use strataray_parsers::records::RecordFile;
-use strataray_parsers::restart::{self, RestartWriter, Step};
+use strataray_parsers::restart::{self, Step};
 use strataray_parsers::{FileBytes, ParseError, Warnings, init};
 
-const CELL: &str = "SPECGRID\n1 1 1 1 F /\nCOORD\n0 0 0 0 0 1  1 0 0 1 0 1  0 1 0 0 1 1  1 1 0 1 1 1 /\nZCORN\n4*0 4*1 /\n";
+use super::fixtures::{CELL, egrid, head, restart};
 
 /// Files of a model in two folders, one of them named in another letter case than it has.
 const DECK: [(&str, &str); 4] = [
@@ -39,49 +38,6 @@ fn on_disk(folder: &Path) {
 fn without_absent(folder: &Path) -> MemoryFiles {
     let file = |(name, text): (&str, &str)| (folder.join(name), text.replace("absent", "PORO"));
     DECK.map(file).into_iter().collect()
-}
-
-/// A cell with a distinct depth per corner.
-fn egrid() -> Vec<u8> {
-    let deck = MemoryFiles::from_iter([("A", CELL)]);
-    let deck = Grdecl::read_from(&deck, Path::new("A"), &[], &mut Warnings::default()).unwrap();
-    let single = |values: &[f64]| values.iter().map(|v| *v as f32).collect();
-    let grid = Egrid {
-        dims: deck.dims,
-        coord: single(&deck.coord),
-        zcorn: (0_u8..8).map(f32::from).collect(),
-        actnum: Some(vec![1]),
-        coarse: None,
-        map_units: None,
-        map_axes: None,
-        grid_unit: None,
-        porosity_model: strataray_parsers::egrid::PorosityModel::Single,
-        nnc: Vec::new(),
-        local_connections: 0,
-        local_grids: Vec::new(),
-    };
-    grid.write(Vec::new()).unwrap()
-}
-
-fn head() -> Head {
-    Head {
-        dims: [1; 3],
-        active: 1,
-        date: "2001-06-30".into(),
-        ..Head::default()
-    }
-}
-
-fn restart(reports: [u32; 2]) -> Vec<u8> {
-    let mut writer = RestartWriter::new(Vec::new());
-    for report in reports {
-        let pressure = [("PRESSURE", vec![100.0 + report as f32])];
-        let days = f64::from(report);
-        writer
-            .step(report, days, &head(), &["P"], pressure)
-            .unwrap();
-    }
-    writer.finish().unwrap()
 }
 
 fn first_value(arrays: &CellArrays, name: &str) -> f32 {
