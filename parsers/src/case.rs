@@ -21,7 +21,7 @@ pub enum RestartSource {
     None,
     /// One file with all steps.
     Unified(PathBuf),
-    /// One file a step, with its report number, rising.
+    /// One file per step, with its report number, rising.
     Separate(Vec<(u32, PathBuf)>),
 }
 

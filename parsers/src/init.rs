@@ -31,7 +31,7 @@ pub fn from_bytes(
     Ok(CellArrays::new(&file, all, &["LGRSGONE", "ENDLGR"]))
 }
 
-/// Writes an INIT file; each of `arrays` has one value an active cell and is made when its turn comes.
+/// Writes an INIT file; each of `arrays` has one value per active cell and is made when its turn comes.
 ///
 /// # Errors
 /// When writing fails, an array has not `head.active` values, or a name or the date is none.

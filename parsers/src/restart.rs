@@ -1,4 +1,4 @@
-//! Restarts: dynamic properties by report step, unified (UNRST) or one file a step (X0000, ...).
+//! Restarts: dynamic properties by report step, unified (UNRST) or one file per step (X0000, ...).
 
 use std::collections::HashSet;
 use std::io::{self, Write};
@@ -250,7 +250,7 @@ impl<W: Write> RestartWriter<W> {
 
     /// Writes a step: SEQNUM, the heads, the wells' names as ZWEL, and `arrays` between STARTSOL and ENDSOL.
     ///
-    /// Each array has one value an active cell and is made when its turn comes; the numbers of
+    /// Each array has one value per active cell and is made when its turn comes; the numbers of
     /// wells and of their strings in `head` are not read but follow from `wells`.
     ///
     /// # Errors

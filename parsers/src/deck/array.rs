@@ -13,7 +13,7 @@ use crate::parallel;
 /// Bytes of text a thread converts at a time: small against the caches, large against the cost of a task.
 const PIECE: usize = 1 << 18;
 /// Short tokens with their blanks, for sizing a piece's values; unused memory of it is never touched.
-const BYTES_A_VALUE: usize = 4;
+const BYTES_PER_VALUE: usize = 4;
 
 /// What stands for a defaulted value (`*`, `3*`) and for one that is no finite number; `None` refuses it.
 #[derive(Clone, Copy)]
@@ -101,7 +101,7 @@ fn cut(data: &[u8]) -> Vec<(usize, &[u8])> {
 
 fn piece(text: &[u8], rule: Rule) -> Result<Piece, Mistake> {
     let mut piece = Piece::default();
-    piece.values.reserve(text.len() / BYTES_A_VALUE);
+    piece.values.reserve(text.len() / BYTES_PER_VALUE);
     let mut at = 0;
     while let Some(start) = next_token(text, at) {
         if let Some((value, length)) = leading_number(&text[start..]) {

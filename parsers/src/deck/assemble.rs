@@ -31,7 +31,7 @@ pub(super) const ACTIVITY: Rule = Rule {
 };
 
 /// Most cells for each byte of text; a deck needs some text for each column and each layer.
-const MOST_CELLS_A_BYTE: usize = 1000;
+const MOST_CELLS_PER_BYTE: usize = 1000;
 
 /// Builds the grid of what the scan found in the deck at `path`.
 pub(super) fn assemble(
@@ -158,7 +158,7 @@ fn checked_lengths(path: &Path, dims: [usize; 3]) -> Result<Lengths, ParseError>
 /// Refuses more cells than `bytes` of text can describe.
 fn check_text(path: &Path, dims: [usize; 3], bytes: usize) -> Result<(), ParseError> {
     let cells: usize = dims.iter().product();
-    if cells / MOST_CELLS_A_BYTE > bytes {
+    if cells / MOST_CELLS_PER_BYTE > bytes {
         let message = format!(
             "{} cells cannot be described by {bytes} bytes of text",
             product_text(dims)

@@ -55,7 +55,7 @@ pub struct Grdecl {
     pub phases: i32,
     /// MINPV: pore volume below which a cell is inactive, in the unit system's reservoir volumes.
     pub min_pore_volume: Option<f64>,
-    /// Keywords with one number a cell, in the order of their first appearance.
+    /// Keywords with one number per cell, in the order of their first appearance.
     pub properties: Vec<DeckProperty>,
     /// Faces of named faults, in file order.
     pub faults: Vec<FaultFaces>,
@@ -66,7 +66,7 @@ pub struct Grdecl {
 /// What decks say of the cells of a grid that is read from elsewhere.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct DeckCells {
-    /// Keywords with one number a cell, in the order of their first appearance.
+    /// Keywords with one number per cell, in the order of their first appearance.
     pub properties: Vec<DeckProperty>,
     /// Faces of named faults, in file order.
     pub faults: Vec<FaultFaces>,
@@ -87,7 +87,7 @@ pub struct GridUnit {
     pub is_map: bool,
 }
 
-/// A keyword with one number a cell.
+/// A keyword with one number per cell.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DeckProperty {
     /// The keyword in upper case, such as `PORO`.

@@ -21,7 +21,7 @@ pub struct GridUnit {
     pub is_map: bool,
 }
 
-/// One value a cell, or one for the matrix and one for the fractures.
+/// One value per cell, or one for the matrix and one for the fractures.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PorosityModel {
     /// Single porosity.
@@ -52,11 +52,11 @@ pub struct LocalGrid {
 pub struct Egrid {
     /// Cells along i, j and k.
     pub dims: [usize; 3],
-    /// **Shape**: 6 values a pillar: x, y, depth of the upper, then of the lower end.
+    /// **Shape**: 6 values per pillar: x, y, depth of the upper, then of the lower end.
     pub coord: Vec<f32>,
-    /// **Shape**: 8 depths a cell, index `2i+di + 2ni(2j+dj) + 4ni*nj(2k+dk)`.
+    /// **Shape**: 8 depths per cell, index `2i+di + 2ni(2j+dj) + 4ni*nj(2k+dk)`.
     pub zcorn: Vec<f32>,
-    /// One value a cell; absent = all active. Dual porosity: 1 matrix, 2 fracture, 3 both.
+    /// One value per cell; absent = all active. Dual porosity: 1 matrix, 2 fracture, 3 both.
     pub actnum: Option<Vec<i32>>,
     /// CORSNUM: number of the coarse cell that each cell was made part of, or 0.
     pub coarse: Option<Vec<i32>>,

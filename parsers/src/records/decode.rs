@@ -6,7 +6,7 @@ use crate::geometry::zeros;
 use crate::parallel;
 
 /// Blocks that one task decodes.
-const BLOCKS_A_TASK: usize = 64;
+const BLOCKS_PER_TASK: usize = 64;
 
 impl RecordFile {
     /// Values of a REAL, DOUB or INTE array as f32.
@@ -88,8 +88,8 @@ impl RecordFile {
             return Err(self.error(ErrorKind::TooLarge, entry, message));
         };
         let mut rest = values.as_mut_slice();
-        let mut tasks = Vec::with_capacity(blocks.len() / BLOCKS_A_TASK + 1);
-        for group in blocks.chunks(BLOCKS_A_TASK) {
+        let mut tasks = Vec::with_capacity(blocks.len() / BLOCKS_PER_TASK + 1);
+        for group in blocks.chunks(BLOCKS_PER_TASK) {
             let count = group.iter().map(|b| b.len() / N).sum();
             let (mine, others) = rest.split_at_mut(count);
             rest = others;

@@ -17,8 +17,8 @@ pub use write::RecordWriter;
 pub(crate) use write::refused;
 
 /// Elements in a block by convention: numbers, strings.
-const NUMBERS_A_BLOCK: u64 = 1000;
-const STRINGS_A_BLOCK: u64 = 105;
+const NUMBERS_PER_BLOCK: u64 = 1000;
+const STRINGS_PER_BLOCK: u64 = 105;
 
 /// Type of the elements of an array.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -51,8 +51,8 @@ impl Kind {
     /// Elements in a block by convention.
     fn block(self) -> u64 {
         match self {
-            Self::Text(_) => STRINGS_A_BLOCK,
-            _ => NUMBERS_A_BLOCK,
+            Self::Text(_) => STRINGS_PER_BLOCK,
+            _ => NUMBERS_PER_BLOCK,
         }
     }
 

@@ -62,6 +62,29 @@ pub fn rich_egrid() -> Vec<u8> {
     out.finish().unwrap()
 }
 
+/// An array of every type, and one whose count takes two headers and whose values stand in small blocks.
+pub fn records() -> Vec<u8> {
+    let mut out = RecordWriter::new(Vec::new());
+    out.inte("IN", &[1, -2]).unwrap();
+    out.real("RE", &[0.5; 3]).unwrap();
+    out.doub("DO", &[0.25; 2]).unwrap();
+    out.logi("LO", &[true, false]).unwrap();
+    out.chars("CH", &["ONE", "TWO"]).unwrap();
+    out.text("TX", 12, &["ELEVEN CHARS"]).unwrap();
+    out.mess("ME").unwrap();
+    let mut bytes = out.finish().unwrap();
+    for (count, kind) in [(0_i32, b"X231"), (6, b"REAL")] {
+        let marker = 16_i32.to_be_bytes();
+        let count = count.to_be_bytes();
+        bytes.extend([&marker, &b"BLOCKS  "[..], &count, kind, &marker].concat());
+    }
+    for _ in 0..3 {
+        let marker = 8_i32.to_be_bytes();
+        bytes.extend([&marker[..], &[0x40; 8], &marker].concat());
+    }
+    bytes
+}
+
 /// What the heads of [`init`] and [`restart`] say.
 pub fn head() -> Head {
     Head {

@@ -10,7 +10,7 @@ use strataray_parsers::{ErrorKind, ParseError, Warnings, init, restart};
 
 use super::fixtures::{self, PORO, rich_deck, rich_egrid};
 
-const ROUNDS: usize = 20_000;
+const ROUNDS: usize = 10_000;
 
 /// Bytes that mean something to the readers of text and of records.
 const PIECES: [&[u8]; 20] = [
@@ -117,6 +117,14 @@ fn decode(file: &RecordFile) {
             assert_eq!(length as u64, entry.count, "{}", entry.name());
         }
     }
+}
+
+#[test]
+fn mutated_records() {
+    mutate(5, &fixtures::records(), |bytes| {
+        decode(&RecordFile::from_bytes(("A", bytes))?);
+        Ok(())
+    });
 }
 
 #[test]
