@@ -8,11 +8,12 @@ pub(crate) fn map<T: Send, R: Send>(
     items: Vec<T>,
     convert: impl Fn(T) -> R + Send + Sync,
 ) -> Vec<R> {
+    // Most arrays are one short piece, for which waking a thread would take longer than the work.
     #[cfg(feature = "parallel")]
-    let items = items.into_par_iter();
-    #[cfg(not(feature = "parallel"))]
-    let items = items.into_iter();
-    items.map(convert).collect()
+    if items.len() > 1 {
+        return items.into_par_iter().map(convert).collect();
+    }
+    items.into_iter().map(convert).collect()
 }
 
 /// Number of items that [`map`] works on at once.

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use strataray_parsers::deck::{Grdecl, MemoryFiles};
+use strataray_parsers::deck::{DeckCells, Grdecl, MemoryFiles};
 use strataray_parsers::egrid::Egrid;
 use strataray_parsers::records::{RecordFile, RecordWriter};
 use strataray_parsers::{At, ErrorKind, FileBytes, ParseError, Warnings, case, restart};
@@ -318,7 +318,23 @@ fn too_large() {
         dims("1 1 1 1"),
     );
     check(ErrorKind::TooLarge, dims("1 1 999999 1"), dims("1 1 1 1"));
-    // A count of 2^61 values, which have more bytes than a file can have.
+    let files: MemoryFiles = [("A", "PORO\n 0.5 /\n")].into_iter().collect();
+    let paths = [Path::new("A").to_owned()];
+    let cells = |dims| DeckCells::read_from(&files, &paths, dims, &mut Warnings::default());
+    check(
+        ErrorKind::TooLarge,
+        cells([usize::MAX, 2, 2]),
+        cells([1, 1, 1]),
+    );
+    // A file that includes the next one, and so on.
+    let chain = |length: usize| {
+        let next = |n: usize| (n.to_string(), format!("INCLUDE\n '{}' /\n", n + 1));
+        let last = [(length.to_string(), CELL.to_owned())];
+        let files: MemoryFiles = (0..length).map(next).chain(last).collect();
+        Grdecl::read_from(&files, Path::new("0"), &[], &mut Warnings::default())
+    };
+    check(ErrorKind::TooLarge, chain(64), chain(63));
+    // A count of 2^62 values, which have more bytes than a file can have.
     let mut header = Vec::new();
     for (count, kind) in [(i32::MIN, b"X231"), (0, b"REAL")] {
         header.extend(
