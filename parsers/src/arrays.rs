@@ -1,4 +1,4 @@
-//! Keywords that give one value a cell, told from those that give tables or vectors.
+//! Keywords that give one value per cell, told from those that give tables or vectors.
 
 /// Cell arrays of decks, INIT files and restarts.
 const CELL_ARRAYS: &[&str] = &[
@@ -53,7 +53,7 @@ const TABLES: &[&str] = &[
     "RPTGRID", "RPTPROPS", "RPTSOL", "RPTREGS", "COORDSYS", "PINCH", "PINCHXY", "DRSDT", "DRVDT",
 ];
 
-/// True where the keyword is known to give one value a cell.
+/// True where the keyword is known to give one value per cell.
 pub fn is_cell_array(name: &str) -> bool {
     let is_family = |start: &&str| name.len() > start.len() && name.starts_with(*start);
     CELL_ARRAYS.contains(&name) || !is_table(name) && CELL_ARRAY_STARTS.iter().any(is_family)

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::error::{At, ParseError};
+use crate::error::{At, ErrorKind, ParseError};
 
 /// Where the grid is.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -21,7 +21,7 @@ pub enum RestartSource {
     None,
     /// One file with all steps.
     Unified(PathBuf),
-    /// One file a step, with its report number, rising.
+    /// One file per step, with its report number, rising.
     Separate(Vec<(u32, PathBuf)>),
 }
 
@@ -130,7 +130,7 @@ pub fn find(path: &Path) -> Result<CaseFiles, ParseError> {
     };
     if path.is_dir() && files.is_empty() {
         let message = "is a folder with no case in it, or several; name one of its files";
-        return Err(ParseError::new(path, At::File, "", message));
+        return Err(not_found(path, message));
     }
     if !path.exists() && !files.is_empty() && role(path).is_some_and(|r| first(r).is_none()) {
         let others: Vec<_> = files
@@ -139,7 +139,7 @@ pub fn find(path: &Path) -> Result<CaseFiles, ParseError> {
             .map(|(p, _)| p.display().to_string())
             .collect();
         let message = format!("there is no such file; the case has {}", others.join(", "));
-        return Err(ParseError::new(path, At::File, "", message));
+        return Err(not_found(path, message));
     }
     let grid = match named {
         Some(Role::Text) => Some(GridSource::Deck(path.to_owned())),
@@ -196,10 +196,11 @@ pub fn find_with(path: &Path, with: &[PathBuf]) -> Result<CaseFiles, ParseError>
     let mut files = find(path)?;
     let mut separate = Vec::new();
     for added in with {
-        let refuse = |message: &str| ParseError::new(added, At::File, "", message);
         if !added.is_file() {
-            return Err(refuse("there is no such file"));
+            return Err(not_found(added, "there is no such file"));
         }
+        let refuse =
+            |message: &str| ParseError::of(ErrorKind::Unsupported, added, At::File, "", message);
         match sniff(added) {
             Role::Deck | Role::Text => files.added.push(added.clone()),
             Role::Init => files.init = Some(added.clone()),
@@ -257,6 +258,10 @@ fn no_grid(path: &Path, stem: &str, files: &[(PathBuf, Role)]) -> ParseError {
         Role::NotRead(why) => Some(format!("; there is {}, but {why}", p.display())),
         _ => None,
     });
+    let kind = match reason {
+        Some(_) => ErrorKind::Unsupported,
+        None => ErrorKind::NotFound,
+    };
     let found = if path.exists() || !files.is_empty() {
         "this case has no grid"
     } else {
@@ -266,5 +271,9 @@ fn no_grid(path: &Path, stem: &str, files: &[(PathBuf, Role)]) -> ParseError {
         "{found}: looked for {stem}.EGRID, {stem}.DATA and {stem}.GRDECL{}",
         reason.unwrap_or_default()
     );
-    ParseError::new(path, At::File, "", message)
+    ParseError::of(kind, path, At::File, "", message)
+}
+
+fn not_found(path: &Path, message: impl Into<String>) -> ParseError {
+    ParseError::of(ErrorKind::NotFound, path, At::File, "", message)
 }

@@ -37,7 +37,7 @@ pub struct Head {
     pub clock: [i32; 3],
     /// Number of wells (item 17).
     pub wells: i32,
-    /// Strings a well in ZWEL (item 28).
+    /// Strings per well in ZWEL (item 28).
     pub strings_a_well: i32,
 }
 
@@ -176,7 +176,7 @@ pub(crate) fn write_heads<W: Write>(
     out.doub("DOUBHEAD", &[days])
 }
 
-/// Writes arrays of one value an active cell, each made only when its turn comes.
+/// Writes arrays of one value per active cell, each made only when its turn comes.
 pub(crate) fn write_arrays<W: Write, N: AsRef<str>>(
     out: &mut RecordWriter<W>,
     head: &Head,

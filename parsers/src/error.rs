@@ -1,6 +1,6 @@
 //! What went wrong, in which file, at which place.
 //!
-//! A reader fails with one [`ParseError`]; what it could work around is handed to a
+//! A reader fails with one [`ParseError`], whose [`ErrorKind`] tells programs what its message tells people; what it could work around is handed to a
 //! [`Warnings`] collector with the same kind of place, so that nothing is dropped silently.
 
 use std::fmt;
@@ -22,12 +22,49 @@ pub enum At {
     File,
 }
 
+/// What kind of thing is wrong, for programs that act on it; what it is exactly stands in the error's message.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum ErrorKind {
+    /// A file, a folder or a case is not there: ask for another path, or for the missing file.
+    NotFound,
+    /// The operating system does not let a file be read: [`ParseError::cause`] is its error.
+    Io,
+    /// The file is of another format: try another reader.
+    NotThisFormat,
+    /// The file ends too early, as while a simulator is still writing it: read it again later, or read what is
+    /// complete by [`crate::records::RecordFile::open_lenient`].
+    Truncated,
+    /// The bytes break the rules of the format: get the file again from where it was made.
+    Malformed,
+    /// A keyword that is needed is not there: look for it in another file.
+    MissingKeyword,
+    /// An array holds elements of another type than was asked for: see [`crate::records::Entry::kind`].
+    WrongType,
+    /// There are more or fewer values or items than there must be: correct the file.
+    WrongCount,
+    /// A value is not one of those that can stand there: correct the file.
+    BadValue,
+    /// Files that are right by themselves do not belong together: choose others.
+    Mismatch,
+    /// The file is right and asks for what this crate does not read: convert it.
+    Unsupported,
+    /// The file asks for more than a limit, the memory or the address space of this machine allows: reduce it, or use
+    /// a larger machine.
+    TooLarge,
+    /// None of the above: made by [`ParseError::new`], which no reader of this crate uses.
+    Other,
+}
+
 /// An error of a reader: file, place, keyword and what is wrong.
 ///
 /// Shown as `path:line:column: KEYWORD: message` for text and
 /// `path@0x1f40: KEYWORD: message` for binary files.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub struct ParseError {
+    /// What kind of thing is wrong.
+    pub kind: ErrorKind,
     /// The file that could not be read.
     pub path: PathBuf,
     /// The place in that file.
@@ -44,12 +81,25 @@ pub struct ParseError {
 }
 
 impl ParseError {
-    /// An error at `at` of `path` while reading `keyword` (may be empty).
+    /// An error of the kind [`ErrorKind::Other`] at `at` of `path` while reading `keyword` (may be empty).
     pub fn new(path: &Path, at: At, keyword: &str, message: impl Into<String>) -> Self {
+        Self::of(ErrorKind::Other, path, at, keyword, message)
+    }
+
+    /// As [`Self::new`], of a kind.
+    pub fn of(
+        kind: ErrorKind,
+        path: &Path,
+        at: At,
+        keyword: &str,
+        message: impl Into<String>,
+    ) -> Self {
         Self {
+            kind,
             path: path.to_owned(),
             at,
-            keyword: keyword.trim().to_owned(),
+            // Names of damaged arrays may hold anything, and an error is one line.
+            keyword: keyword.trim().replace(char::is_control, "?"),
             message: message.into(),
             included_from: Vec::new(),
             cause: None,
@@ -58,7 +108,11 @@ impl ParseError {
 
     /// An error of the operating system about the whole file.
     pub fn io(path: &Path, what: &str, cause: std::io::Error) -> Self {
-        let mut error = Self::new(path, At::File, "", format!("{what}: {cause}"));
+        let kind = match cause.kind() {
+            std::io::ErrorKind::NotFound => ErrorKind::NotFound,
+            _ => ErrorKind::Io,
+        };
+        let mut error = Self::of(kind, path, At::File, "", format!("{what}: {cause}"));
         error.cause = Some(cause);
         error
     }

@@ -4,6 +4,7 @@ use std::io::{self, Write};
 use std::path::Path;
 use std::sync::Arc;
 
+use crate::bytes::FileBytes;
 use crate::cells::{CellArrays, Head, write_arrays, write_heads};
 use crate::error::{ParseError, Warnings};
 use crate::records::{RecordFile, RecordWriter};
@@ -14,12 +15,23 @@ use crate::records::{RecordFile, RecordWriter};
 /// # Errors
 /// When the file holds no whole array.
 pub fn open(path: &Path, warnings: &mut Warnings) -> Result<CellArrays, ParseError> {
-    let file = Arc::new(RecordFile::open_lenient(path, warnings)?);
+    from_bytes(FileBytes::open(path)?, warnings)
+}
+
+/// As [`open`], for a file that is in memory.
+///
+/// # Errors
+/// When it holds no whole array.
+pub fn from_bytes(
+    file: impl Into<FileBytes>,
+    warnings: &mut Warnings,
+) -> Result<CellArrays, ParseError> {
+    let file = Arc::new(RecordFile::from_bytes_lenient(file, warnings)?);
     let all = 0..file.entries().len();
     Ok(CellArrays::new(&file, all, &["LGRSGONE", "ENDLGR"]))
 }
 
-/// Writes an INIT file; each of `arrays` has one value an active cell and is made when its turn comes.
+/// Writes an INIT file; each of `arrays` has one value per active cell and is made when its turn comes.
 ///
 /// # Errors
 /// When writing fails, an array has not `head.active` values, or a name or the date is none.

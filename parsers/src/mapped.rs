@@ -3,61 +3,47 @@
 //! Hazard: when another process truncates the file while it is mapped, touching the lost
 //! pages raises SIGBUS. A simulator only appends to its result files while it runs, which is
 //! harmless, but it begins them anew when it is run again: who reads a file that has been open
-//! for a while asks [`MappedFile::is_whole`] before, which leaves a moment, not hours.
+//! for a while asks [`Map::is_whole`] before, which leaves a moment, not hours.
 
 use std::fs::File;
-use std::path::{Path, PathBuf};
+use std::io;
+use std::path::Path;
 
-use crate::error::ParseError;
-
-/// The bytes of a file, mapped, together with its path for error messages.
+/// The bytes of a file, mapped.
 #[derive(Debug)]
-pub struct MappedFile {
-    path: PathBuf,
+pub(crate) struct Map {
     file: File,
     // None for an empty file, which cannot be mapped.
     map: Option<memmap2::Mmap>,
 }
 
-impl MappedFile {
+impl Map {
     /// Maps the file at `path`.
     ///
     /// # Errors
     /// When the file cannot be opened or mapped, or is a directory.
-    pub fn open(path: &Path) -> Result<Self, ParseError> {
-        let io = |source| ParseError::io(path, "cannot open", source);
-        let file = File::open(path).map_err(io)?;
-        let metadata = file.metadata().map_err(io)?;
+    pub(crate) fn open(path: &Path) -> io::Result<Self> {
+        let file = File::open(path)?;
+        let metadata = file.metadata()?;
         if metadata.is_dir() {
-            let source = std::io::Error::from(std::io::ErrorKind::IsADirectory);
-            return Err(io(source));
+            return Err(io::ErrorKind::IsADirectory.into());
         }
-        let map = if metadata.len() == 0 {
-            None
-        } else {
-            Some(map_read_only(&file).map_err(io)?)
+        let map = match metadata.len() {
+            0 => None,
+            _ => Some(map_read_only(&file)?),
         };
-        Ok(Self {
-            path: path.to_owned(),
-            file,
-            map,
-        })
+        Ok(Self { file, map })
     }
 
     /// The bytes of the file.
-    pub fn bytes(&self) -> &[u8] {
+    pub(crate) fn bytes(&self) -> &[u8] {
         self.map.as_deref().unwrap_or_default()
     }
 
     /// False where the file has become shorter since it was mapped.
-    pub fn is_whole(&self) -> bool {
+    pub(crate) fn is_whole(&self) -> bool {
         let length = self.file.metadata().map_or(0, |m| m.len());
         length >= self.bytes().len() as u64
-    }
-
-    /// The path that was opened.
-    pub fn path(&self) -> &Path {
-        &self.path
     }
 }
 
@@ -65,7 +51,7 @@ impl MappedFile {
     unsafe_code,
     reason = "memory mapping has no safe interface; the hazard is described at the top of this file"
 )]
-fn map_read_only(file: &File) -> std::io::Result<memmap2::Mmap> {
+fn map_read_only(file: &File) -> io::Result<memmap2::Mmap> {
     // SAFETY: the map is read-only and private to this process; the remaining hazard, another
     // process truncating the file, ends in SIGBUS, never in silently wrong memory of ours.
     unsafe { memmap2::Mmap::map(file) }

@@ -1,13 +1,14 @@
-//! Restarts: dynamic properties by report step, unified (UNRST) or one file a step (X0000, ...).
+//! Restarts: dynamic properties by report step, unified (UNRST) or one file per step (X0000, ...).
 
 use std::collections::HashSet;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use crate::bytes::FileBytes;
 use crate::calendar;
 use crate::cells::{CellArrays, Head, write_arrays, write_heads};
-use crate::error::{At, ParseError, Warnings};
+use crate::error::{At, ErrorKind, ParseError, Warnings};
 use crate::records::{RecordFile, RecordWriter, refused};
 
 /// One report step of the global grid.
@@ -32,7 +33,19 @@ pub struct Step {
 /// When the file is damaged before its first complete array, or has no step. A file that ends
 /// within an array is read up to there, with a warning.
 pub fn open_unified(path: &Path, warnings: &mut Warnings) -> Result<Vec<Step>, ParseError> {
-    let file = Arc::new(RecordFile::open_lenient(path, warnings)?);
+    unified_from_bytes(FileBytes::open(path)?, warnings)
+}
+
+/// As [`open_unified`], for a file that is in memory.
+///
+/// # Errors
+/// As [`open_unified`].
+pub fn unified_from_bytes(
+    file: impl Into<FileBytes>,
+    warnings: &mut Warnings,
+) -> Result<Vec<Step>, ParseError> {
+    let file = Arc::new(RecordFile::from_bytes_lenient(file, warnings)?);
+    let path = file.path();
     let entries = file.entries();
     let mut starts = starts(&file, "SEQNUM");
     let is_numbered = !starts.is_empty();
@@ -63,10 +76,9 @@ pub fn open_unified(path: &Path, warnings: &mut Warnings) -> Result<Vec<Step>, P
         steps.push(step);
     }
     if steps.is_empty() {
-        let message = "is missing; this is not a restart file";
-        return Err(ParseError::new(path, At::File, "INTEHEAD", message));
+        return Err(no_restart(path));
     }
-    count_days(&mut steps, path, warnings);
+    count_days(&mut steps, warnings);
     Ok(steps)
 }
 
@@ -86,7 +98,7 @@ fn starts(file: &RecordFile, name: &str) -> Vec<usize> {
 }
 
 /// Counts days from the dates in steps that have none (no DOUBHEAD): from a step that has them, else from the first.
-fn count_days(steps: &mut [Step], path: &Path, warnings: &mut Warnings) {
+fn count_days(steps: &mut [Step], warnings: &mut Warnings) {
     let lacks = |step: &Step| step.arrays.find("DOUBHEAD").is_none();
     let moment = |step: &Step| calendar::moment(&step.head.time());
     let counted = steps
@@ -103,7 +115,8 @@ fn count_days(steps: &mut [Step], path: &Path, warnings: &mut Warnings) {
             count += 1;
         }
     }
-    if count > 0 {
+    if let (true, Some(first)) = (count > 0, steps.first()) {
+        let path = first.arrays.file().path();
         let message = "DOUBHEAD is missing: days are counted from the dates of the steps";
         warnings.push(path, At::File, message);
     }
@@ -119,16 +132,36 @@ pub fn open_separate(
     files: &[(u32, PathBuf)],
     warnings: &mut Warnings,
 ) -> Result<Vec<Step>, ParseError> {
-    let mut steps = Vec::with_capacity(files.len());
-    let mut failed = None;
-    for (report, path) in files {
-        match open_one(*report, path, warnings) {
+    let opened = |(report, path): &(u32, PathBuf)| (*report, FileBytes::open(path));
+    separate(files.iter().map(opened), warnings)
+}
+
+/// As [`open_separate`], for files that are in memory.
+///
+/// # Errors
+/// As [`open_separate`].
+pub fn separate_from_bytes(
+    files: impl IntoIterator<Item = (u32, FileBytes)>,
+    warnings: &mut Warnings,
+) -> Result<Vec<Step>, ParseError> {
+    let files = files.into_iter();
+    separate(files.map(|(report, file)| (report, Ok(file))), warnings)
+}
+
+fn separate(
+    files: impl Iterator<Item = (u32, Result<FileBytes, ParseError>)>,
+    warnings: &mut Warnings,
+) -> Result<Vec<Step>, ParseError> {
+    let mut steps = Vec::new();
+    let mut failed: Option<ParseError> = None;
+    for (report, file) in files {
+        match file.and_then(|file| single(report, file, warnings)) {
             Ok(step) => steps.push(step),
             Err(error) => {
                 let keyword = Some(&error.keyword).filter(|k| !k.is_empty());
                 let keyword = keyword.map_or(String::new(), |k| format!("{k}: "));
                 let message = format!("{keyword}{}: report {report} was left out", error.message);
-                warnings.push(path, error.at, message);
+                warnings.push(&error.path, error.at, message);
                 failed = failed.or(Some(error));
             }
         }
@@ -136,27 +169,31 @@ pub fn open_separate(
     match failed {
         Some(error) if steps.is_empty() => Err(error),
         _ => {
-            if let Some((_, path)) = files.first() {
-                count_days(&mut steps, path, warnings);
-            }
+            count_days(&mut steps, warnings);
             Ok(steps)
         }
     }
 }
 
-fn open_one(report: u32, path: &Path, warnings: &mut Warnings) -> Result<Step, ParseError> {
-    let file = Arc::new(RecordFile::open_lenient(path, warnings)?);
+fn single(report: u32, file: FileBytes, warnings: &mut Warnings) -> Result<Step, ParseError> {
+    let file = Arc::new(RecordFile::from_bytes_lenient(file, warnings)?);
     let all = 0..file.entries().len();
     let step = step(&file, all, report)?;
     match step.arrays.find("INTEHEAD") {
         Some(_) => Ok(step),
-        None => Err(ParseError::new(
-            path,
-            At::File,
-            "INTEHEAD",
-            "is missing; this is not a restart file",
-        )),
+        None => Err(no_restart(file.path())),
     }
+}
+
+fn no_restart(path: &Path) -> ParseError {
+    let message = "is missing; this is not a restart file";
+    ParseError::of(
+        ErrorKind::MissingKeyword,
+        path,
+        At::File,
+        "INTEHEAD",
+        message,
+    )
 }
 
 fn step(
@@ -213,7 +250,7 @@ impl<W: Write> RestartWriter<W> {
 
     /// Writes a step: SEQNUM, the heads, the wells' names as ZWEL, and `arrays` between STARTSOL and ENDSOL.
     ///
-    /// Each array has one value an active cell and is made when its turn comes; the numbers of
+    /// Each array has one value per active cell and is made when its turn comes; the numbers of
     /// wells and of their strings in `head` are not read but follow from `wells`.
     ///
     /// # Errors

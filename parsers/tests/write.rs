@@ -332,6 +332,7 @@ fn bare<'a>(dims: [usize; 3], coord: &'a [f32], zcorn: &'a [f32]) -> GridText<'a
     }
 }
 
+#[cfg(feature = "parallel")]
 #[test]
 fn ok_deck_is_the_same_with_any_number_of_threads() {
     // Several pieces, with runs of equal values across their ends.

@@ -4,15 +4,16 @@
 //! values with repeat counts beside them; only when the sum of all counts is known to be right
 //! is the array itself allocated, so no repeat count can ask for memory on its own.
 
-use rayon::prelude::*;
-
 use super::lexer::{Mistake, is_undefined, line_end, repeat, shown, token_end};
 use super::numbers::{leading_number, number, sixteen_bytes, visible};
+use crate::error::ErrorKind;
+use crate::geometry::zeros;
+use crate::parallel;
 
 /// Bytes of text a thread converts at a time: small against the caches, large against the cost of a task.
 const PIECE: usize = 1 << 18;
 /// Short tokens with their blanks, for sizing a piece's values; unused memory of it is never touched.
-const BYTES_A_VALUE: usize = 4;
+const BYTES_PER_VALUE: usize = 4;
 
 /// What stands for a defaulted value (`*`, `3*`) and for one that is no finite number; `None` refuses it.
 #[derive(Clone, Copy)]
@@ -39,12 +40,10 @@ struct Piece {
 
 /// Reads all numbers of `data`; a mistake's place counts from the start of `data`.
 pub(super) fn runs(data: &[u8], rule: Rule) -> Result<Runs, Mistake> {
-    let pieces = cut(data)
-        .into_par_iter()
-        .map(|(start, text)| piece(text, rule).map_err(|mistake| mistake.moved(start)))
-        .collect::<Vec<_>>()
-        .into_iter()
-        .collect::<Result<Vec<Piece>, _>>()?;
+    let pieces = parallel::map(cut(data), |(start, text)| {
+        piece(text, rule).map_err(|mistake| mistake.moved(start))
+    });
+    let pieces = pieces.into_iter().collect::<Result<Vec<Piece>, _>>()?;
     let count = pieces
         .iter()
         .fold(0, |sum: usize, piece| sum.saturating_add(piece.count));
@@ -54,20 +53,15 @@ pub(super) fn runs(data: &[u8], rule: Rule) -> Result<Runs, Mistake> {
 impl Runs {
     /// The array with repeat counts expanded; `None` where there is not enough memory.
     pub(super) fn expand(self) -> Option<Vec<f64>> {
-        // A plain allocation would end the process where memory is short, so ask first.
-        Vec::<f64>::new().try_reserve_exact(self.count).ok()?;
-        let mut array = vec![0.0; self.count];
+        let mut array = zeros(self.count)?;
         let mut rest = array.as_mut_slice();
         let mut parts = Vec::with_capacity(self.pieces.len());
-        for piece in &self.pieces {
+        for piece in self.pieces {
             let (part, behind) = rest.split_at_mut(piece.count);
-            parts.push(part);
+            parts.push((piece, part));
             rest = behind;
         }
-        parts
-            .into_par_iter()
-            .zip(self.pieces)
-            .for_each(|(part, piece)| piece.expand_into(part));
+        parallel::map(parts, |(piece, part)| piece.expand_into(part));
         Some(array)
     }
 }
@@ -107,7 +101,7 @@ fn cut(data: &[u8]) -> Vec<(usize, &[u8])> {
 
 fn piece(text: &[u8], rule: Rule) -> Result<Piece, Mistake> {
     let mut piece = Piece::default();
-    piece.values.reserve(text.len() / BYTES_A_VALUE);
+    piece.values.reserve(text.len() / BYTES_PER_VALUE);
     let mut at = 0;
     while let Some(start) = next_token(text, at) {
         if let Some((value, length)) = leading_number(&text[start..]) {
@@ -170,10 +164,15 @@ fn unusual_token(
     let token = &text[start..end];
     let (count, written) = repeat(token).map_err(|mistake| mistake.moved(start))?;
     let value = if written.is_empty() {
-        rule.default
-            .ok_or_else(|| Mistake::new(start, "a defaulted value (*) is not allowed here"))?
+        rule.default.ok_or_else(|| {
+            Mistake::new(
+                ErrorKind::BadValue,
+                start,
+                "a defaulted value (*) is not allowed here",
+            )
+        })?
     } else {
-        value(written, rule).map_err(|message| Mistake::new(start, message))?
+        value(written, rule).map_err(|message| Mistake::new(ErrorKind::BadValue, start, message))?
     };
     piece.push(value, count);
     Ok(end)

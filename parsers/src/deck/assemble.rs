@@ -2,8 +2,6 @@
 
 use std::path::Path;
 
-use rayon::prelude::*;
-
 use super::array::{Rule, Runs, runs};
 use super::cells::{CellArray, CellArrays};
 use super::edit::{Edit, Place, cells_of};
@@ -13,7 +11,8 @@ use super::skip::is_read;
 use super::{DeckCells, FaultFaces, Grdecl, GridUnit, blocks, faults};
 use crate::arrays::is_table;
 use crate::egrid::Egrid;
-use crate::error::{At, ParseError, Warnings};
+use crate::error::{At, ErrorKind, ParseError, Warnings};
+use crate::geometry::{Lengths, first_not, unaddressable};
 
 /// Every value must be there and be a finite number.
 pub(super) const GEOMETRY: Rule = Rule {
@@ -32,7 +31,7 @@ pub(super) const ACTIVITY: Rule = Rule {
 };
 
 /// Most cells for each byte of text; a deck needs some text for each column and each layer.
-const MOST_CELLS_A_BYTE: usize = 1000;
+const MOST_CELLS_PER_BYTE: usize = 1000;
 
 /// Builds the grid of what the scan found in the deck at `path`.
 pub(super) fn assemble(
@@ -44,12 +43,14 @@ pub(super) fn assemble(
     let Some(dims) = found.dims else {
         return Err(swallowed(&found).unwrap_or_else(|| missing(path, &found)));
     };
-    let cells = checked_cells(path, dims, found.bytes, file.is_some())?;
+    let lengths = checked_lengths(path, dims)?;
+    if file.is_none() {
+        check_text(path, dims, found.bytes)?;
+    }
     let corners = match (&found.coord, &found.zcorn, file) {
         (Some(coord), Some(zcorn), _) => {
-            let pillars = (dims[0] + 1).saturating_mul(dims[1] + 1);
-            let coord = array(coord, GEOMETRY, pillars.saturating_mul(6))?;
-            Some([coord, array(zcorn, GEOMETRY, cells.saturating_mul(8))?])
+            let coord = array(coord, GEOMETRY, lengths.coord)?;
+            Some([coord, array(zcorn, GEOMETRY, lengths.zcorn)?])
         }
         (_, _, Some(corners)) => Some(corners),
         _ => None,
@@ -86,12 +87,14 @@ pub(super) fn assemble(
     })
 }
 
-/// What the decks say of the cells of a grid that was read from elsewhere.
+/// What the decks say of the cells of a grid that was read from elsewhere; `path` is the first of them.
 pub(super) fn cells(
+    path: &Path,
     mut found: Found,
     dims: [usize; 3],
     warnings: &mut Warnings,
 ) -> Result<DeckCells, ParseError> {
+    checked_lengths(path, dims)?;
     let mut arrays = CellArrays::play(&mut found, dims, warnings)?;
     arrays.take("ACTNUM");
     Ok(DeckCells {
@@ -108,17 +111,21 @@ fn named_grid(
     found: &mut Found,
     warnings: &mut Warnings,
 ) -> Result<Option<[Vec<f64>; 2]>, ParseError> {
-    let Some((place, path)) = found.grid_file.take() else {
+    let Some((place, file)) = found.grid_file.take() else {
         return Ok(None);
     };
     if found.coord.is_some() && found.zcorn.is_some() {
         place.warn(warnings, "GDFILE is not read: the deck has COORD and ZCORN");
         return Ok(None);
     }
-    let read = Egrid::read(&path, warnings);
+    let path = file
+        .as_ref()
+        .map(|file| file.path().to_owned())
+        .unwrap_or_default();
+    let read = file.and_then(|file| Egrid::from_bytes(file, warnings));
     let grid = read.map_err(|error| {
         let message = format!("its grid cannot be read: {error}");
-        place.source.error(place.at, &place.keyword, message)
+        place.error(error.kind, message)
     })?;
     if let Some(dims) = found.dims.filter(|dims| *dims != grid.dims) {
         let message = format!(
@@ -127,7 +134,7 @@ fn named_grid(
             path.display(),
             product_text(grid.dims)
         );
-        return Err(place.source.error(place.at, &place.keyword, message));
+        return Err(place.error(ErrorKind::Mismatch, message));
     }
     found.dims = Some(grid.dims);
     found.file_actnum = grid.actnum;
@@ -139,26 +146,30 @@ fn named_grid(
     });
     found.grid_unit = found.grid_unit.take().or(unit);
     found.files.push(path);
-    let wide = |values: Vec<f32>| values.into_par_iter().map(f64::from).collect();
+    let wide = |values: Vec<f32>| values.into_iter().map(f64::from).collect();
     Ok(Some([wide(grid.coord), wide(grid.zcorn)]))
 }
 
-/// The number of cells, where the text can be of so many.
-fn checked_cells(
-    path: &Path,
-    dims: [usize; 3],
-    bytes: usize,
-    has_file: bool,
-) -> Result<usize, ParseError> {
-    let cells = dims.iter().product();
-    if !has_file && cells / MOST_CELLS_A_BYTE > bytes {
+/// The lengths of the arrays, where they can be addressed.
+fn checked_lengths(path: &Path, dims: [usize; 3]) -> Result<Lengths, ParseError> {
+    Lengths::of(dims).ok_or_else(|| too_large(path, unaddressable(dims)))
+}
+
+/// Refuses more cells than `bytes` of text can describe.
+fn check_text(path: &Path, dims: [usize; 3], bytes: usize) -> Result<(), ParseError> {
+    let cells: usize = dims.iter().product();
+    if cells / MOST_CELLS_PER_BYTE > bytes {
         let message = format!(
             "{} cells cannot be described by {bytes} bytes of text",
             product_text(dims)
         );
-        return Err(ParseError::new(path, At::File, "SPECGRID", message));
+        return Err(too_large(path, message));
     }
-    Ok(cells)
+    Ok(())
+}
+
+fn too_large(path: &Path, message: String) -> ParseError {
+    ParseError::of(ErrorKind::TooLarge, path, At::File, "SPECGRID", message)
 }
 
 /// Applies a record of ADDZCORN: all corners of the cells in its box.
@@ -191,6 +202,10 @@ fn missing(path: &Path, found: &Found) -> ParseError {
     });
     let faults = (!found.faults.is_empty()).then_some("FAULTS");
     let names: Vec<_> = names.take(3).chain(faults).collect();
+    let kind = match found.radial {
+        true => ErrorKind::Unsupported,
+        false => ErrorKind::MissingKeyword,
+    };
     let message = if found.radial {
         "the grid is radial; only Cartesian grids are read from text: run the simulator and open the EGRID"
             .to_owned()
@@ -202,7 +217,7 @@ fn missing(path: &Path, found: &Found) -> ParseError {
     } else {
         format!("no grid: {} missing", absent.join(" and "))
     };
-    ParseError::new(path, At::File, "", message)
+    ParseError::of(kind, path, At::File, "", message)
 }
 
 /// The array without a closing `/` that took a missing keyword for its own data, if there is one.
@@ -231,20 +246,24 @@ pub(super) fn numbers(block: &Block, rule: Rule) -> Result<Runs, Mistake> {
 }
 
 pub(super) fn expand(block: &Block, runs: Runs, expected: usize) -> Result<Vec<f64>, ParseError> {
-    let failed = |message| block.source.error(block.data.end, &block.name, message);
+    let failed = |kind, message| {
+        block
+            .source
+            .error(kind, block.data.end, &block.name, message)
+    };
     if runs.count != expected {
-        return Err(failed(format!(
-            "expected {expected} values, found {}",
-            runs.count
-        )));
+        let message = format!("expected {expected} values, found {}", runs.count);
+        return Err(failed(ErrorKind::WrongCount, message));
     }
+    let memory = || format!("not enough memory for {expected} values");
     runs.expand()
-        .ok_or_else(|| failed(format!("not enough memory for {expected} values")))
+        .ok_or_else(|| failed(ErrorKind::TooLarge, memory()))
 }
 
 /// Names the place of `mistake`, and the missing slash where a keyword stands there.
 pub(super) fn error(block: &Block, mut mistake: Mistake) -> ParseError {
     if is_swallowed_keyword(block, &mistake) {
+        mistake.kind = ErrorKind::Malformed;
         mistake.message = format!(
             "{}; is the closing / of {} missing?",
             mistake.message, block.name
@@ -261,20 +280,19 @@ pub(super) fn is_swallowed_keyword(block: &Block, mistake: &Mistake) -> bool {
 fn activity(array: &CellArray) -> Result<Vec<i32>, ParseError> {
     let values = &array.values;
     let whole = |&value: &f64| value.fract() == 0.0 && (0.0..=255.0).contains(&value);
-    if let Some(cell) = values.par_iter().position_first(|value| !whole(value)) {
+    if let Some(cell) = first_not(values, whole) {
         let message = format!(
-            "the value {} of cell {} is not 0 or another small whole number",
-            values[cell],
-            cell + 1
+            "the value {} of cell {cell} is not 0 or another small whole number",
+            values[cell - 1]
         );
         let Place { source, at, .. } = &array.place;
-        return Err(source.error(*at, &array.name, message));
+        return Err(source.error(ErrorKind::BadValue, *at, &array.name, message));
     }
     #[allow(
         clippy::cast_possible_truncation,
         reason = "all values are whole and at most 255"
     )]
-    Ok(values.par_iter().map(|&value| value as i32).collect())
+    Ok(values.iter().map(|&value| value as i32).collect())
 }
 
 /// The fault faces that lie inside the grid, with their multipliers.

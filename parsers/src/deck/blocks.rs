@@ -6,7 +6,7 @@ use super::assemble::{GEOMETRY, array};
 use super::cells::CellArrays;
 use super::edit::cells_of;
 use super::scan::Block;
-use crate::error::{At, ParseError, Warnings};
+use crate::error::{At, ErrorKind, ParseError, Warnings};
 
 /// An axis with the array that gives the sizes along it cell by cell, and the vector that gives them once.
 const SIZES: [[&str; 2]; 3] = [["DX", "DXV"], ["DY", "DYV"], ["DZ", "DZV"]];
@@ -42,7 +42,13 @@ pub(super) fn corner_points(
     let layer = ni * nj;
     if let Some(column) = (0..layer).find(|&column| tops[column].is_nan()) {
         let message = format!("has no value for cell {} of the first layer", column + 1);
-        return Err(ParseError::new(path, At::File, "TOPS", message));
+        return Err(ParseError::of(
+            ErrorKind::BadValue,
+            path,
+            At::File,
+            "TOPS",
+            message,
+        ));
     }
     for (size, [name, _]) in sizes.iter().zip(SIZES).take(2) {
         if (layer..size.len()).any(|cell| size[cell] != size[cell % layer]) {
@@ -53,7 +59,7 @@ pub(super) fn corner_points(
         }
     }
     let [dx, dy, dz] = &sizes[..] else {
-        return Err(ParseError::new(path, At::File, "DZ", "is missing"));
+        return Err(missing(path, "DZ"));
     };
     let mut depths = vec![[0.0; 2]; layer * nk];
     for cell in 0..layer * nk {
@@ -110,14 +116,30 @@ fn sizes_along(
             None => Ok(sizes.to_vec()),
             Some(cell) => {
                 let message = format!("has no value for cell {}", cell + 1);
-                Err(ParseError::new(path, At::File, name, message))
+                Err(ParseError::of(
+                    ErrorKind::BadValue,
+                    path,
+                    At::File,
+                    name,
+                    message,
+                ))
             }
         };
     }
     let block = vectors.iter().rev().find(|block| block.name == vector);
-    let block = block.ok_or_else(|| ParseError::new(path, At::File, name, "is missing"))?;
+    let block = block.ok_or_else(|| missing(path, name))?;
     let sizes = array(block, GEOMETRY, dims[axis])?;
     let [ni, nj, nk] = dims;
     let at = |cell: usize| [cell % ni, cell / ni % nj, cell / (ni * nj)][axis];
     Ok((0..ni * nj * nk).map(|cell| sizes[at(cell)]).collect())
+}
+
+fn missing(path: &Path, keyword: &str) -> ParseError {
+    ParseError::of(
+        ErrorKind::MissingKeyword,
+        path,
+        At::File,
+        keyword,
+        "is missing",
+    )
 }

@@ -6,13 +6,13 @@ use super::{DeckProperty, assemble};
 use crate::arrays::{default_value, is_cell_array, is_table};
 use crate::error::{ParseError, Warnings};
 
-/// A one-record keyword with more values than this and half a value a cell is taken for a property gone wrong.
+/// A one-record keyword with more values than this and half a value per cell is taken for a property gone wrong.
 const PROPERTY_LIKE: usize = 1000;
 
 /// An array in the making.
 pub(super) struct CellArray {
     pub(super) name: String,
-    /// One value a cell; NaN where none was given.
+    /// One value per cell; NaN where none was given.
     pub(super) values: Vec<f64>,
     /// Keywords that should have changed it and were not applied.
     doubts: Vec<String>,
@@ -261,7 +261,7 @@ fn values(
     Ok(None)
 }
 
-/// True where a keyword can give one value a cell: any that is known to, and unknown ones where nothing but the grid
+/// True where a keyword can give one value per cell: any that is known to, and unknown ones where nothing but the grid
 /// is described.
 fn may_be_cells(block: &Block) -> bool {
     match block.section {

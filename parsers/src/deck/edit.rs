@@ -9,7 +9,7 @@ use super::lexer::{Cursor, Item, Keyword, Mistake};
 use super::scan::{Block, Scan};
 use super::skip::ends_records;
 use super::source::Source;
-use crate::error::{ParseError, Warnings};
+use crate::error::{ErrorKind, ParseError, Warnings};
 
 /// A box of cells, counted from 1, both ends in it; `None` runs over the whole grid.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -76,6 +76,10 @@ pub(super) struct Place {
 }
 
 impl Place {
+    pub(super) fn error(&self, kind: ErrorKind, message: impl Into<String>) -> ParseError {
+        self.source.error(kind, self.at, &self.keyword, message)
+    }
+
     pub(super) fn warn(&self, warnings: &mut Warnings, message: impl Into<String>) {
         warnings.push(self.source.path(), self.source.at(self.at), message);
     }

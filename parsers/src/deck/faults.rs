@@ -4,6 +4,7 @@ use super::FaultFaces;
 use super::header::{positive, real};
 use super::lexer::{Cursor, Item, Mistake, shown};
 use super::skip::ends_records;
+use crate::error::ErrorKind;
 
 /// Reads records up to the empty one.
 pub(super) fn faults(cursor: &mut Cursor) -> Result<Vec<(usize, FaultFaces)>, Mistake> {
@@ -48,7 +49,7 @@ fn fault(items: &[Item], at: usize) -> Result<FaultFaces, Mistake> {
             "expected 8 items (name, I1 I2, J1 J2, K1 K2, face), found {}",
             items.len()
         );
-        return Err(Mistake::new(at, message));
+        return Err(Mistake::new(ErrorKind::WrongCount, at, message));
     };
     Ok(FaultFaces {
         name: String::from_utf8_lossy(name.text.unwrap_or_default()).into_owned(),
@@ -64,7 +65,7 @@ fn range(first: &Item, last: &Item) -> Result<[usize; 2], Mistake> {
     let range = [positive(first)?, positive(last)?];
     if range[0] > range[1] {
         let message = format!("the range {} to {} runs backwards", range[0], range[1]);
-        return Err(Mistake::new(first.at, message));
+        return Err(Mistake::new(ErrorKind::BadValue, first.at, message));
     }
     Ok(range)
 }
@@ -77,7 +78,7 @@ fn face_name(item: &Item) -> Result<String, Mistake> {
     }
     let message =
         format!("'{name}' is not a face; expected X, Y, Z, I, J or K, with + or - after it");
-    Err(Mistake::new(item.at, message))
+    Err(Mistake::new(ErrorKind::BadValue, item.at, message))
 }
 
 /// What of `fault` lies outside a grid of `dims` cells, in words.

@@ -4,35 +4,37 @@ use super::GridUnit;
 use super::edit::CellBox;
 use super::lexer::{Item, Mistake, shown};
 use super::numbers::number;
-
-/// Most cells of a grid, so that cell numbers fit in 32 bits with room to spare.
-const MOST_CELLS: usize = 1 << 31;
+use crate::error::ErrorKind;
+use crate::geometry::MOST_CELLS;
 
 /// SPECGRID or DIMENS: three counts, for SPECGRID also coordinate systems and `T` for a radial grid.
 pub(super) fn dims(items: &[Item], at: usize) -> Result<[usize; 3], Mistake> {
     let mut dims = [0; 3];
     for (axis, dim) in dims.iter_mut().enumerate() {
-        let item = items
-            .get(axis)
-            .ok_or_else(|| Mistake::new(at, "expected three numbers of cells"))?;
+        let item = items.get(axis).ok_or_else(|| {
+            Mistake::new(ErrorKind::WrongCount, at, "expected three numbers of cells")
+        })?;
         *dim = positive(item)?;
     }
     // The number of coordinate systems, which some writers leave out, and the letter behind it.
     for item in items.iter().skip(3).take(2) {
         match item.text.and_then(|text| text.first()) {
             None => {}
-            Some(b'T' | b't') => return Err(Mistake::new(item.at, RADIAL)),
+            Some(b'T' | b't') => return Err(Mistake::new(ErrorKind::Unsupported, item.at, RADIAL)),
             Some(b'F' | b'f') => break,
-            Some(_) if positive(item)? != 1 => return Err(Mistake::new(item.at, SYSTEMS)),
+            Some(_) if positive(item)? != 1 => {
+                return Err(Mistake::new(ErrorKind::Unsupported, item.at, SYSTEMS));
+            }
             Some(_) => {}
         }
     }
     let cells = dims
         .iter()
         .try_fold(1_usize, |cells, &dim| cells.checked_mul(dim));
-    if cells.is_none_or(|cells| cells >= MOST_CELLS) {
+    if cells.is_none_or(|cells| cells > MOST_CELLS) {
         let [ni, nj, nk] = dims;
         return Err(Mistake::new(
+            ErrorKind::TooLarge,
             at,
             format!("{ni} x {nj} x {nk} cells are more than a grid can have (2^31)"),
         ));
@@ -52,6 +54,7 @@ pub(super) fn positive(item: &Item) -> Result<usize, Mistake> {
         .filter(|&number| number > 0)
         .ok_or_else(|| {
             Mistake::new(
+                ErrorKind::BadValue,
                 item.at,
                 format!(
                     "expected a whole number of at least 1, found '{}'",
@@ -65,6 +68,7 @@ pub(super) fn positive(item: &Item) -> Result<usize, Mistake> {
 pub(super) fn map_axes(items: &[Item], at: usize) -> Result<[f64; 6], Mistake> {
     if items.len() != 6 {
         return Err(Mistake::new(
+            ErrorKind::WrongCount,
             at,
             format!("expected 6 values, found {}", items.len()),
         ));
@@ -80,7 +84,13 @@ pub(super) fn map_axes(items: &[Item], at: usize) -> Result<[f64; 6], Mistake> {
 pub(super) fn real(item: &Item) -> Result<f64, Mistake> {
     let text = item.text.unwrap_or(b"*");
     let value = number(text).filter(|value| value.is_finite());
-    value.ok_or_else(|| Mistake::new(item.at, format!("'{}' is not a number", shown(text))))
+    value.ok_or_else(|| {
+        Mistake::new(
+            ErrorKind::BadValue,
+            item.at,
+            format!("'{}' is not a number", shown(text)),
+        )
+    })
 }
 
 /// ADDZCORN: what is added, and to which cells where a box is given; `None` where more is asked for.

@@ -1,14 +1,13 @@
 //! INCLUDE, GDFILE and PATHS: how one file leads to the next.
 
-use std::io::Read;
-use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
 use super::edit::Place;
 use super::lexer::{Cursor, Keyword, Token, line_end, record_end};
 use super::scan::{Flow, Scan};
 use super::source::Source;
-use crate::error::ParseError;
+use crate::bytes::FileBytes;
+use crate::error::{ErrorKind, ParseError};
 
 /// Deepest nesting and largest number of included files.
 const DEEPEST: usize = 64;
@@ -52,9 +51,10 @@ impl Scan<'_> {
                 "'{written}' was not found; looked for {}",
                 places.join(" and ")
             );
-            source.error(at, &keyword.name, message)
+            source.error(ErrorKind::NotFound, at, &keyword.name, message)
         })?;
-        self.include_file(source, keyword, at, &path)
+        let file = self.places.files.open(&path);
+        self.include_file(source, keyword, at, file)
     }
 
     /// GDFILE: a text file is included, a binary one noted for when the grid is built.
@@ -71,18 +71,19 @@ impl Scan<'_> {
         {
             cursor.at = line_end(cursor.text, end);
         }
-        let path = match self.places.find(&written, source.path()) {
-            Ok(path) if !is_binary(&path) => return self.include_file(source, keyword, at, &path),
-            Ok(path) => path,
-            // It is missed where the grid is needed, which it is not to read faults alone.
-            Err(places) => places.into_iter().next().unwrap_or_default(),
-        };
+        let found = self.places.find(&written, source.path());
+        let path = found.unwrap_or_else(|places| places.into_iter().next().unwrap_or_default());
+        let file = self.places.files.open(&path);
+        if file.as_ref().is_ok_and(|file| !is_binary(file.bytes())) {
+            return self.include_file(source, keyword, at, file);
+        }
         let place = Place {
             source: Rc::clone(source),
             at,
             keyword: keyword.name.clone(),
         };
-        self.found.grid_file = Some((place, path));
+        // A file that is not there is missed where the grid is needed, which it is not to read faults alone.
+        self.found.grid_file = Some((place, file));
         Ok(Flow::On)
     }
 
@@ -91,20 +92,28 @@ impl Scan<'_> {
         source: &Rc<Source>,
         keyword: &Keyword,
         at: usize,
-        path: &Path,
+        file: Result<FileBytes, ParseError>,
     ) -> Result<Flow, ParseError> {
         let name = keyword.name.as_str();
-        if self.open.contains(&canonical(path)) {
+        let mut chain = vec![(source.path().to_owned(), source.line(keyword.at))];
+        chain.extend_from_slice(&source.included_from);
+        let file = match file {
+            Ok(file) => file,
+            Err(mut error) => {
+                error.included_from = chain;
+                return Err(error);
+            }
+        };
+        let path = file.path();
+        if self.open.iter().any(|open| open == path) {
             let message = format!("'{}' includes itself through other files", path.display());
-            return Err(source.error(at, name, message));
+            return Err(source.error(ErrorKind::Malformed, at, name, message));
         }
         if self.open.len() >= DEEPEST || self.opened >= MOST_FILES {
             let message = format!("more than {DEEPEST} nested or {MOST_FILES} included files");
-            return Err(source.error(at, name, message));
+            return Err(source.error(ErrorKind::TooLarge, at, name, message));
         }
-        let mut chain = vec![(source.path().to_owned(), source.line(keyword.at))];
-        chain.extend_from_slice(&source.included_from);
-        self.file(path, chain)
+        self.file(file, chain)
     }
 }
 
@@ -116,19 +125,13 @@ fn named_file(
 ) -> Result<(usize, String), ParseError> {
     let missing = || {
         let message = "expected the path of a file, in quotes";
-        source.error(keyword.at, &keyword.name, message)
+        source.error(ErrorKind::Malformed, keyword.at, &keyword.name, message)
     };
     included_path(cursor).ok_or_else(missing)
 }
 
-fn is_binary(path: &Path) -> bool {
-    let mut start = [0; 64];
-    let read = std::fs::File::open(path).and_then(|mut file| file.read(&mut start));
-    read.is_ok_and(|length| start[..length].contains(&0))
-}
-
-pub(super) fn canonical(path: &Path) -> PathBuf {
-    path.canonicalize().unwrap_or_else(|_| path.to_owned())
+fn is_binary(bytes: &[u8]) -> bool {
+    bytes.iter().take(64).any(|&byte| byte == 0)
 }
 
 /// The path behind INCLUDE, in quotes or bare up to a blank, and moves behind its record.

@@ -12,6 +12,8 @@ use nom::multi::many0_count;
 use nom::sequence::{delimited, terminated};
 use nom::{FindSubstring, IResult, Parser};
 
+use crate::error::ErrorKind;
+
 /// Most items of a record read item by item, so that repeat counts stay harmless.
 const MOST_ITEMS: usize = 1000;
 /// Longest word taken for a keyword.
@@ -20,14 +22,15 @@ const LONGEST_KEYWORD: usize = 32;
 /// What is wrong at an offset of a text.
 #[derive(Debug)]
 pub(super) struct Mistake {
+    pub(super) kind: ErrorKind,
     pub(super) at: usize,
     pub(super) message: String,
 }
 
 impl Mistake {
-    pub(super) fn new(at: usize, message: impl Into<String>) -> Self {
+    pub(super) fn new(kind: ErrorKind, at: usize, message: impl Into<String>) -> Self {
         let message = message.into();
-        Self { at, message }
+        Self { kind, at, message }
     }
 
     /// The same mistake in a text that begins `by` bytes earlier.
@@ -98,8 +101,13 @@ impl<'a> Cursor<'a> {
             return Ok(None);
         }
         let start = self.at;
-        let (behind, token) = token(self.remaining())
-            .map_err(|_| Mistake::new(start, "a quote is not closed on its line"))?;
+        let (behind, token) = token(self.remaining()).map_err(|_| {
+            Mistake::new(
+                ErrorKind::Malformed,
+                start,
+                "a quote is not closed on its line",
+            )
+        })?;
         self.at = self.text.len() - behind.len();
         Ok(Some((start, token)))
     }
@@ -122,6 +130,7 @@ impl<'a> Cursor<'a> {
             }
         }
         Err(Mistake::new(
+            ErrorKind::Malformed,
             start,
             "the record has too many items; is its closing / missing?",
         ))
@@ -129,7 +138,11 @@ impl<'a> Cursor<'a> {
 
     fn unended(&self, start: usize) -> Mistake {
         let start = start.min(self.text.len());
-        Mistake::new(start, "the file ends before the closing / of this record")
+        Mistake::new(
+            ErrorKind::Truncated,
+            start,
+            "the file ends before the closing / of this record",
+        )
     }
 }
 
@@ -202,7 +215,11 @@ pub(super) fn repeat(word: &[u8]) -> Result<(usize, &[u8]), Mistake> {
         .filter(|&count| count > 0);
     count.map(|count| (count, written)).ok_or_else(|| {
         let word = shown(word);
-        Mistake::new(0, format!("'{word}' has an impossible repeat count"))
+        Mistake::new(
+            ErrorKind::BadValue,
+            0,
+            format!("'{word}' has an impossible repeat count"),
+        )
     })
 }
 

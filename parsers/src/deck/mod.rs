@@ -11,6 +11,7 @@ mod blocks;
 mod cells;
 mod edit;
 mod faults;
+mod files;
 mod header;
 mod include;
 mod lexer;
@@ -24,6 +25,7 @@ use std::path::{Path, PathBuf};
 
 use crate::error::{ParseError, Warnings};
 pub use crate::units::UnitSystem;
+pub use files::{DeckFiles, Folders, MemoryFiles};
 pub use write::{DeckWriter, GridText, Number};
 
 /// A corner-point grid as its deck gives it, without any geometry computed from it.
@@ -53,7 +55,7 @@ pub struct Grdecl {
     pub phases: i32,
     /// MINPV: pore volume below which a cell is inactive, in the unit system's reservoir volumes.
     pub min_pore_volume: Option<f64>,
-    /// Keywords with one number a cell, in the order of their first appearance.
+    /// Keywords with one number per cell, in the order of their first appearance.
     pub properties: Vec<DeckProperty>,
     /// Faces of named faults, in file order.
     pub faults: Vec<FaultFaces>,
@@ -64,7 +66,7 @@ pub struct Grdecl {
 /// What decks say of the cells of a grid that is read from elsewhere.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct DeckCells {
-    /// Keywords with one number a cell, in the order of their first appearance.
+    /// Keywords with one number per cell, in the order of their first appearance.
     pub properties: Vec<DeckProperty>,
     /// Faces of named faults, in file order.
     pub faults: Vec<FaultFaces>,
@@ -85,7 +87,7 @@ pub struct GridUnit {
     pub is_map: bool,
 }
 
-/// A keyword with one number a cell.
+/// A keyword with one number per cell.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DeckProperty {
     /// The keyword in upper case, such as `PORO`.
@@ -123,7 +125,7 @@ impl Grdecl {
     /// When a file is missing or ends inside a record, when the grid is missing, radial, damaged or of the wrong
     /// length, when numbers are not numbers, or when files include each other in a loop.
     pub fn read(path: &Path, warnings: &mut Warnings) -> Result<Self, ParseError> {
-        Self::read_with(path, &[], warnings)
+        Self::read_from(&Folders, path, &[], warnings)
     }
 
     /// As [`Self::read`], the decks of `with` going on where the one at `path` ends, so that properties may stand in
@@ -136,9 +138,22 @@ impl Grdecl {
         with: &[PathBuf],
         warnings: &mut Warnings,
     ) -> Result<Self, ParseError> {
+        Self::read_from(&Folders, path, with, warnings)
+    }
+
+    /// As [`Self::read_with`], for `files` that need not be on disk.
+    ///
+    /// # Errors
+    /// As [`Self::read`].
+    pub fn read_from(
+        files: &dyn DeckFiles,
+        path: &Path,
+        with: &[PathBuf],
+        warnings: &mut Warnings,
+    ) -> Result<Self, ParseError> {
         let with = with.iter().map(PathBuf::as_path);
         let paths: Vec<_> = std::iter::once(path).chain(with).collect();
-        let found = scan::scan(&paths, warnings)?;
+        let found = scan::scan(files, &paths, warnings)?;
         assemble::assemble(path, found, warnings)
     }
 
@@ -152,8 +167,21 @@ impl Grdecl {
         dims: [usize; 3],
         warnings: &mut Warnings,
     ) -> Result<Vec<FaultFaces>, ParseError> {
+        Self::read_faults_from(&Folders, path, dims, warnings)
+    }
+
+    /// As [`Self::read_faults`], for `files` that need not be on disk.
+    ///
+    /// # Errors
+    /// As [`Self::read_faults`].
+    pub fn read_faults_from(
+        files: &dyn DeckFiles,
+        path: &Path,
+        dims: [usize; 3],
+        warnings: &mut Warnings,
+    ) -> Result<Vec<FaultFaces>, ParseError> {
         // What else the deck says is not asked for, so nobody has to know what of it was left out.
-        let mut found = scan::scan(&[path], &mut Warnings::default())?;
+        let mut found = scan::scan(files, &[path], &mut Warnings::default())?;
         Ok(assemble::inside(&mut found, dims, warnings))
     }
 
@@ -163,7 +191,15 @@ impl Grdecl {
     /// # Errors
     /// As [`Self::read`].
     pub fn is_grid(path: &Path) -> Result<bool, ParseError> {
-        let found = scan::scan(&[path], &mut Warnings::default())?;
+        Self::is_grid_from(&Folders, path)
+    }
+
+    /// As [`Self::is_grid`], for `files` that need not be on disk.
+    ///
+    /// # Errors
+    /// As [`Self::read`].
+    pub fn is_grid_from(files: &dyn DeckFiles, path: &Path) -> Result<bool, ParseError> {
+        let found = scan::scan(files, &[path], &mut Warnings::default())?;
         Ok(found.describes_grid())
     }
 }
@@ -178,8 +214,22 @@ impl DeckCells {
         dims: [usize; 3],
         warnings: &mut Warnings,
     ) -> Result<Self, ParseError> {
+        Self::read_from(&Folders, paths, dims, warnings)
+    }
+
+    /// As [`Self::read`], for `files` that need not be on disk.
+    ///
+    /// # Errors
+    /// As [`Self::read`].
+    pub fn read_from(
+        files: &dyn DeckFiles,
+        paths: &[PathBuf],
+        dims: [usize; 3],
+        warnings: &mut Warnings,
+    ) -> Result<Self, ParseError> {
         let paths: Vec<_> = paths.iter().map(PathBuf::as_path).collect();
-        let found = scan::scan(&paths, warnings)?;
-        assemble::cells(found, dims, warnings)
+        let found = scan::scan(files, &paths, warnings)?;
+        let first = paths.first().copied().unwrap_or(Path::new(""));
+        assemble::cells(first, found, dims, warnings)
     }
 }

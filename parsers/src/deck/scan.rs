@@ -5,12 +5,13 @@ use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
 use super::edit::{CellBox, Edit, Place};
-use super::include::canonical;
+use super::files::DeckFiles;
 use super::lexer::{Cursor, Item, Keyword, Mistake, keyword, line_end, record_end};
 use super::skip::{Skipped, ends_records, is_operation, skip_records};
 use super::source::{Places, Source};
 use super::{FaultFaces, GridUnit, faults, header};
-use crate::error::{ParseError, Warnings};
+use crate::bytes::FileBytes;
+use crate::error::{ErrorKind, ParseError, Warnings};
 use crate::units::UnitSystem;
 
 /// An array that is still text.
@@ -69,8 +70,8 @@ pub(super) struct Found {
     pub(super) edits: Vec<Edit>,
     /// Sizes by column, row and layer: DXV, DYV, DZV.
     pub(super) vectors: Vec<Block>,
-    /// A binary file with the geometry, where GDFILE names one.
-    pub(super) grid_file: Option<(Place, PathBuf)>,
+    /// A binary file with the geometry, where GDFILE names one, or why it cannot be opened.
+    pub(super) grid_file: Option<(Place, Result<FileBytes, ParseError>)>,
     /// ACTNUM of that file.
     pub(super) file_actnum: Option<Vec<i32>>,
     pub(super) depth_shifts: Vec<DepthShift>,
@@ -113,26 +114,30 @@ pub(super) enum Flow {
     EndOfDeck,
 }
 
-pub(super) struct Scan<'w> {
-    pub(super) warnings: &'w mut Warnings,
-    pub(super) places: Places,
+pub(super) struct Scan<'a> {
+    pub(super) warnings: &'a mut Warnings,
+    pub(super) places: Places<'a>,
     pub(super) found: Found,
     section: Option<Section>,
     /// The cells that arrays at hand belong to.
     pub(super) input_box: CellBox,
     refinement: bool,
-    /// Canonical paths of the files being read, outermost first.
+    /// Paths of the files being read, outermost first.
     pub(super) open: Vec<PathBuf>,
     pub(super) opened: usize,
 }
 
 /// Reads decks up to their arrays, one after the other as if they were one.
-pub(super) fn scan(paths: &[&Path], warnings: &mut Warnings) -> Result<Found, ParseError> {
+pub(super) fn scan(
+    files: &dyn DeckFiles,
+    paths: &[&Path],
+    warnings: &mut Warnings,
+) -> Result<Found, ParseError> {
     let mut found = Found::default();
     for path in paths {
         let mut scan = Scan {
             warnings,
-            places: Places::new(path),
+            places: Places::new(files, path),
             found,
             section: None,
             input_box: CellBox::default(),
@@ -140,7 +145,7 @@ pub(super) fn scan(paths: &[&Path], warnings: &mut Warnings) -> Result<Found, Pa
             open: Vec::new(),
             opened: 0,
         };
-        scan.file(path, Vec::new())?;
+        scan.file(files.open(path)?, Vec::new())?;
         found = scan.found;
     }
     Ok(found)
@@ -149,20 +154,26 @@ pub(super) fn scan(paths: &[&Path], warnings: &mut Warnings) -> Result<Found, Pa
 impl Scan<'_> {
     pub(super) fn file(
         &mut self,
-        path: &Path,
+        file: FileBytes,
         included_from: Vec<(PathBuf, usize)>,
     ) -> Result<Flow, ParseError> {
-        let source = Rc::new(Source::open(path, included_from)?);
+        let source = Rc::new(Source::new(file, included_from));
+        let path = source.path();
         let text = source.text();
         if text.iter().take(512).any(|&byte| byte == 0) {
-            return Err(source.error(0, "", "this is a binary file, not a text deck"));
+            return Err(source.error(
+                ErrorKind::NotThisFormat,
+                0,
+                "",
+                "this is a binary file, not a text deck",
+            ));
         }
         self.opened += 1;
         self.found.bytes = self.found.bytes.saturating_add(text.len());
         if !self.found.files.iter().any(|file| file == path) {
             self.found.files.push(path.to_owned());
         }
-        self.open.push(canonical(path));
+        self.open.push(path.to_owned());
         let flow = self.keywords(&source);
         self.open.pop();
         flow
@@ -365,6 +376,7 @@ impl Scan<'_> {
         let name = keyword.name.as_str();
         let end = record_end(cursor.text, keyword.end).ok_or_else(|| {
             source.error(
+                ErrorKind::Truncated,
                 cursor.text.len(),
                 name,
                 "the file ends before the closing / of the array",
@@ -483,7 +495,12 @@ impl Scan<'_> {
                 return Ok(());
             }
         }
-        Err(source.error(skip.at, &skip.name, "no ENDSKIP follows in this file"))
+        Err(source.error(
+            ErrorKind::Truncated,
+            skip.at,
+            &skip.name,
+            "no ENDSKIP follows in this file",
+        ))
     }
 
     pub(super) fn warn(&mut self, source: &Source, at: usize, message: &str) {

@@ -6,6 +6,7 @@
 //! keywords for which the rule could go wrong.
 
 use super::lexer::{Cursor, Mistake, keyword, line_end, record_end, starts_number};
+use crate::error::ErrorKind;
 
 /// Keywords without data.
 const WITHOUT_DATA: &[&str] = &[
@@ -106,6 +107,7 @@ fn unended(cursor: &mut Cursor, start: usize, is_number: bool) -> Result<Skipped
     cursor.at = cursor.text.len();
     if is_number {
         return Err(Mistake::new(
+            ErrorKind::Truncated,
             start,
             "the file ends before the closing / of this record",
         ));

@@ -2,15 +2,16 @@
 
 use std::cell::Cell;
 use std::collections::HashMap;
-use std::path::{Component, Path, PathBuf};
+use std::path::{Path, PathBuf};
 
+use super::files::DeckFiles;
 use super::lexer::{Mistake, line_end};
-use crate::error::{At, ParseError};
-use crate::mapped::MappedFile;
+use crate::bytes::FileBytes;
+use crate::error::{At, ErrorKind, ParseError};
 
 /// A file of a deck.
 pub(super) struct Source {
-    file: MappedFile,
+    file: FileBytes,
     /// Innermost first, with the line of the INCLUDE.
     pub(super) included_from: Vec<(PathBuf, usize)>,
     /// An offset and its line, so that ever later places are found without counting anew.
@@ -18,23 +19,13 @@ pub(super) struct Source {
 }
 
 impl Source {
-    pub(super) fn open(
-        path: &Path,
-        included_from: Vec<(PathBuf, usize)>,
-    ) -> Result<Self, ParseError> {
-        let file = match MappedFile::open(path) {
-            Ok(file) => file,
-            Err(mut error) => {
-                error.included_from = included_from;
-                return Err(error);
-            }
-        };
+    pub(super) fn new(file: FileBytes, included_from: Vec<(PathBuf, usize)>) -> Self {
         let counted = Cell::new((0, 1));
-        Ok(Self {
+        Self {
             file,
             included_from,
             counted,
-        })
+        }
     }
 
     /// The text, without the mark that some editors put before it (UTF-8 byte order mark).
@@ -82,32 +73,35 @@ impl Source {
 
     pub(super) fn error(
         &self,
+        kind: ErrorKind,
         offset: usize,
         keyword: &str,
         message: impl Into<String>,
     ) -> ParseError {
-        let mut error = ParseError::new(self.path(), self.at(offset), keyword, message);
+        let mut error = ParseError::of(kind, self.path(), self.at(offset), keyword, message);
         error.included_from.clone_from(&self.included_from);
         error
     }
 
     pub(super) fn mistake(&self, keyword: &str, mistake: Mistake) -> ParseError {
-        self.error(mistake.at, keyword, mistake.message)
+        self.error(mistake.kind, mistake.at, keyword, mistake.message)
     }
 }
 
 /// Where included files are looked for, and the aliases PATHS gives to directories.
-pub(super) struct Places {
+pub(super) struct Places<'f> {
+    pub(super) files: &'f dyn DeckFiles,
     /// Directory of the main deck.
     root: PathBuf,
     /// Alias without its `$`, and what it stands for.
     pub(super) aliases: HashMap<String, String>,
 }
 
-impl Places {
-    pub(super) fn new(deck: &Path) -> Self {
+impl<'f> Places<'f> {
+    pub(super) fn new(files: &'f dyn DeckFiles, deck: &Path) -> Self {
         let root = deck.parent().unwrap_or(Path::new("")).to_owned();
         Self {
+            files,
             root,
             aliases: HashMap::new(),
         }
@@ -119,9 +113,9 @@ impl Places {
         let beside = from.parent().unwrap_or(Path::new(""));
         let mut places = vec![self.root.join(&named), beside.join(&named)];
         places.dedup();
-        let exact = places.iter().find(|place| place.is_file()).cloned();
-        // Decks from systems that ignore letter case are read on those that do not.
-        let found = exact.or_else(|| places.iter().find_map(|place| as_on_disk(place)));
+        let exact = places.iter().find_map(|place| self.files.find(place));
+        let any_case = |place: &PathBuf| self.files.find_any_case(place);
+        let found = exact.or_else(|| places.iter().find_map(any_case));
         found.ok_or(places)
     }
 
@@ -142,25 +136,4 @@ impl Places {
         }
         path
     }
-}
-
-/// The file that `path` means in the letter case of its folders and its name on disk.
-fn as_on_disk(path: &Path) -> Option<PathBuf> {
-    let mut found = PathBuf::new();
-    for part in path.components() {
-        let next = found.join(part);
-        if next.exists() || !matches!(part, Component::Normal(_)) {
-            found = next;
-            continue;
-        }
-        let folder = match found.as_os_str().is_empty() {
-            true => Path::new("."),
-            false => found.as_path(),
-        };
-        let names = std::fs::read_dir(folder).ok()?.flatten();
-        let names = names.map(|entry| entry.file_name());
-        let same = names.filter(|name| name.eq_ignore_ascii_case(part));
-        found.push(same.min()?);
-    }
-    found.is_file().then_some(found)
 }

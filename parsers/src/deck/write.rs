@@ -2,16 +2,15 @@
 
 use std::io::{self, BufWriter, Write};
 
-use rayon::prelude::*;
-
 use super::GridUnit;
 use crate::geometry;
+use crate::parallel;
 use crate::records::refused;
 
 /// Values that a thread turns into text at a time.
 const PIECE: usize = 1 << 16;
 /// Bytes of text for a value, for sizing a piece.
-const BYTES_A_VALUE: usize = 10;
+const BYTES_PER_VALUE: usize = 10;
 /// Longest line; simulators read 128 characters.
 const LINE: usize = 80;
 
@@ -158,10 +157,9 @@ impl<W: Write> DeckWriter<W> {
 
     fn array<T: Number>(&mut self, name: &str, values: &[T]) -> io::Result<()> {
         writeln!(self.out, "{name}")?;
-        // A few pieces a thread at a time, so that the text of no more is in memory.
-        for group in values.chunks(4 * PIECE * rayon::current_num_threads()) {
-            let texts: Vec<_> = group.par_chunks(PIECE).map(text).collect();
-            for text in texts {
+        // A few pieces per thread at a time, so that the text of no more is in memory.
+        for group in values.chunks(4 * PIECE * parallel::threads()) {
+            for text in parallel::map(group.chunks(PIECE).collect(), text) {
                 self.out.write_all(&text)?;
             }
         }
@@ -178,7 +176,7 @@ fn quoted(word: &str) -> io::Result<String> {
 
 /// Lines of text for some values.
 fn text<T: Number>(values: &[T]) -> Vec<u8> {
-    let mut text = Vec::with_capacity(values.len() * BYTES_A_VALUE);
+    let mut text = Vec::with_capacity(values.len() * BYTES_PER_VALUE);
     let mut token = Vec::new();
     let mut line = 0;
     for run in values.chunk_by(|a, b| a.same(*b)) {

@@ -7,8 +7,9 @@ mod write;
 
 use std::path::Path;
 
-use crate::error::{At, ParseError, Warnings};
-use crate::geometry::first_not;
+use crate::bytes::FileBytes;
+use crate::error::{At, ErrorKind, ParseError, Warnings};
+use crate::geometry::{Lengths, MOST_CELLS, first_not, unaddressable};
 use crate::records::{Entry, RecordFile};
 
 /// Unit of the grid's coordinates.
@@ -20,7 +21,7 @@ pub struct GridUnit {
     pub is_map: bool,
 }
 
-/// One value a cell, or one for the matrix and one for the fractures.
+/// One value per cell, or one for the matrix and one for the fractures.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PorosityModel {
     /// Single porosity.
@@ -51,11 +52,11 @@ pub struct LocalGrid {
 pub struct Egrid {
     /// Cells along i, j and k.
     pub dims: [usize; 3],
-    /// **Shape**: 6 values a pillar: x, y, depth of the upper, then of the lower end.
+    /// **Shape**: 6 values per pillar: x, y, depth of the upper, then of the lower end.
     pub coord: Vec<f32>,
-    /// **Shape**: 8 depths a cell, index `2i+di + 2ni(2j+dj) + 4ni*nj(2k+dk)`.
+    /// **Shape**: 8 depths per cell, index `2i+di + 2ni(2j+dj) + 4ni*nj(2k+dk)`.
     pub zcorn: Vec<f32>,
-    /// One value a cell; absent = all active. Dual porosity: 1 matrix, 2 fracture, 3 both.
+    /// One value per cell; absent = all active. Dual porosity: 1 matrix, 2 fracture, 3 both.
     pub actnum: Option<Vec<i32>>,
     /// CORSNUM: number of the coarse cell that each cell was made part of, or 0.
     pub coarse: Option<Vec<i32>>,
@@ -82,7 +83,19 @@ impl Egrid {
     /// When the file is damaged, lacks a keyword, is no corner-point grid, or an array has the
     /// wrong length.
     pub fn read(path: &Path, warnings: &mut Warnings) -> Result<Self, ParseError> {
-        let file = RecordFile::open(path)?;
+        Self::from_bytes(FileBytes::open(path)?, warnings)
+    }
+
+    /// As [`Self::read`], for a file that is in memory.
+    ///
+    /// # Errors
+    /// As [`Self::read`].
+    pub fn from_bytes(
+        file: impl Into<FileBytes>,
+        warnings: &mut Warnings,
+    ) -> Result<Self, ParseError> {
+        let file = RecordFile::from_bytes(file)?;
+        let path = file.path();
         let entries = file.entries();
         // The global grid comes first; sections of local grids start at LGR, and NNC lists follow.
         let first_local = entries
@@ -93,7 +106,8 @@ impl Egrid {
         let find = |name: &str| global.iter().find(|e| e.name() == name);
         let need = |name: &str| {
             find(name).ok_or_else(|| {
-                ParseError::new(
+                ParseError::of(
+                    ErrorKind::MissingKeyword,
                     path,
                     At::File,
                     name,
@@ -103,24 +117,30 @@ impl Egrid {
         };
         let head = need("GRIDHEAD")?;
         let dims = dimensions(&file, head)?;
-        let cells = dims[0] * dims[1] * dims[2];
-        let pillars = (dims[0] + 1) * (dims[1] + 1);
-        let mut coord = sized(&file, need("COORD")?, 6 * pillars, true)?;
-        if coord.len() > 6 * pillars {
+        let Some(lengths) = Lengths::of(dims) else {
+            return Err(file.error(ErrorKind::TooLarge, head, unaddressable(dims)));
+        };
+        let cells = lengths.cells;
+        let mut coord = sized(&file, need("COORD")?, lengths.coord, true)?;
+        if coord.len() > lengths.coord {
             warnings.push(
                 path,
                 At::File,
                 "COORD has several coordinate reservoirs; the first is used for all layers",
             );
-            coord.truncate(6 * pillars);
+            coord.truncate(lengths.coord);
         }
-        let zcorn = sized(&file, need("ZCORN")?, 8 * cells, false)?;
+        let zcorn = sized(&file, need("ZCORN")?, lengths.zcorn, false)?;
         let of_cells = |name: &str| match find(name) {
             None => Ok(None),
-            Some(entry) if entry.count as usize == cells => file.i32s(entry).map(Some),
+            Some(entry) if entry.count == cells as u64 => file.i32s(entry).map(Some),
             Some(entry) => {
                 let found = entry.count;
-                Err(file.error(entry, format!("expected {cells} values, found {found}")))
+                Err(file.error(
+                    ErrorKind::WrongCount,
+                    entry,
+                    format!("expected {cells} values, found {found}"),
+                ))
             }
         };
         let actnum = of_cells("ACTNUM")?;
@@ -161,30 +181,36 @@ fn dimensions(file: &RecordFile, head: &Entry) -> Result<[usize; 3], ParseError>
     let values = file.i32s(head)?;
     let [kind, ni, nj, nk, ..] = values[..] else {
         return Err(file.error(
+            ErrorKind::WrongCount,
             head,
             format!("has {} values and needs at least 4", values.len()),
         ));
     };
     if kind != 1 {
         return Err(file.error(
+            ErrorKind::Unsupported,
             head,
             format!("the grid is of type {kind}; only corner-point grids (type 1) are read"),
         ));
     }
     if is_radial(&values) {
         let message = "the grid is radial; only Cartesian corner-point grids are read";
-        return Err(file.error(head, message));
+        return Err(file.error(ErrorKind::Unsupported, head, message));
     }
     let dims = [ni, nj, nk].map(|n| usize::try_from(n).unwrap_or(0));
     let cells = dims
         .iter()
         .try_fold(1usize, |product, &n| product.checked_mul(n));
     match cells {
-        Some(1..=0x7fff_ffff) => Ok(dims),
-        _ => Err(file.error(
-            head,
-            format!("dimensions {ni} x {nj} x {nk} are not possible"),
-        )),
+        Some(1..=MOST_CELLS) => Ok(dims),
+        _ => {
+            let kind = match dims.contains(&0) {
+                true => ErrorKind::BadValue,
+                false => ErrorKind::TooLarge,
+            };
+            let message = format!("dimensions {ni} x {nj} x {nk} are not possible");
+            Err(file.error(kind, head, message))
+        }
     }
 }
 
@@ -220,15 +246,22 @@ fn sized(
     expected: usize,
     more_allowed: bool,
 ) -> Result<Vec<f32>, ParseError> {
-    let found = entry.count as usize;
-    let fits =
-        found == expected || more_allowed && found > expected && found.is_multiple_of(expected);
+    let (found, needed) = (entry.count, expected as u64);
+    let fits = found == needed || more_allowed && found > needed && found.is_multiple_of(needed);
     if !fits {
-        return Err(file.error(entry, format!("expected {expected} values, found {found}")));
+        return Err(file.error(
+            ErrorKind::WrongCount,
+            entry,
+            format!("expected {expected} values, found {found}"),
+        ));
     }
     let values = file.f32s(entry)?;
     match first_not(&values, |v| v.is_finite()) {
-        Some(number) => Err(file.error(entry, format!("value {number} is not a finite number"))),
+        Some(number) => Err(file.error(
+            ErrorKind::BadValue,
+            entry,
+            format!("value {number} is not a finite number"),
+        )),
         None => Ok(values),
     }
 }
@@ -264,7 +297,7 @@ fn connections(
                 if to.len() != from.len() {
                     let (expected, found) = (from.len(), to.len());
                     let message = format!("expected {expected} values as in NNC1, found {found}");
-                    return Err(file.error(entry, message));
+                    return Err(file.error(ErrorKind::WrongCount, entry, message));
                 }
                 pairs.extend(from.drain(..).zip(to).map(|(a, b)| [a, b]));
             }

@@ -1,12 +1,12 @@
 //! Decoding of arrays, in parallel when they are large.
 
-use rayon::prelude::*;
-
-use super::{Entry, Kind, RecordFile, i32_at};
-use crate::error::{At, ParseError};
+use super::{Entry, Kind, RecordFile, bytes_at, i32_at};
+use crate::error::{At, ErrorKind, ParseError};
+use crate::geometry::zeros;
+use crate::parallel;
 
 /// Blocks that one task decodes.
-const BLOCKS_A_TASK: usize = 64;
+const BLOCKS_PER_TASK: usize = 64;
 
 impl RecordFile {
     /// Values of a REAL, DOUB or INTE array as f32.
@@ -18,7 +18,7 @@ impl RecordFile {
             Kind::Real => self.decode(entry, f32::from_be_bytes),
             Kind::Inte => self.decode(entry, |b| i32::from_be_bytes(b) as f32),
             Kind::Doub => self.decode(entry, |b| f64::from_be_bytes(b) as f32),
-            _ => Err(self.error(entry, "holds no numbers")),
+            _ => Err(self.error(ErrorKind::WrongType, entry, "holds no numbers")),
         }
     }
 
@@ -32,7 +32,7 @@ impl RecordFile {
             Kind::Inte => self.decode(entry, |b| f64::from(i32::from_be_bytes(b))),
             Kind::Doub => self.decode(entry, f64::from_be_bytes),
             Kind::Logi => self.decode(entry, |b: [u8; 4]| f64::from(u8::from(b != [0; 4]))),
-            _ => Err(self.error(entry, "holds no numbers")),
+            _ => Err(self.error(ErrorKind::WrongType, entry, "holds no numbers")),
         }
     }
 
@@ -43,7 +43,7 @@ impl RecordFile {
     pub fn i32s(&self, entry: &Entry) -> Result<Vec<i32>, ParseError> {
         match entry.kind {
             Kind::Inte => self.decode(entry, i32::from_be_bytes),
-            _ => Err(self.error(entry, "holds no integers")),
+            _ => Err(self.error(ErrorKind::WrongType, entry, "holds no integers")),
         }
     }
 
@@ -54,7 +54,7 @@ impl RecordFile {
     pub fn bools(&self, entry: &Entry) -> Result<Vec<bool>, ParseError> {
         match entry.kind {
             Kind::Logi => self.decode(entry, |b: [u8; 4]| b != [0; 4]),
-            _ => Err(self.error(entry, "holds no logicals")),
+            _ => Err(self.error(ErrorKind::WrongType, entry, "holds no logicals")),
         }
     }
 
@@ -64,7 +64,7 @@ impl RecordFile {
     /// When the array holds no strings or is damaged.
     pub fn strings(&self, entry: &Entry) -> Result<Vec<String>, ParseError> {
         let Kind::Text(length) = entry.kind else {
-            return Err(self.error(entry, "holds no strings"));
+            return Err(self.error(ErrorKind::WrongType, entry, "holds no strings"));
         };
         let blocks = self.blocks(entry)?;
         let strings = blocks
@@ -81,17 +81,21 @@ impl RecordFile {
         convert: impl Fn([u8; N]) -> T + Sync,
     ) -> Result<Vec<T>, ParseError> {
         let blocks = self.blocks(entry)?;
-        // The index has checked that the file is larger than the values.
-        let mut values = vec![T::default(); entry.count as usize];
+        // The index has checked that the file is larger than the values, but they may be wider here.
+        let count = usize::try_from(entry.count).ok();
+        let Some(mut values) = count.and_then(zeros::<T>) else {
+            let message = format!("not enough memory for {} values", entry.count);
+            return Err(self.error(ErrorKind::TooLarge, entry, message));
+        };
         let mut rest = values.as_mut_slice();
-        let mut tasks = Vec::with_capacity(blocks.len() / BLOCKS_A_TASK + 1);
-        for group in blocks.chunks(BLOCKS_A_TASK) {
+        let mut tasks = Vec::with_capacity(blocks.len() / BLOCKS_PER_TASK + 1);
+        for group in blocks.chunks(BLOCKS_PER_TASK) {
             let count = group.iter().map(|b| b.len() / N).sum();
             let (mine, others) = rest.split_at_mut(count);
             rest = others;
             tasks.push((group, mine));
         }
-        tasks.into_par_iter().for_each(|(group, out)| {
+        parallel::map(tasks, |(group, out)| {
             let elements = group.iter().flat_map(|b| b.as_chunks::<N>().0);
             for (value, bytes) in out.iter_mut().zip(elements) {
                 *value = convert(*bytes);
@@ -105,7 +109,7 @@ impl RecordFile {
         if !self.file.is_whole() {
             let message =
                 "cannot be read: the file was cut off while it was open; load the case again";
-            return Err(self.error(entry, message));
+            return Err(self.error(ErrorKind::Truncated, entry, message));
         }
         let bytes = self.file.bytes();
         let mut blocks = Vec::new();
@@ -114,14 +118,13 @@ impl RecordFile {
         while at < entry.end {
             let length = i32_at(bytes, at).and_then(|l| u64::try_from(l).ok());
             let block = length
-                .filter(|l| {
-                    l % entry.kind.size().max(1) == 0
-                        && i32_at(bytes, at + 4 + l) == Some(*l as i32)
-                })
-                .and_then(|l| bytes.get(at as usize + 4..(at + 4 + l) as usize));
+                .filter(|l| l % entry.kind.size().max(1) == 0)
+                .filter(|l| i32_at(bytes, at + 4 + l) == Some(*l as i32))
+                .and_then(|l| bytes_at(bytes, at + 4, l));
             let Some(block) = block.filter(|b| !b.is_empty()) else {
                 let message = "the two lengths of a block differ; the file is damaged";
-                return Err(ParseError::new(
+                return Err(ParseError::of(
+                    ErrorKind::Malformed,
                     self.path(),
                     At::Byte(at),
                     entry.name(),
@@ -134,6 +137,7 @@ impl RecordFile {
         }
         if total != entry.count * entry.kind.size() || at != entry.end {
             return Err(self.error(
+                ErrorKind::Malformed,
                 entry,
                 "its blocks do not add up to its count; the file is damaged",
             ));

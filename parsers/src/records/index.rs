@@ -1,8 +1,8 @@
 //! The index of a record file: headers, found by skipping over the data.
 
 use super::{Entry, Kind, i32_at};
-use crate::error::{At, ParseError};
-use crate::mapped::MappedFile;
+use crate::bytes::FileBytes;
+use crate::error::{At, ErrorKind, ParseError};
 
 /// Header record with its markers.
 const HEADER: u64 = 24;
@@ -11,6 +11,7 @@ const X231: &[u8] = b"X231";
 
 /// What stopped the indexing.
 struct Fault {
+    kind: ErrorKind,
     at: u64,
     keyword: String,
     message: String,
@@ -25,12 +26,16 @@ struct Header<'a> {
 }
 
 /// The complete arrays from the start, and what stopped the indexing before the end.
-pub(super) fn index(file: &MappedFile) -> (Vec<Entry>, Option<ParseError>) {
+pub(super) fn index(file: &FileBytes) -> (Vec<Entry>, Option<ParseError>) {
     let bytes = file.bytes();
     let mut entries = Vec::new();
-    let stop = |f: Fault| ParseError::new(file.path(), At::Byte(f.at), &f.keyword, f.message);
+    let stop =
+        |f: Fault| ParseError::of(f.kind, file.path(), At::Byte(f.at), &f.keyword, f.message);
     if bytes.is_empty() {
-        return (entries, Some(stop(fault(0, "the file is empty"))));
+        return (
+            entries,
+            Some(stop(fault(ErrorKind::Truncated, 0, "the file is empty"))),
+        );
     }
     let mut at = 0;
     while at < bytes.len() as u64 {
@@ -52,8 +57,9 @@ pub(super) fn index(file: &MappedFile) -> (Vec<Entry>, Option<ParseError>) {
     (entries, None)
 }
 
-fn fault(at: u64, message: impl Into<String>) -> Fault {
+fn fault(kind: ErrorKind, at: u64, message: impl Into<String>) -> Fault {
     Fault {
+        kind,
         at,
         keyword: String::new(),
         message: message.into(),
@@ -67,7 +73,7 @@ fn array(bytes: &[u8], at: u64) -> Result<Entry, Fault> {
         fault.keyword = String::from_utf8_lossy(&first.name).into_owned();
         fault
     };
-    let wrong = |message: String| Err(named(fault(at, message)));
+    let wrong = |message: String| Err(named(fault(ErrorKind::Malformed, at, message)));
     let (high, second, data) = match first.kind {
         X231 => match u64::try_from(-i64::from(first.count)) {
             Ok(multiple) => {
@@ -109,14 +115,15 @@ fn header(bytes: &[u8], at: u64) -> Result<Header<'_>, Fault> {
     let rest = usize::try_from(at).ok().and_then(|at| bytes.get(at..));
     let rest = rest.unwrap_or_default();
     let damaged = || {
-        fault(
-            at,
-            if rest.starts_with(b" '") {
-                "this is a formatted (text) file, and those are not read yet"
-            } else {
-                "not an array header: this is not an Eclipse binary file, or it is damaged"
-            },
-        )
+        let message = "not an array header: this is not an Eclipse binary file, or it is damaged";
+        match at {
+            _ if rest.starts_with(b" '") => {
+                let message = "this is a formatted (text) file, and those are not read yet";
+                fault(ErrorKind::Unsupported, at, message)
+            }
+            0 => fault(ErrorKind::NotThisFormat, at, message),
+            _ => fault(ErrorKind::Malformed, at, message),
+        }
     };
     // A file that is cut short is told from one that is something else by the marker.
     let begins_well = i32_at(rest, 0).is_none_or(|marker| marker == 16);
@@ -126,7 +133,7 @@ fn header(bytes: &[u8], at: u64) -> Result<Header<'_>, Fault> {
         }
         let missing = HEADER as usize - rest.len();
         let message = format!("the file ends within an array header, {missing} bytes too early");
-        return Err(fault(at, message));
+        return Err(fault(ErrorKind::Truncated, at, message));
     };
     let name = record[4..12].try_into().unwrap_or_default();
     match (i32_at(record, 12), i32_at(record, 20)) {
@@ -143,7 +150,8 @@ fn header(bytes: &[u8], at: u64) -> Result<Header<'_>, Fault> {
 fn data_end(bytes: &[u8], data: u64, count: u64, kind: Kind) -> Result<u64, Fault> {
     let length = bytes.len() as u64;
     let Some(total) = count.checked_mul(kind.size()) else {
-        return Err(fault(data, format!("a count of {count} is not possible")));
+        let message = format!("a count of {count} is not possible");
+        return Err(fault(ErrorKind::TooLarge, data, message));
     };
     if total == 0 {
         // Conventionally nothing follows; some writers put an empty record.
@@ -155,7 +163,7 @@ fn data_end(bytes: &[u8], data: u64, count: u64, kind: Kind) -> Result<u64, Faul
         let message = format!(
             "its {count} values take {needed} bytes and the file ends {missing} bytes too early"
         );
-        fault(data, message)
+        fault(ErrorKind::Truncated, data, message)
     };
     // Before any arithmetic with the count: what follows in the file bounds it.
     if total > length - data {
@@ -202,7 +210,7 @@ fn walk(
             let message = format!(
                 "a block of {marker} bytes does not fit here, where {left} bytes of values are due; the file is damaged"
             );
-            return Err(fault(at, message));
+            return Err(fault(ErrorKind::Malformed, at, message));
         };
         match i32_at(bytes, at + 4 + block) {
             None => return Err(too_short(needed)),
@@ -210,7 +218,7 @@ fn walk(
                 let message = format!(
                     "the two lengths of a block differ ({marker} and {again}); the file is damaged"
                 );
-                return Err(fault(at, message));
+                return Err(fault(ErrorKind::Malformed, at, message));
             }
             Some(_) => {}
         }

@@ -1,0 +1,135 @@
+//! Small files of each format.
+
+use strataray_parsers::cells::Head;
+use strataray_parsers::egrid::{Egrid, GridUnit, PorosityModel};
+use strataray_parsers::init;
+use strataray_parsers::records::RecordWriter;
+use strataray_parsers::restart::RestartWriter;
+
+/// A deck of one cell, with its corners at depths 0 and 1.
+pub const CELL: &str = "SPECGRID\n1 1 1 1 F /\nCOORD\n0 0 0 0 0 1  1 0 0 1 0 1  0 1 0 0 1 1  1 1 0 1 1 1 /\nZCORN\n4*0 4*1 /\n";
+
+/// One cell with a distinct depth per corner.
+pub fn cell() -> Egrid {
+    let ends = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]];
+    Egrid {
+        dims: [1; 3],
+        coord: ends
+            .iter()
+            .flat_map(|[x, y]| [*x, *y, 0.0, *x, *y, 1.0])
+            .collect(),
+        zcorn: (0_u8..8).map(f32::from).collect(),
+        actnum: Some(vec![1]),
+        coarse: None,
+        map_units: None,
+        map_axes: None,
+        grid_unit: None,
+        porosity_model: PorosityModel::Single,
+        nnc: Vec::new(),
+        local_connections: 0,
+        local_grids: Vec::new(),
+    }
+}
+
+pub fn egrid() -> Vec<u8> {
+    cell().write(Vec::new()).unwrap()
+}
+
+/// Every keyword that the reader knows, on 3 x 2 x 2 cells, and a local grid behind them.
+pub fn rich_egrid() -> Vec<u8> {
+    let grid = Egrid {
+        dims: [3, 2, 2],
+        coord: (0_u8..72).map(f32::from).collect(),
+        zcorn: (0_u8..96).map(f32::from).collect(),
+        actnum: Some((0..12).map(|n| i32::from(n != 6)).collect()),
+        coarse: Some(vec![0; 12]),
+        map_units: Some("METRES".into()),
+        map_axes: Some([0.0, 1.0, 0.0, 0.0, 1.0, 0.0]),
+        grid_unit: Some(GridUnit {
+            length: "METRES".into(),
+            is_map: false,
+        }),
+        porosity_model: PorosityModel::Dual,
+        nnc: vec![[1, 6], [2, 24]],
+        ..cell()
+    };
+    let mut out = RecordWriter::new(grid.write(Vec::new()).unwrap());
+    out.chars("LGR", &["FINE"]).unwrap();
+    out.chars("LGRPARNT", &[""]).unwrap();
+    out.inte("GRIDHEAD", &[1, 2, 2, 2]).unwrap();
+    out.inte("ACTNUM", &[1, 1, 1, 1, 0, 1, 1, 1]).unwrap();
+    out.mess("ENDLGR").unwrap();
+    out.finish().unwrap()
+}
+
+/// An array of every type, and one whose count takes two headers and whose values stand in small blocks.
+pub fn records() -> Vec<u8> {
+    let mut out = RecordWriter::new(Vec::new());
+    out.inte("IN", &[1, -2]).unwrap();
+    out.real("RE", &[0.5; 3]).unwrap();
+    out.doub("DO", &[0.25; 2]).unwrap();
+    out.logi("LO", &[true, false]).unwrap();
+    out.chars("CH", &["ONE", "TWO"]).unwrap();
+    out.text("TX", 12, &["ELEVEN CHARS"]).unwrap();
+    out.mess("ME").unwrap();
+    let mut bytes = out.finish().unwrap();
+    for (count, kind) in [(0_i32, b"X231"), (6, b"REAL")] {
+        let marker = 16_i32.to_be_bytes();
+        let count = count.to_be_bytes();
+        bytes.extend([&marker, &b"BLOCKS  "[..], &count, kind, &marker].concat());
+    }
+    for _ in 0..3 {
+        let marker = 8_i32.to_be_bytes();
+        bytes.extend([&marker[..], &[0x40; 8], &marker].concat());
+    }
+    bytes
+}
+
+/// What the heads of [`init`] and [`restart`] say.
+pub fn head() -> Head {
+    Head {
+        dims: [1; 3],
+        active: 1,
+        date: "2001-06-30".into(),
+        ..Head::default()
+    }
+}
+
+pub fn init() -> Vec<u8> {
+    let arrays = [("PORO", vec![0.25]), ("PERMX", vec![100.0])];
+    init::write(Vec::new(), &head(), arrays).unwrap()
+}
+
+/// Steps with these reports, as many days after the start, each with a PRESSURE of 100 more than that.
+pub fn restart(reports: [u32; 2]) -> Vec<u8> {
+    let mut writer = RestartWriter::new(Vec::new());
+    for report in reports {
+        let pressure = [("PRESSURE", vec![100.0 + report as f32])];
+        let days = f64::from(report);
+        let wells = ["P1", "I2"];
+        writer
+            .step(report, days, &head(), &wells, pressure)
+            .unwrap();
+    }
+    writer.finish().unwrap()
+}
+
+/// A deck of 3 x 2 x 2 cells with most of what the reader knows; it includes `PORO.INC`.
+pub fn rich_deck() -> String {
+    let coord: String = (0..12)
+        .map(|pillar| format!(" {0} {1} 0.5 {0} {1} 9.5\n", pillar % 4, pillar / 4))
+        .collect();
+    let zcorn: String = (0..4)
+        .map(|plane| format!("24*{plane}.25 -- plane\n"))
+        .collect();
+    format!(
+        "SPECGRID\n3 2 2 1 F /\nMAPAXES\n0 1 0 0 1 0 /\nGRIDUNIT\n'METRES' ' ' /\nGDORIENT\nINC INC INC DOWN RIGHT /\n\
+         COORD\n{coord}/\nZCORN\n{zcorn}/\nACTNUM\n6*1 0 5*1 /\nINCLUDE\n 'PORO.INC' /\n\
+         FAULTS\n'F1' 1 1 1 2 1 2 'X' /\n/\nMULTFLT\n'F*' 0.1 /\n/\nBOX\n1 2 1 1 1 2 /\nNTG\n4*0.5 /\nENDBOX\n\
+         EQUALS\n PORO 0.2 1 1 1 1 1 1 /\n PERMX 50 /\n/\nCOPY\n PERMX PERMY /\n/\nADDZCORN\n 1.5 1 2 /\n/\n\
+         PINCH\n/\nSATNUM\n 1 2 3 4 5 6\n 1 2 3 4 5 6 /\n"
+    )
+}
+
+/// The file that [`rich_deck`] includes.
+pub const PORO: &str = "PORO\n 12*0.25 / of all cells\n";
