@@ -1,5 +1,19 @@
 //! StrataRay: volume ray casting of corner-point reservoir grids and their simulation results.
 //!
+//! [`Session`] is the short way in: open a case, read values, locate points, make images.
+//!
+//! ```no_run
+//! use strataray::{Session, picture};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let mut session = Session::open("REEK.EGRID")?;
+//! let scene = session.scene(r#"{"property": "SOIL", "step": "last", "size": [1200, 800]}"#)?;
+//! let image = session.picture(&scene)?;
+//! picture::write_png("soil.png".as_ref(), image.size, &image.pixels)?;
+//! # Ok(())
+//! # }
+//! ```
+//!
 //! Each room imports only from those before it:
 //!
 //! | room | what |
@@ -14,6 +28,7 @@
 //! | [`mod@reference`] | the same in plain f64 on the CPU: the truth that the others are measured against |
 //! | [`picking`] | what is seen at a place in the image |
 //! | [`picture`] | image files, legends, axes, films |
+//! | [`session`] | the short way in |
 //! | [`mod@compare`] | strategies side by side |
 //! | [`viewer`] | the window |
 
@@ -29,7 +44,11 @@ pub mod reference;
 #[cfg(feature = "gpu")]
 pub mod render;
 pub mod scene;
+pub mod session;
 pub mod transfer;
 pub mod view;
 #[cfg(feature = "viewer")]
 pub mod viewer;
+
+pub use session::{Error, Session};
+pub use strataray_parsers::{self as parsers, ParseError};

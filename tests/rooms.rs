@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 /// The rooms from the ground up. `cli` is the command, which imports the library by its name.
-const ROOMS: [&str; 13] = [
+const ROOMS: [&str; 14] = [
     "image",
     "model",
     "transfer",
@@ -17,6 +17,7 @@ const ROOMS: [&str; 13] = [
     "reference",
     "picking",
     "picture",
+    "session",
     "compare",
     "viewer",
     "cli",

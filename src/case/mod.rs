@@ -147,6 +147,7 @@ pub struct LoadTimes {
 
 /// Why a property could not be had.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum CaseError {
     /// There is no such property.
     #[error("there is no property {name}; {known}")]

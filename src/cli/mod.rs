@@ -87,7 +87,7 @@ fn open_window(cases: Vec<PathBuf>, watches: bool) -> anyhow::Result<()> {
 
 #[cfg(feature = "viewer")]
 fn show_window(cases: Vec<PathBuf>, watches: bool) -> anyhow::Result<()> {
-    strataray::viewer::run(cases, watches).map_err(anyhow::Error::msg)
+    Ok(strataray::viewer::run(cases, watches)?)
 }
 
 #[cfg(not(feature = "viewer"))]

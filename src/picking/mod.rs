@@ -137,6 +137,7 @@ impl Fault {
 
 /// Why it cannot be said what is seen.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum PickError {
     /// The device reports an error.
     #[error(transparent)]

@@ -9,6 +9,7 @@ use crate::image::Image;
 
 /// Why a picture or film could not be written.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum PictureError {
     /// The extension is neither .png nor .exr.
     #[error("{0}: images are written as .png or .exr")]

@@ -8,6 +8,7 @@ use crate::view::{SceneError, Sequence};
 
 /// Why there is no film.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum FilmingError {
     /// A view cannot be shown.
     #[error(transparent)]

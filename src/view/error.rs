@@ -4,6 +4,7 @@ use crate::case::CaseError;
 
 /// Why a scene cannot be shown.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum SceneError {
     /// A field has a value that is not allowed.
     #[error("scene: {field}: {problem}")]

@@ -51,16 +51,30 @@ pub use state::{Comparison, CurvePlots, Layout, Pace, Setup, State};
 pub use turning::{Turned, turn};
 pub use window::Window;
 
+/// Why there is no window.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ViewerError {
+    /// There is no display.
+    #[error(
+        "there is no display for a window; `strataray render CASE -o picture.png` makes a picture without one"
+    )]
+    NoDisplay,
+    /// The system or the driver refuses.
+    #[error("the window cannot be opened: {0}")]
+    Refused(String),
+}
+
 /// Opens the window on cases and returns when it is closed. Where it `watches`, cases are read again when
 /// their files change.
 ///
 /// # Errors
 /// When there is no display or no graphics driver; the sentence says what to do.
-pub fn run(cases: Vec<PathBuf>, watches: bool) -> Result<(), String> {
+pub fn run(cases: Vec<PathBuf>, watches: bool) -> Result<(), ViewerError> {
     let names = ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"];
     let is_set = |name: &str| std::env::var_os(name).is_some_and(|v| !v.is_empty());
     if cfg!(target_os = "linux") && !names.into_iter().any(is_set) {
-        return Err("there is no display for a window; `strataray render CASE -o picture.png` makes a picture without one".into());
+        return Err(ViewerError::NoDisplay);
     }
     let viewport = eframe::egui::ViewportBuilder::default()
         .with_title("StrataRay")
@@ -80,5 +94,5 @@ pub fn run(cases: Vec<PathBuf>, watches: bool) -> Result<(), String> {
         )))
     };
     eframe::run_native("strataray", options, Box::new(create))
-        .map_err(|e| format!("the window cannot be opened: {e}"))
+        .map_err(|e| ViewerError::Refused(e.to_string()))
 }
