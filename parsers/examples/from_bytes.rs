@@ -5,8 +5,9 @@
 use std::path::Path;
 
 use strataray_parsers::deck::{Grdecl, MemoryFiles};
+use strataray_parsers::egrid::Egrid;
 use strataray_parsers::records::RecordWriter;
-use strataray_parsers::{ErrorKind, Warnings, egrid::Egrid};
+use strataray_parsers::{ErrorKind, Warnings};
 
 const DECK: &str = "
 SPECGRID

@@ -33,7 +33,7 @@ pub enum SaveError {
     },
     /// Whoever asked does not want it any more.
     #[error("writing was canceled")]
-    Cancelled,
+    Canceled,
 }
 
 /// Where to write a model.
@@ -66,7 +66,7 @@ pub fn synthetic(
         fields,
     } = model;
     let head = head(&geometry);
-    let mut progress = Progress::new(&head, steps.len(), text, progress);
+    let mut progress = WriteProgress::new(&head, steps.len(), text, progress);
     let path = |extension: &str| folder.join(format!("{name}.{extension}"));
     let mut files = vec![path("EGRID"), path("INIT"), path("UNRST")];
     let egrid = to_egrid(geometry);
@@ -92,7 +92,7 @@ pub fn synthetic(
 }
 
 /// Values still to write, by what they are written to.
-struct Progress<'a> {
+struct WriteProgress<'a> {
     geometry: usize,
     statics: usize,
     step: usize,
@@ -102,7 +102,7 @@ struct Progress<'a> {
     tell: &'a dyn Fn(f64) -> bool,
 }
 
-impl<'a> Progress<'a> {
+impl<'a> WriteProgress<'a> {
     fn new(head: &Head, steps: usize, text: bool, tell: &'a dyn Fn(f64) -> bool) -> Self {
         let cells = head.dims.iter().map(|n| *n as usize).product::<usize>();
         let active = head.active as usize;
@@ -126,7 +126,7 @@ impl<'a> Progress<'a> {
         self.done += work;
         match (self.tell)(self.done as f64 / self.total as f64) {
             true => Ok(()),
-            false => Err(SaveError::Cancelled),
+            false => Err(SaveError::Canceled),
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Ctrl-C: asks work that can be cancelled to stop, and ends the program where there is none.
+//! Ctrl-C: asks work that can be canceled to stop, and ends the program where there is none.
 
 use std::sync::Once;
 use std::sync::atomic::AtomicBool;

@@ -5,9 +5,9 @@ use strataray::scene::{Interpolation, LightMode, Mode};
 use strataray::view::TurnAxis;
 
 /// A name, what it stands for, and what that is in one sentence.
-type Choice<T> = (&'static str, T, &'static str);
+type NamedChoice<T> = (&'static str, T, &'static str);
 
-pub const MODES: [Choice<Mode>; 2] = [
+pub const MODES: [NamedChoice<Mode>; 2] = [
     (
         "volume",
         Mode::Volume,
@@ -20,7 +20,7 @@ pub const MODES: [Choice<Mode>; 2] = [
     ),
 ];
 
-pub const INTERPOLATIONS: [Choice<Interpolation>; 2] = [
+pub const INTERPOLATIONS: [NamedChoice<Interpolation>; 2] = [
     (
         "cell",
         Interpolation::Cell,
@@ -33,7 +33,7 @@ pub const INTERPOLATIONS: [Choice<Interpolation>; 2] = [
     ),
 ];
 
-pub const LIGHT_MODES: [Choice<LightMode>; 4] = [
+pub const LIGHT_MODES: [NamedChoice<LightMode>; 4] = [
     ("off", LightMode::Off, "No shading"),
     (
         "image",
@@ -52,7 +52,7 @@ pub const LIGHT_MODES: [Choice<LightMode>; 4] = [
     ),
 ];
 
-pub const TURN_AXES: [Choice<TurnAxis>; 4] = [
+pub const TURN_AXES: [NamedChoice<TurnAxis>; 4] = [
     ("x", TurnAxis::X, "The axis to the east"),
     ("y", TurnAxis::Y, "The axis to the north"),
     ("z", TurnAxis::Z, "The vertical"),
@@ -60,11 +60,11 @@ pub const TURN_AXES: [Choice<TurnAxis>; 4] = [
 ];
 
 /// Reads one of some choices; the help lists them.
-pub fn one_of<T>(choices: &'static [Choice<T>]) -> impl TypedValueParser<Value = T>
+pub fn one_of<T>(choices: &'static [NamedChoice<T>]) -> impl TypedValueParser<Value = T>
 where
     T: Copy + Send + Sync + 'static,
 {
-    let value = |(name, _, help): &Choice<T>| PossibleValue::new(*name).help(*help);
+    let value = |(name, _, help): &NamedChoice<T>| PossibleValue::new(*name).help(*help);
     let names = PossibleValuesParser::new(choices.iter().map(value));
     names.try_map(|name| {
         let known = choices.iter().find(|choice| choice.0 == name);
@@ -76,8 +76,8 @@ where
 mod tests {
     use super::*;
 
-    fn named<T: serde::Serialize>(choices: &[Choice<T>]) -> bool {
-        let is_named = |(name, value, _): &Choice<T>| serde_json::json!(value) == *name;
+    fn named<T: serde::Serialize>(choices: &[NamedChoice<T>]) -> bool {
+        let is_named = |(name, value, _): &NamedChoice<T>| serde_json::json!(value) == *name;
         choices.iter().all(is_named)
     }
 

@@ -62,7 +62,7 @@ pub struct Arguments {
 }
 
 /// A found point: cell, (s, t, r), value.
-type Answer = Option<(Ijk, DVec3, f64)>;
+type Probed = Option<(Ijk, DVec3, f64)>;
 
 pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let reporter = Reporter::new(arguments.verbosity);
@@ -99,7 +99,7 @@ fn on_cpu(
     field: &CellField,
     points: &[DVec3],
     interpolation: Interpolation,
-) -> Vec<Answer> {
+) -> Vec<Probed> {
     use rayon::prelude::*;
     let locator = Locator::new(&case.grid);
     let vertices =
@@ -117,7 +117,7 @@ fn on_gpu(
     case: &Case,
     step: usize,
     points: &[DVec3],
-) -> anyhow::Result<Vec<Answer>> {
+) -> anyhow::Result<Vec<Probed>> {
     let scene = Scene {
         property: Some(arguments.property.clone()),
         step: StepSpec::Index(step),
@@ -170,7 +170,7 @@ fn read_points(arguments: &Arguments) -> anyhow::Result<Vec<DVec3>> {
     Ok(points)
 }
 
-fn write_answers(mut out: impl Write, points: &[DVec3], answers: &[Answer]) -> anyhow::Result<()> {
+fn write_answers(mut out: impl Write, points: &[DVec3], answers: &[Probed]) -> anyhow::Result<()> {
     writeln!(out, "x,y,depth,i,j,k,s,t,r,value")?;
     for (p, answer) in points.iter().zip(answers) {
         match answer {

@@ -94,7 +94,7 @@ pub struct Comparer<'a> {
 }
 
 /// Is told the fraction done and returns false to cancel.
-type Progress<'a> = dyn Fn(f64) -> bool + Sync + 'a;
+type Told<'a> = dyn Fn(f64) -> bool + Sync + 'a;
 
 impl<'a> Comparer<'a> {
     /// Uploads the grid with the values of the views, so that no strategy's preparation has to.
@@ -119,7 +119,7 @@ impl<'a> Comparer<'a> {
 
     /// Makes the pictures of view number `n`; `None` where `progress`, which is told the fraction done,
     /// returned false, or where there is no such view. A strategy that fails has a row that says so.
-    pub fn view(&mut self, n: usize, progress: &Progress) -> Option<Compared> {
+    pub fn view(&mut self, n: usize, progress: &Told) -> Option<Compared> {
         let plan = self.plan;
         let view = &plan.views.get(n)?.view;
         let mut pictures = Pictures {
@@ -142,7 +142,12 @@ impl<'a> Comparer<'a> {
     }
 
     /// The median frame of a strategy after one to warm up.
-    fn timed(&mut self, view: &View, kind: StrategyKind, pictures: &mut Pictures) -> Option<Shot> {
+    fn timed(
+        &mut self,
+        view: &View,
+        kind: StrategyKind,
+        pictures: &mut Pictures,
+    ) -> Option<Attempt> {
         let mut frames = Vec::new();
         for n in 0..=self.plan.frames.max(1) {
             match self.frame(view, kind, pictures)? {
@@ -157,7 +162,12 @@ impl<'a> Comparer<'a> {
         Some(Frame::median(frames).ok_or_else(|| "no frame was timed".into()))
     }
 
-    fn frame(&mut self, view: &View, kind: StrategyKind, pictures: &mut Pictures) -> Option<Shot> {
+    fn frame(
+        &mut self,
+        view: &View,
+        kind: StrategyKind,
+        pictures: &mut Pictures,
+    ) -> Option<Attempt> {
         let view = View {
             strategy: kind,
             ..view.clone()
@@ -184,10 +194,10 @@ impl<'a> Comparer<'a> {
     fn reference(
         &mut self,
         view: &View,
-        shots: &[(StrategyKind, Shot)],
+        shots: &[(StrategyKind, Attempt)],
         pictures: &mut Pictures,
     ) -> Option<(Result<Rgb8, String>, Duration)> {
-        let of_frame = |shot: &Shot| match shot {
+        let of_frame = |shot: &Attempt| match shot {
             Ok(frame) => (Ok(finished(&frame.image, view)), frame.stats.frame),
             Err(error) => (Err(error.clone()), Duration::ZERO),
         };
@@ -206,7 +216,7 @@ impl<'a> Comparer<'a> {
         &self,
         n: usize,
         kind: StrategyKind,
-        shot: Shot,
+        shot: Attempt,
         reference: Result<&Rgb8, &String>,
     ) -> Outcome {
         let named = &self.plan.views[n];
@@ -244,7 +254,7 @@ fn quality(picture: &Rgb8, reference: Result<&Rgb8, &String>) -> Result<Comparis
 }
 
 /// A frame, or the sentence that says why there is none.
-type Shot = Result<Frame, String>;
+type Attempt = Result<Frame, String>;
 
 /// The picture over the view's background, without annotations: they would be equal in all.
 fn finished(image: &Image, view: &View) -> Rgb8 {
@@ -266,15 +276,15 @@ impl Plan {
     }
 }
 
-/// Progress over pictures that count the same.
+/// Told over pictures that count the same.
 struct Pictures<'a> {
     done: usize,
     all: usize,
-    progress: &'a Progress<'a>,
+    progress: &'a Told<'a>,
 }
 
 impl<'a> Pictures<'a> {
-    /// Progress of the next picture.
+    /// Told of the next picture.
     fn next(&mut self) -> impl Fn(f64) -> bool + Sync + use<'a> {
         let (before, all, progress) = (self.done as f64, self.all as f64, self.progress);
         self.done += 1;

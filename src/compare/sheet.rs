@@ -3,7 +3,7 @@
 use super::tables::{figure, with_unit};
 use super::{Compared, Outcome, Plan, Row};
 use crate::image::Rgb8;
-use crate::picture::{SheetError, Tile, contact_sheet, difference_colors};
+use crate::picture::{SheetError, SheetImage, contact_sheet, difference_colors};
 
 /// Width of the pictures on the sheet at most.
 const WIDEST: u32 = 360;
@@ -54,8 +54,8 @@ impl Sheet {
     /// # Errors
     /// When there are no views, or so many that the sheet would be too large.
     pub fn picture(&self) -> Result<Rgb8, SheetError> {
-        let tile = |(picture, caption)| Tile { picture, caption };
-        let tiles: Vec<Tile> = self.tiles.iter().map(|(p, c)| tile((p, c))).collect();
+        let tile = |(picture, caption)| SheetImage { picture, caption };
+        let tiles: Vec<SheetImage> = self.tiles.iter().map(|(p, c)| tile((p, c))).collect();
         let columns = tiles.len() / self.views.max(1);
         contact_sheet(&tiles, columns, [1.0; 3])
     }

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use super::gather::{Gathered, Source};
+use super::gather::{Gathered, PieceSource};
 use crate::image::metrics::{ciede2000, lab};
 use crate::model::Ijk;
 
@@ -43,9 +43,9 @@ pub(super) fn seen(
     let mut places: HashMap<Thing, usize> = HashMap::new();
     for (n, (piece, contribution)) in gathered.pieces.iter().enumerate() {
         let (thing, own) = match &piece.of {
-            Source::Cell { ijk, .. } => (Thing::Cell(*ijk), own_color(*ijk)),
-            Source::Sheet(_) => (Thing::Sheet(n), None),
-            Source::Ghost => continue,
+            PieceSource::Cell { ijk, .. } => (Thing::Cell(*ijk), own_color(*ijk)),
+            PieceSource::Sheet(_) => (Thing::Sheet(n), None),
+            PieceSource::Ghost => continue,
         };
         if *contribution <= 0.0 {
             continue;

@@ -21,12 +21,12 @@ pub(super) struct Piece {
     pub opacity: f64,
     /// In sRGB, 0..1, without any light.
     pub color: [f64; 3],
-    pub of: Source,
+    pub of: PieceSource,
 }
 
 /// What a piece belongs to.
 #[derive(Debug, Clone)]
-pub(super) enum Source {
+pub(super) enum PieceSource {
     /// A drawn cell: what of it, and its value there in the scale of the view.
     Cell { ijk: Ijk, value: f64, part: Part },
     /// A fault's sheet between the cells.
@@ -93,10 +93,10 @@ impl Gathered {
         let mut places: HashMap<Ijk, usize> = HashMap::new();
         for (piece, contribution) in &self.pieces {
             let (ijk, contribution) = match &piece.of {
-                Source::Cell { ijk, .. } => (*ijk, *contribution),
+                PieceSource::Cell { ijk, .. } => (*ijk, *contribution),
                 // It has its own color, but lies on a face of that cell.
-                Source::Sheet(met) => (met.cell, 0.0),
-                Source::Ghost => continue,
+                PieceSource::Sheet(met) => (met.cell, 0.0),
+                PieceSource::Ghost => continue,
             };
             let place = *places.entry(ijk).or_insert(cells.len());
             match cells.get_mut(place) {

@@ -33,7 +33,7 @@ use crate::model::{Grid, Ijk};
 use crate::render::{RenderError, Renderer};
 use crate::view::View;
 
-use gather::{Gathered, Passed, Source};
+use gather::{Gathered, Passed, PieceSource};
 use ray::Ray;
 use sight::Sight;
 use surfaces::{Met, SurfaceFaces};
@@ -241,15 +241,15 @@ fn hit(
     let (piece, of_piece) = &gathered.pieces[seen];
     let on_ray = |ijk: Ijk| cells.iter().find(|c| c.ijk == ijk);
     let (cell, part, shown, contribution) = match &piece.of {
-        Source::Cell { ijk, value, part } => {
+        PieceSource::Cell { ijk, value, part } => {
             let cell = on_ray(*ijk)?;
             (cell, part.clone(), Some(*value), cell.contribution)
         }
-        Source::Sheet(met) => {
+        PieceSource::Sheet(met) => {
             let part = Part::Fault(fault_of(case, *met)?);
             (on_ray(met.cell)?, part, None, *of_piece)
         }
-        Source::Ghost => return None,
+        PieceSource::Ghost => return None,
     };
     let world = sight.at(piece.at);
     Some(Hit {
@@ -270,7 +270,7 @@ fn sheet(gathered: &Gathered) -> Option<Met> {
         .pieces
         .iter()
         .filter_map(|(piece, of_pixel)| match piece.of {
-            Source::Sheet(met) => (*of_pixel >= LEAST_SHEET).then_some(met),
+            PieceSource::Sheet(met) => (*of_pixel >= LEAST_SHEET).then_some(met),
             _ => None,
         });
     sheets.next()

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::gather::{Piece, Source};
+use super::gather::{Piece, PieceSource};
 use super::ray::{Ray, Span};
 use super::surfaces::Met;
 use super::{Part, fault_of};
@@ -126,13 +126,13 @@ impl<'a> Sight<'a> {
             true => (
                 transfer.extinction_of(ghosts::OPACITY),
                 ghosts::COLOR,
-                Source::Ghost,
+                PieceSource::Ghost,
             ),
             false if located.value.is_nan() => return None,
             false => (
                 transfer.extinction(transfer.position(located.value)),
                 self.color(located.value),
-                Source::Cell {
+                PieceSource::Cell {
                     ijk: located.ijk,
                     value: located.value,
                     part: Part::Inside,
@@ -163,7 +163,7 @@ impl<'a> Sight<'a> {
         let (opacity, color, of) = match surface {
             Surface::Section(_) => {
                 let located = located.filter(|l| !self.is_ghost(l.ijk))?;
-                let of = Source::Cell {
+                let of = PieceSource::Cell {
                     ijk: located.ijk,
                     value: located.value,
                     part: Part::Section,
@@ -174,7 +174,7 @@ impl<'a> Sight<'a> {
                 let inside = located.filter(|l| l.ijk == met.cell);
                 let value = inside.map_or_else(|| self.own_value(met.cell), |l| Some(l.value))?;
                 let fault = fault_of(self.case, met);
-                let of = Source::Cell {
+                let of = PieceSource::Cell {
                     ijk: met.cell,
                     value,
                     part: fault.map_or(Part::Face(met.face), Part::Fault),
@@ -183,7 +183,7 @@ impl<'a> Sight<'a> {
             }
             Surface::Sheet(met) => {
                 let color = fault_color(self.view.named_faults.fault_of(met.cell, met.face));
-                (SHEET_OPACITY, color, Source::Sheet(met))
+                (SHEET_OPACITY, color, PieceSource::Sheet(met))
             }
         };
         Some(Piece {

@@ -20,7 +20,7 @@ const SLACK: f64 = 1e-9;
 /// The faces of the surfaces that a view shows, kept while it shows the same ones.
 #[derive(Default)]
 pub(super) struct SurfaceFaces {
-    of: Option<Shown>,
+    of: Option<FacesKey>,
     /// By column.
     faces: Vec<(CellIndex, Face)>,
     columns: Vec<Column>,
@@ -28,7 +28,7 @@ pub(super) struct SurfaceFaces {
 
 /// What the faces depend on.
 #[derive(Clone)]
-struct Shown {
+struct FacesKey {
     /// One of each case.
     case: Arc<FaultFaces>,
     drawn: Arc<Vec<bool>>,
@@ -53,7 +53,7 @@ pub(super) struct Met {
     pub is_back: bool,
 }
 
-impl Shown {
+impl FacesKey {
     fn is_same(&self, other: &Self) -> bool {
         let is_drawn = Arc::ptr_eq(&self.drawn, &other.drawn) || self.drawn == other.drawn;
         let kinds = |s: &Self| (s.hull, s.faults);
@@ -96,7 +96,7 @@ impl SurfaceFaces {
 
     /// Lists the faces anew where others are shown.
     fn update(&mut self, case: &Case, view: &View) {
-        let now = Shown {
+        let now = FacesKey {
             case: view.named_faults.clone(),
             drawn: view.drawn.clone(),
             hull: view.surfaces.hull,

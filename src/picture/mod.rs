@@ -34,5 +34,5 @@ pub use legend::{GROUND, Key, Legend, cut};
 pub use marks::{cell_edges, mark_cells, mark_color};
 pub use orientation::{Area, Arrow, Orientation, Paper, Text, on_screen};
 pub use plot::{Plot, Series};
-pub use sheet::{SheetError, Tile, contact_sheet};
+pub use sheet::{SheetError, SheetImage, contact_sheet};
 pub use units::short_unit;

@@ -5,7 +5,7 @@ use crate::image::{Rgb8, srgb_8bit};
 
 /// A picture on a contact sheet.
 #[derive(Debug, Clone, Copy)]
-pub struct Tile<'a> {
+pub struct SheetImage<'a> {
     /// The picture.
     pub picture: &'a Rgb8,
     /// Lines of text under it: four at most are shown, and cut where they are wider than the picture.
@@ -45,7 +45,7 @@ pub enum SheetError {
 }
 
 /// Where things are on a sheet, in pixels.
-struct Layout {
+struct SheetLayout {
     columns: usize,
     rows: usize,
     picture: [u32; 2],
@@ -61,7 +61,7 @@ struct Layout {
 /// # Errors
 /// When there are no pictures, when their sizes differ, or when the sheet would be too large.
 pub fn contact_sheet(
-    tiles: &[Tile],
+    tiles: &[SheetImage],
     columns: usize,
     background: [f64; 3],
 ) -> Result<Rgb8, SheetError> {
@@ -70,7 +70,7 @@ pub fn contact_sheet(
     let lines = tiles.iter().map(|t| t.caption.lines().count()).max();
     let lines = lines.unwrap_or(0).min(MOST_LINES);
     let columns = columns.clamp(1, tiles.len());
-    let layout = Layout {
+    let layout = SheetLayout {
         columns,
         rows: tiles.len().div_ceil(columns),
         picture: size,
@@ -93,7 +93,7 @@ pub fn contact_sheet(
     Ok(sheet)
 }
 
-fn one_size(tiles: &[Tile]) -> Result<[u32; 2], SheetError> {
+fn one_size(tiles: &[SheetImage]) -> Result<[u32; 2], SheetError> {
     let first = tiles.first().ok_or(SheetError::Empty)?.picture.size;
     if first.contains(&0) {
         return Err(SheetError::Empty);
@@ -109,7 +109,7 @@ fn one_size(tiles: &[Tile]) -> Result<[u32; 2], SheetError> {
     }
 }
 
-impl Layout {
+impl SheetLayout {
     /// From one picture's corner to the next one's.
     fn pitch(&self) -> [u32; 2] {
         let [w, h] = self.picture;
@@ -159,8 +159,8 @@ mod tests {
 
     const WHITE: [f64; 3] = [1.0; 3];
 
-    fn tiles<'a>(pictures: &'a [Rgb8], caption: &'a str) -> Vec<Tile<'a>> {
-        let tile = |picture| Tile { picture, caption };
+    fn tiles<'a>(pictures: &'a [Rgb8], caption: &'a str) -> Vec<SheetImage<'a>> {
+        let tile = |picture| SheetImage { picture, caption };
         pictures.iter().map(tile).collect()
     }
 

@@ -19,7 +19,7 @@ use crate::transfer::opacity::{self, Interest, Opacity};
 use crate::transfer::{Curve, Scale, TransferFunction, boundaries, coloring, presets};
 
 /// What colors are asked for, and of what.
-pub(super) struct Asked<'a> {
+pub(super) struct ColorRequest<'a> {
     pub scene: &'a Scene,
     pub case: &'a Case,
     pub property: &'a str,
@@ -50,7 +50,10 @@ pub(super) fn interpolation(scene: &Scene) -> Interpolation {
 }
 
 /// Field and transfer function for the values of the step shown.
-pub(super) fn resolve(asked: &Asked<'_>, field: &Arc<CellField>) -> Result<Colors, SceneError> {
+pub(super) fn resolve(
+    asked: &ColorRequest<'_>,
+    field: &Arc<CellField>,
+) -> Result<Colors, SceneError> {
     let spec = &asked.scene.transfer;
     let (scale, range) = match (spec.coloring, spec.scale) {
         (Coloring::Categories, _) => categories(asked, field)?,
@@ -106,7 +109,7 @@ fn beyond(transfer: &TransferFunction, field: &CellField) -> [bool; 2] {
 
 /// The ends of the range as true values, and what the values are like that they are taken from.
 fn ends(
-    asked: &Asked<'_>,
+    asked: &ColorRequest<'_>,
     field: &CellField,
 ) -> Result<([f64; 2], Option<ValueRange>), SceneError> {
     let values = match asked.scene.range {
@@ -127,7 +130,7 @@ fn ends(
 /// Powers of ten that a log scale spans at most where its low end is not given.
 const DECADES: i32 = 8;
 
-fn log_range(asked: &Asked<'_>, field: &CellField) -> Result<[f64; 2], SceneError> {
+fn log_range(asked: &ColorRequest<'_>, field: &CellField) -> Result<[f64; 2], SceneError> {
     let ([low, high], values) = ends(asked, field)?;
     if high <= 0.0 || values.is_none() {
         let problem = format!(
@@ -146,7 +149,10 @@ fn log_range(asked: &Asked<'_>, field: &CellField) -> Result<[f64; 2], SceneErro
     Ok([low, high].map(f64::log10))
 }
 
-fn categories(asked: &Asked<'_>, field: &CellField) -> Result<(Scale, [f64; 2]), SceneError> {
+fn categories(
+    asked: &ColorRequest<'_>,
+    field: &CellField,
+) -> Result<(Scale, [f64; 2]), SceneError> {
     let name = asked.property;
     let refuse = |problem: String| {
         let problem = format!("{name} {problem}; use \"continuous\" or \"banded\"");
@@ -235,7 +241,11 @@ fn default_opacity(scale: &Scale) -> Curve<f64> {
     }
 }
 
-fn opacity(asked: &Asked<'_>, scale: &Scale, range: [f64; 2]) -> Result<Opacity, SceneError> {
+fn opacity(
+    asked: &ColorRequest<'_>,
+    scale: &Scale,
+    range: [f64; 2],
+) -> Result<Opacity, SceneError> {
     let per_edge = |curve| Opacity {
         curve,
         reference_length: asked.mean_edge,
@@ -274,7 +284,7 @@ fn opacity(asked: &Asked<'_>, scale: &Scale, range: [f64; 2]) -> Result<Opacity,
 
 /// The opacity that suits the values at the last step that has them; found once for a range and exaggeration.
 fn automatic(
-    asked: &Asked<'_>,
+    asked: &ColorRequest<'_>,
     scale: &Scale,
     range: [f64; 2],
 ) -> Result<Option<Opacity>, SceneError> {
@@ -324,7 +334,7 @@ fn automatic(
 const FILTERED: f64 = 0.9;
 
 /// An opacity that was not chosen by hand, made solid where a filter hides cells.
-fn filtered(asked: &Asked<'_>, found: Opacity) -> Opacity {
+fn filtered(asked: &ColorRequest<'_>, found: Opacity) -> Opacity {
     let Some(thinnest) = asked.thinnest else {
         return found;
     };

@@ -31,7 +31,7 @@ pub struct Cone {
 
 /// Where a light is and what it reaches, in world space.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Source {
+pub enum LightSource {
     /// Light from far away; the unit vector points to it.
     Directional {
         /// Where it comes from.
@@ -68,7 +68,7 @@ pub const SPOT_EDGE: f64 = 0.1;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Light {
     /// Where it is.
-    pub source: Source,
+    pub source: LightSource,
     /// Color (sRGB, 0..1).
     pub color: [f64; 3],
     /// Factor on its color.
@@ -305,7 +305,7 @@ fn occlusion(o: &OcclusionSpec, diagonal: f64) -> Result<Occlusion, SceneError> 
     })
 }
 
-fn source(light: &LightSpec) -> Result<(Source, f64, Option<f64>, &str), SceneError> {
+fn source(light: &LightSpec) -> Result<(LightSource, f64, Option<f64>, &str), SceneError> {
     let unit = |v: &[f64; 3]| {
         DVec3::from_array(*v)
             .try_normalize()
@@ -329,7 +329,7 @@ fn source(light: &LightSpec) -> Result<(Source, f64, Option<f64>, &str), SceneEr
             color,
         } => {
             let toward = -unit(direction)?;
-            let source = Source::Directional { toward };
+            let source = LightSource::Directional { toward };
             (source, *half_angle_degrees, *intensity, color)
         }
         LightSpec::Point {
@@ -339,7 +339,7 @@ fn source(light: &LightSpec) -> Result<(Source, f64, Option<f64>, &str), SceneEr
             color,
         } => {
             let position = place(position)?;
-            let source = Source::Point { position };
+            let source = LightSource::Point { position };
             (source, *half_angle_degrees, *intensity, color)
         }
         LightSpec::Spot {
@@ -355,7 +355,7 @@ fn source(light: &LightSpec) -> Result<(Source, f64, Option<f64>, &str), SceneEr
                 *opening_degrees,
                 [0.5, 89.0],
             )?;
-            let source = Source::Spot {
+            let source = LightSource::Spot {
                 position: place(position)?,
                 axis: unit(direction)?,
                 opening: opening.to_radians(),

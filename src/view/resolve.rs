@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::{DVec3, DVec4};
 
 use super::bounds::{automatic_exaggeration, bounds_of, box_corners, box_edges};
-use super::colors::{self, Asked, Colors, interpolation};
+use super::colors::{self, ColorRequest, Colors, interpolation};
 use super::error::{SceneError, positive, wrong};
 use super::facts::{self, Facts};
 use super::framing::{self, Direction, Subject};
@@ -44,7 +44,7 @@ pub(super) fn resolve_over(
     };
     let step = step_of(case, &scene.step, case.is_dynamic(&property))?;
     let field = case.field(&property, step)?;
-    let asked = Asked {
+    let asked = ColorRequest {
         scene,
         case,
         property: &property,
@@ -239,12 +239,12 @@ struct Cells {
 
 /// The cells of a scene, from the values of the property: true ones, and those in the scale of its colors.
 fn cells(
-    asked: &Asked<'_>,
+    asked: &ColorRequest<'_>,
     [values, field]: [Arc<CellField>; 2],
     spaces: &Spaces,
     clip: &[ClipPlane],
 ) -> Result<Cells, SceneError> {
-    let Asked { scene, case, .. } = *asked;
+    let ColorRequest { scene, case, .. } = *asked;
     let (field, drawn) = filtered(case, field, scene)?;
     let framed = match framing::still(&scene.filter, case) {
         Some(still) => filter::drawn(case, &values, &still, &scene.step)?,

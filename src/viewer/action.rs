@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::slices::Slicing;
-use super::state::{Comparison, CurvePlots, Pace, State};
+use super::state::{Comparison, CurvePlots, Playback, State};
 use crate::scene::{
     CameraSpec, ClipSpec, Filter, Interpolation, LibcSettings, LightingSpec, Mode, RangeSpec,
     Scene, Show, SrgSettings, StepSpec, TransferSpec,
@@ -57,7 +57,7 @@ pub enum Action {
     /// Shows curves of the selected cells.
     Curves(CurvePlots),
     /// How time plays.
-    Pace(Pace),
+    Playback(Playback),
     /// How slices are stepped through.
     Slicing(Slicing),
 }
@@ -97,7 +97,7 @@ impl Action {
             Self::Compare(_) => "comparison",
             Self::Select(..) | Self::Deselect => "selection",
             Self::Curves(_) => "curves",
-            Self::Pace(_) => "pace",
+            Self::Playback(_) => "pace",
             Self::Slicing(_) => "slices",
         }
     }
@@ -128,7 +128,7 @@ impl Action {
             Self::Select(cell, beside) => select(&mut state.selected, cell, beside),
             Self::Deselect => state.selected.clear(),
             Self::Curves(v) => state.curves = v,
-            Self::Pace(v) => state.pace = v,
+            Self::Playback(v) => state.pace = v,
             Self::Slicing(v) => state.slicing = v,
         }
     }

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use eframe::egui::{self, Context, Key, Ui};
 
 use super::cases::{self, Meaning};
-use super::export::{ExportSpec, Kind};
+use super::export::{ExportKind, ExportSpec};
 
 /// What a file is for.
 #[derive(Clone)]
@@ -34,7 +34,7 @@ impl Purpose {
             Self::LoadScene => "Load a scene",
             Self::SaveScene => "Save the scene",
             Self::SaveTable => "Save the values of the selected cells",
-            Self::Export(spec) if spec.kind == Kind::Still => "Save an image",
+            Self::Export(spec) if spec.kind == ExportKind::Still => "Save an image",
             Self::Export(_) => "Save an animation",
         }
     }
@@ -73,12 +73,12 @@ impl Purpose {
 /// A dialog of the system that is open.
 pub struct Dialog {
     purpose: Purpose,
-    answer: Receiver<Answer>,
+    answer: Receiver<SystemAnswer>,
     begun: Instant,
 }
 
 /// What the system's dialog said.
-enum Answer {
+enum SystemAnswer {
     Chosen(Vec<PathBuf>),
     Left,
     NoDialog,
@@ -115,9 +115,9 @@ impl Dialog {
             };
             // The window may be gone.
             let _ = send.send(match chosen {
-                Some(Some(paths)) => Answer::Chosen(paths),
-                Some(None) => Answer::Left,
-                None => Answer::NoDialog,
+                Some(Some(paths)) => SystemAnswer::Chosen(paths),
+                Some(None) => SystemAnswer::Left,
+                None => SystemAnswer::NoDialog,
             });
             ctx.request_repaint();
         });
@@ -133,12 +133,12 @@ impl Dialog {
         let answer = match self.answer.try_recv() {
             Ok(answer) => answer,
             Err(TryRecvError::Empty) => return None,
-            Err(TryRecvError::Disconnected) => Answer::NoDialog,
+            Err(TryRecvError::Disconnected) => SystemAnswer::NoDialog,
         };
         let purpose = self.purpose.clone();
         Some(match answer {
-            Answer::Chosen(paths) => Outcome::Chosen(purpose, paths),
-            Answer::Left if self.begun.elapsed() >= FASTEST => Outcome::Left,
+            SystemAnswer::Chosen(paths) => Outcome::Chosen(purpose, paths),
+            SystemAnswer::Left if self.begun.elapsed() >= FASTEST => Outcome::Left,
             _ => Outcome::NoDialog(purpose),
         })
     }
@@ -164,18 +164,18 @@ pub struct PathSheet {
     /// The text field has had the focus.
     is_begun: bool,
     /// What was found for the path that was typed.
-    found: Option<Found>,
+    found: Option<TypedPath>,
 }
 
 /// What a path means, looked up when it changes.
-struct Found {
+struct TypedPath {
     path: String,
-    wanted: RenderRequest,
+    wanted: Choosable,
     offered: Vec<PathBuf>,
 }
 
 /// What came of a sheet.
-pub enum Asked {
+pub enum SheetResult {
     /// Files, as from a dialog.
     Files(Purpose, Vec<PathBuf>),
     /// It was closed.
@@ -196,16 +196,16 @@ impl PathSheet {
     }
 
     /// Draws it; `None` while it is open.
-    pub fn show(&mut self, ctx: &Context) -> Option<Asked> {
+    pub fn show(&mut self, ctx: &Context) -> Option<SheetResult> {
         let (mut is_open, mut chosen) = (true, None);
         egui::Window::new(self.purpose.title())
             .open(&mut is_open)
             .default_width(440.0)
             .show(ctx, |ui| chosen = self.body(ui));
         if let Some(paths) = chosen {
-            return Some(Asked::Files(self.purpose.clone(), paths));
+            return Some(SheetResult::Files(self.purpose.clone(), paths));
         }
-        (!is_open || ctx.input(|i| i.key_pressed(Key::Escape))).then_some(Asked::Left)
+        (!is_open || ctx.input(|i| i.key_pressed(Key::Escape))).then_some(SheetResult::Left)
     }
 
     /// The files that were chosen.
@@ -244,7 +244,7 @@ impl PathSheet {
         chosen
     }
 
-    fn look_up(&self) -> Found {
+    fn look_up(&self) -> TypedPath {
         let path = cases::expanded(&self.path);
         let wanted = match self.purpose {
             Purpose::Case => of_case(&path),
@@ -254,7 +254,7 @@ impl PathSheet {
             }
             _ => of_new(&self.purpose.file(path.clone())),
         };
-        Found {
+        TypedPath {
             path: self.path.clone(),
             wanted,
             offered: cases::offered(&path, &self.path),
@@ -287,9 +287,9 @@ impl PathSheet {
 }
 
 /// Files that can be chosen by a path, and what to say of it.
-type RenderRequest = (Option<Vec<PathBuf>>, String);
+type Choosable = (Option<Vec<PathBuf>>, String);
 
-fn of_case(path: &Path) -> RenderRequest {
+fn of_case(path: &Path) -> Choosable {
     match cases::meaning(path) {
         Meaning::Case(case) => {
             let name = case.file_name().unwrap_or_default().to_string_lossy();
@@ -304,14 +304,14 @@ fn of_case(path: &Path) -> RenderRequest {
     }
 }
 
-fn of_old(path: &Path) -> RenderRequest {
+fn of_old(path: &Path) -> Choosable {
     match path.is_file() {
         true => (Some(vec![path.to_owned()]), String::new()),
         false => (None, "There is no such file.".into()),
     }
 }
 
-fn of_new(path: &Path) -> RenderRequest {
+fn of_new(path: &Path) -> Choosable {
     let folder = path.parent().filter(|f| !f.as_os_str().is_empty());
     if path.is_dir() {
         (None, "This is a folder; add a file name.".into())

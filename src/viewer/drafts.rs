@@ -21,12 +21,12 @@ const FIRST_LIGHT: [u32; 3] = [24, 24, 24];
 
 /// What is shown of a side, and what its pictures have cost.
 #[derive(Default)]
-pub struct Side {
+pub struct ShownSide {
     /// Of what the draft, and the final picture, are shown.
     drafted: Option<RenderRequest>,
     finished: Option<RenderRequest>,
     /// The picture that is shown.
-    pub shown: Option<Shown>,
+    pub shown: Option<ShownImage>,
     /// What cannot be shown.
     refused: Option<RenderRequest>,
     /// Costs of the pictures of this case.
@@ -37,7 +37,7 @@ pub struct Side {
 }
 
 /// A picture and the texture that has it.
-pub struct Shown {
+pub struct ShownImage {
     /// The picture.
     pub picture: Picture,
     /// Its texture.
@@ -55,7 +55,7 @@ pub enum Due {
     Slow,
 }
 
-impl Side {
+impl ShownSide {
     /// The picture that is due, where a draft may take `goal_ms`.
     pub fn due(&self, wanted: &RenderRequest, goal_ms: f64, is_software: bool) -> Due {
         let is = |known: &Option<RenderRequest>| known.as_ref() == Some(wanted);
@@ -132,7 +132,7 @@ impl Side {
         // A draft replaces what was finished before.
         self.finished = (!picture.is_draft).then(|| of.clone());
         self.drafted = Some(of);
-        self.shown = Some(Shown {
+        self.shown = Some(ShownImage {
             texture: texture(ctx, &picture.rgb),
             picture,
         });

@@ -30,7 +30,7 @@ impl PartialEq for RenderRequest {
 }
 
 /// What the thread is asked for. Each side keeps its own grid on the device.
-pub enum Job {
+pub enum ImageJob {
     /// A picture of a side.
     Picture {
         /// Which one.
@@ -106,7 +106,7 @@ impl Picture {
 }
 
 /// How far two pictures are apart.
-pub struct Difference {
+pub struct ImageDifference {
     /// The pictures.
     pub of: [Arc<Rgb8>; 2],
     /// CIEDE2000 of each pixel, in colors.
@@ -133,7 +133,7 @@ pub enum Answer {
     /// What is seen at the place, and what lies before and behind it.
     Picked(PickPurpose, Box<Pick>),
     /// How far two pictures are apart.
-    Difference(Box<Difference>),
+    Difference(Box<ImageDifference>),
     /// Nothing is kept of a case any more.
     Forgotten,
     /// Why there is no picture, in one sentence.

@@ -30,7 +30,7 @@ pub struct Page {
 }
 
 /// A view that is shown, and the case that it is of.
-pub type Shown = (Arc<View>, Arc<Case>);
+pub type ShownView = (Arc<View>, Arc<Case>);
 
 impl Page {
     /// Where it is in the window.
@@ -53,7 +53,7 @@ impl Page {
 pub fn laid_out(
     painter: &Painter,
     places: [Option<Rect>; 2],
-    shown: &[Option<Shown>; 2],
+    shown: &[Option<ShownView>; 2],
     show: &Show,
 ) -> [Option<Page>; 2] {
     let parts = shown.each_ref().map(|shown| {
@@ -95,13 +95,13 @@ fn widest(legends: [Option<LegendWidths>; 2]) -> Option<LegendWidths> {
 }
 
 /// True where the legend of one of two pictures is that of the other.
-fn have_one_legend([(a, _), (b, _)]: [&Shown; 2]) -> bool {
+fn have_one_legend([(a, _), (b, _)]: [&ShownView; 2]) -> bool {
     a.property == b.property && a.transfer == b.transfer
 }
 
 /// Draws what stands beside the volume of a picture: a title of its own or the given one, with what it does not
 /// share with a second picture at its end.
-pub fn draw(painter: &Painter, page: &Page, shown: &Shown, title: Option<&str>, own: &str) {
+pub fn draw(painter: &Painter, page: &Page, shown: &ShownView, title: Option<&str>, own: &str) {
     let (view, case) = shown;
     let annotations = Annotations::of(case, view);
     ground(painter, page, view);
@@ -124,7 +124,7 @@ pub fn draw(painter: &Painter, page: &Page, shown: &Shown, title: Option<&str>, 
 
 /// The same for two pictures in one place: at the left what is of the first one, of which the left part is seen,
 /// and at the right what is of the second.
-pub fn draw_shared(painter: &Painter, page: &Page, shown: [&Shown; 2], own: &[String; 2]) {
+pub fn draw_shared(painter: &Painter, page: &Page, shown: [&ShownView; 2], own: &[String; 2]) {
     let annotations = shown.map(|(view, case)| Annotations::of(case, view));
     let view = &shown[0].0;
     ground(painter, page, view);

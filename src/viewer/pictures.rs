@@ -7,8 +7,8 @@ use eframe::egui::{Context, TextureHandle};
 use glam::DVec2;
 
 use super::budget::{DraftSize, PLAY_MS, TURN_MS};
-use super::drafts::{Due, Shown, Side, texture};
-use super::job::{Answer, Difference, Job, PickPurpose, RenderRequest};
+use super::drafts::{Due, ShownImage, ShownSide, texture};
+use super::job::{Answer, ImageDifference, ImageJob, PickPurpose, RenderRequest};
 use super::worker::Worker;
 use crate::case::Case;
 use crate::picking::Pick;
@@ -20,7 +20,7 @@ const REST: Duration = Duration::from_millis(150);
 pub struct Pictures {
     worker: Worker,
     flight: Option<Flight>,
-    sides: [Side; 2],
+    sides: [ShownSide; 2],
     difference: Option<ShownDifference>,
     /// When what is wanted changed last, and what it was.
     changed: Instant,
@@ -45,7 +45,7 @@ pub struct DraftCount {
 /// How far the pictures are apart, and the texture of the map.
 pub struct ShownDifference {
     /// Map and figures.
-    pub difference: Difference,
+    pub difference: ImageDifference,
     /// Its texture.
     pub texture: TextureHandle,
 }
@@ -58,7 +58,7 @@ struct Flight {
     is_draft: bool,
     /// It takes longer than a draft may.
     is_slow: bool,
-    is_cancelled: bool,
+    is_canceled: bool,
     /// Its case was closed.
     is_forgotten: bool,
 }
@@ -79,7 +79,7 @@ impl Pictures {
         Self {
             worker: Worker::start(wake),
             flight: None,
-            sides: [Side::default(), Side::default()],
+            sides: [ShownSide::default(), ShownSide::default()],
             difference: None,
             changed: Instant::now(),
             wanted: Vec::new(),
@@ -90,7 +90,7 @@ impl Pictures {
     }
 
     /// The picture of a side, if it is of this case.
-    pub fn shown(&self, side: usize, case: &Arc<Case>) -> Option<&Shown> {
+    pub fn shown(&self, side: usize, case: &Arc<Case>) -> Option<&ShownImage> {
         let shown = self.sides[side].shown.as_ref();
         shown.filter(|s| Arc::ptr_eq(&s.picture.wanted.case, case))
     }
@@ -123,7 +123,7 @@ impl Pictures {
     pub fn pick(&mut self, side: usize, wanted: RenderRequest, at: DVec2, why: PickPurpose) {
         let is_slow = |f: &&mut Flight| f.is_slow && why != PickPurpose::Hover;
         if let Some(flight) = self.flight.as_mut().filter(is_slow) {
-            flight.is_cancelled = true;
+            flight.is_canceled = true;
             self.worker.cancel();
         }
         self.worker.pick(side, wanted, at, why);
@@ -140,7 +140,7 @@ impl Pictures {
             && self.difference().is_none()
             && a.size == b.size
         {
-            self.worker.ask(Job::Difference([a, b]));
+            self.worker.ask(ImageJob::Difference([a, b]));
         }
     }
 
@@ -210,8 +210,8 @@ impl Pictures {
         if let Some(flight) = &mut self.flight {
             let is_wanted = self.wanted.get(flight.side) == Some(&flight.wanted);
             // Time that plays does not wait for final pictures.
-            if flight.is_slow && !flight.is_cancelled && (!is_wanted || plays) {
-                flight.is_cancelled = true;
+            if flight.is_slow && !flight.is_canceled && (!is_wanted || plays) {
+                flight.is_canceled = true;
                 self.worker.cancel();
             }
             return;
@@ -245,7 +245,7 @@ impl Pictures {
             self.sides[side].make_draft(&mut job, draft, self.is_software());
             self.drafts.asked += 1;
         }
-        self.worker.ask(Job::Picture {
+        self.worker.ask(ImageJob::Picture {
             side,
             wanted: job,
             is_draft: draft.is_some(),
@@ -255,7 +255,7 @@ impl Pictures {
             wanted,
             is_draft: draft.is_some(),
             is_slow,
-            is_cancelled: false,
+            is_canceled: false,
             is_forgotten: false,
         });
     }
@@ -270,7 +270,7 @@ impl Pictures {
         let is_of = |wanted: &RenderRequest| Arc::ptr_eq(&wanted.case, case);
         if let Some(flight) = self.flight.as_mut().filter(|f| is_of(&f.wanted)) {
             flight.is_forgotten = true;
-            flight.is_cancelled = true;
+            flight.is_canceled = true;
             self.worker.cancel();
         }
         for side in &mut self.sides {

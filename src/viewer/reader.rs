@@ -41,12 +41,12 @@ pub struct Curves {
     /// Of which cells.
     pub of: Cells,
     /// In the order in which they were asked for.
-    pub curves: Vec<Curve>,
+    pub curves: Vec<TimeCurve>,
 }
 
 /// A property of some cells over time.
 #[derive(Clone, PartialEq)]
-pub struct Curve {
+pub struct TimeCurve {
     /// Which property.
     pub property: String,
     /// By cell: number and value of the steps that have one; none of a property that does not change.
@@ -244,11 +244,11 @@ impl Thread {
     fn follow(&self, of: Cells, properties: Vec<String>) {
         let case = of.case.clone();
         let cells: Vec<_> = of.cells.iter().map(|cell| index(&case, *cell)).collect();
-        let empty = |property: &String| Curve {
+        let empty = |property: &String| TimeCurve {
             property: property.clone(),
             points: vec![Vec::new(); cells.len()],
         };
-        let mut curves: Vec<Curve> = properties.iter().map(empty).collect();
+        let mut curves: Vec<TimeCurve> = properties.iter().map(empty).collect();
         for step in 0..case.steps.len() {
             if self.has_wishes() {
                 let mut wishes = lock(&self.wishes.0);

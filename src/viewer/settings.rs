@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use super::state::Pace;
+use super::state::Playback;
 use crate::picture::film::FilmFormat;
 
 /// Cases that are remembered, at most.
@@ -25,13 +25,13 @@ pub struct Settings {
     /// Size of letters and controls; 1 is the screen's own.
     pub zoom: f32,
     /// How time plays.
-    pub pace: Pace,
+    pub pace: Playback,
     /// What the buttons of the mouse do.
     pub mouse: Mouse,
     /// The property that cases open with, where they have it and it varies; else what the case is about.
     pub first_property: Option<String>,
     /// How pictures and films are saved.
-    pub export: Export,
+    pub export: ExportSettings,
     /// Where they are kept; `None` where they are not.
     #[serde(skip)]
     file: Option<PathBuf>,
@@ -86,19 +86,19 @@ impl Mouse {
 /// How pictures and films are saved.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
-pub struct Export {
+pub struct ExportSettings {
     /// Width and height of a picture in pixels.
     pub size: [u32; 2],
     /// With title, legend, box and axes, as the scene says.
     pub annotated: bool,
     /// Films.
-    pub film: Film,
+    pub film: AnimationSettings,
 }
 
 /// How films are saved.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
-pub struct Film {
+pub struct AnimationSettings {
     /// Width and height in pixels.
     pub size: [u32; 2],
     /// Kind of file.
@@ -113,17 +113,17 @@ pub struct Film {
     pub views: usize,
 }
 
-impl Default for Export {
+impl Default for ExportSettings {
     fn default() -> Self {
         Self {
             size: [1920, 1080],
             annotated: true,
-            film: Film::default(),
+            film: AnimationSettings::default(),
         }
     }
 }
 
-impl Default for Film {
+impl Default for AnimationSettings {
     fn default() -> Self {
         Self {
             size: [1280, 720],
@@ -144,10 +144,10 @@ impl Default for Settings {
             hides_panels: false,
             folded: [false, false],
             zoom: 1.0,
-            pace: Pace::default(),
+            pace: Playback::default(),
             mouse: Mouse::default(),
             first_property: None,
-            export: Export::default(),
+            export: ExportSettings::default(),
             file: None,
         }
     }

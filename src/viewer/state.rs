@@ -21,7 +21,7 @@ pub struct State {
     /// The window with curves of the selected cells.
     pub curves: CurvePlots,
     /// How time plays.
-    pub pace: Pace,
+    pub pace: Playback,
     /// How slices are stepped through.
     pub slicing: Slicing,
 }
@@ -52,7 +52,8 @@ impl Setup {
     /// The name of the property that is the difference of values shown, where one is.
     pub fn difference(&self) -> Option<String> {
         let comparison = self.comparison.as_ref()?;
-        let is_shown = comparison.layout == Layout::Difference && comparison.differs_in_values();
+        let is_shown =
+            comparison.layout == CompareLayout::Difference && comparison.differs_in_values();
         let now = self.scene.property.as_ref().filter(|_| is_shown)?;
         let base = comparison.property.as_ref().unwrap_or(now);
         let at = match (&comparison.case, &comparison.step) {
@@ -108,14 +109,14 @@ pub struct CurvePlots {
 /// How time plays.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
-pub struct Pace {
+pub struct Playback {
     /// Steps a second, at most: a step stays until its picture has been seen.
     pub steps_a_second: f64,
     /// After the last step comes the first.
     pub repeats: bool,
 }
 
-impl Default for Pace {
+impl Default for Playback {
     fn default() -> Self {
         Self {
             steps_a_second: 2.5,
@@ -129,7 +130,7 @@ impl Default for Pace {
 #[serde(default)]
 pub struct Comparison {
     /// How both are shown.
-    pub layout: Layout,
+    pub layout: CompareLayout,
     /// Another strategy.
     pub strategy: Option<String>,
     /// Another property, over its own range.
@@ -149,7 +150,7 @@ pub fn next_strategy(name: &str) -> StrategyKind {
 
 /// How two pictures are shown.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-pub enum Layout {
+pub enum CompareLayout {
     /// Next to each other.
     #[default]
     Beside,
@@ -195,10 +196,12 @@ impl Comparison {
 
     /// In another layout. Only values can be subtracted, and colors are compared of strategies alone, so what
     /// does not fit gives way.
-    pub fn laid_out(self, layout: Layout, case: &Case, scene: &Scene) -> Self {
+    pub fn laid_out(self, layout: CompareLayout, case: &Case, scene: &Scene) -> Self {
         let fitting = match layout {
-            Layout::Difference if !self.differs_in_values() => Self::opening(case, scene),
-            Layout::ColorDifference if self.differs_in_values() || self.strategy.is_none() => {
+            CompareLayout::Difference if !self.differs_in_values() => Self::opening(case, scene),
+            CompareLayout::ColorDifference
+                if self.differs_in_values() || self.strategy.is_none() =>
+            {
                 Self::of_strategies(scene)
             }
             _ => self,

@@ -6,7 +6,7 @@ use eframe::egui::{self, Rect, Sense, Ui, vec2};
 use glam::{DVec2, DVec3};
 
 use super::action::Action;
-use super::drafts::Shown;
+use super::drafts::ShownImage;
 use super::mouse::{self, Input, Motion};
 use super::settings::Mouse;
 use super::{orbit, overlay};
@@ -50,7 +50,7 @@ impl Viewport {
         ui: &mut Ui,
         case: &Case,
         scene: &Scene,
-        shown: Option<&Shown>,
+        shown: Option<&ShownImage>,
         mouse: Mouse,
     ) -> Touched {
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());

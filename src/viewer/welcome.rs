@@ -8,7 +8,7 @@ use super::document::Document;
 use super::settings::Settings;
 
 /// What the user asked for.
-pub enum Asked {
+pub enum WelcomeRequest {
     /// A case.
     Open(PathBuf),
     /// The dialog for files.
@@ -25,19 +25,19 @@ const FIRST_STEPS: [(&str, &str); 5] = [
 ];
 
 /// Draws the page.
-pub fn show(ui: &mut Ui, settings: &Settings) -> Option<Asked> {
+pub fn show(ui: &mut Ui, settings: &Settings) -> Option<WelcomeRequest> {
     let mut asked = None;
     page(ui, 0.1, |ui| {
         ui.heading(RichText::new("StrataRay").size(34.0));
         ui.label("See inside a reservoir model. Open a case, or drop its files on the window.");
         ui.add_space(16.0);
         if ui.button("Open a case ...").clicked() {
-            asked = Some(Asked::Dialog);
+            asked = Some(WelcomeRequest::Dialog);
         }
         if let Some(sample) = sample() {
             section(ui, "Sample");
             if ui.link(name_of(&sample)).clicked() {
-                asked = Some(Asked::Open(sample));
+                asked = Some(WelcomeRequest::Open(sample));
             }
             ui.label("A faulted oil field after 20 years of water flood:\nwhich oil is left, and behind which fault?");
         }
@@ -46,7 +46,7 @@ pub fn show(ui: &mut Ui, settings: &Settings) -> Option<Asked> {
         }
         for case in &settings.recent {
             let case = recent(ui, case);
-            asked = case.map(Asked::Open).or(asked.take());
+            asked = case.map(WelcomeRequest::Open).or(asked.take());
         }
         ui.add_space(28.0);
         for (what, does) in FIRST_STEPS {
@@ -93,7 +93,7 @@ fn page(ui: &mut Ui, from_top: f32, show: impl FnOnce(&mut Ui)) {
 }
 
 /// What the user asked for on the page of a case that is not there.
-pub enum Answer {
+pub enum MissingCaseAnswer {
     /// Leaves it.
     Close,
     /// Reads it again.
@@ -101,7 +101,7 @@ pub enum Answer {
 }
 
 /// The page of a case that is being opened, or could not be.
-pub fn waiting(ui: &mut Ui, document: &Document) -> Option<Answer> {
+pub fn waiting(ui: &mut Ui, document: &Document) -> Option<MissingCaseAnswer> {
     let mut answer = None;
     page(ui, 0.3, |ui| match (&document.loading, &document.error) {
         (Some(loading), _) => {
@@ -114,7 +114,7 @@ pub fn waiting(ui: &mut Ui, document: &Document) -> Option<Answer> {
             ui.label(format!("{} ...", loading.stage()));
             ui.add_space(12.0);
             if ui.button("Cancel").clicked() {
-                answer = Some(Answer::Close);
+                answer = Some(MissingCaseAnswer::Close);
             }
         }
         (None, error) => {
@@ -125,10 +125,10 @@ pub fn waiting(ui: &mut Ui, document: &Document) -> Option<Answer> {
             ui.add(Label::new(RichText::new(error).color(red)).wrap());
             ui.add_space(12.0);
             if ui.button("Try again").clicked() {
-                answer = Some(Answer::Again);
+                answer = Some(MissingCaseAnswer::Again);
             }
             if ui.button("Close").clicked() {
-                answer = Some(Answer::Close);
+                answer = Some(MissingCaseAnswer::Close);
             }
         }
     });

@@ -8,14 +8,14 @@ use std::thread::JoinHandle;
 
 use glam::DVec2;
 
-use super::job::{Answer, Job, PickPurpose, RenderRequest};
-use super::studio::Studio;
+use super::job::{Answer, ImageJob, PickPurpose, RenderRequest};
+use super::render_session::RenderSession;
 use crate::case::Case;
 
 /// The thread that makes pictures, one at a time.
 pub struct Worker {
     /// Gone when the thread is to end.
-    jobs: Option<Sender<Job>>,
+    jobs: Option<Sender<ImageJob>>,
     answers: Receiver<Answer>,
     cancel: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,
@@ -24,26 +24,26 @@ pub struct Worker {
 impl Worker {
     /// Starts it; `wake` is called with each answer.
     pub fn start(wake: impl Fn() + Send + 'static) -> Self {
-        let (jobs, inbox) = channel::<Job>();
+        let (jobs, inbox) = channel::<ImageJob>();
         let (outbox, answers) = channel();
         let cancel = Arc::new(AtomicBool::new(false));
-        let cancelled = cancel.clone();
+        let canceled = cancel.clone();
         let thread = std::thread::spawn(move || {
             let say = |answer| {
                 // The window may be gone.
                 let _ = outbox.send(answer);
                 wake();
             };
-            let mut studio = Studio::default();
-            if let Err(error) = studio.open(&say) {
+            let mut session = RenderSession::default();
+            if let Err(error) = session.open(&say) {
                 say(Answer::Failed(error));
             }
             for job in inbox {
-                let is_picture = matches!(job, Job::Picture { .. });
-                let answer = AssertUnwindSafe(|| studio.answer(job, &cancelled, &say));
+                let is_picture = matches!(job, ImageJob::Picture { .. });
+                let answer = AssertUnwindSafe(|| session.answer(job, &canceled, &say));
                 say(catch_unwind(answer).unwrap_or_else(|_| {
                     // A driver or library gave up; what it left behind is not to be trusted.
-                    studio = Studio::default();
+                    session = RenderSession::default();
                     let sentence = "the graphics driver crashed; change any setting to retry";
                     match is_picture {
                         true => Answer::Failed(sentence.into()),
@@ -61,14 +61,14 @@ impl Worker {
     }
 
     /// Asks for a picture, or how far two are apart. A picture asked for before must have been answered.
-    pub fn ask(&self, job: Job) {
+    pub fn ask(&self, job: ImageJob) {
         self.cancel.store(false, Ordering::Relaxed);
         self.send(job);
     }
 
     /// Asks what is seen at a place, after what is being made or has been left.
     pub fn pick(&self, side: usize, wanted: RenderRequest, at: DVec2, why: PickPurpose) {
-        self.send(Job::Pick {
+        self.send(ImageJob::Pick {
             side,
             wanted,
             at,
@@ -79,10 +79,10 @@ impl Worker {
     /// Frees what is kept of a case, after what is being made.
     pub fn forget(&self, case: &Arc<Case>) {
         let grid = Arc::downgrade(&case.grid);
-        self.send(Job::Forget(Arc::downgrade(case), grid));
+        self.send(ImageJob::Forget(Arc::downgrade(case), grid));
     }
 
-    fn send(&self, job: Job) {
+    fn send(&self, job: ImageJob) {
         // The thread lives as long as this; were it gone, its silence would be seen by `poll`.
         let _ = self.jobs.as_ref().map(|jobs| jobs.send(job));
     }

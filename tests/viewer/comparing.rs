@@ -3,7 +3,7 @@
 use eframe::egui::{Key, Modifiers, vec2};
 use strataray::scene::{RangeSpec, StepSpec};
 use strataray::view::View;
-use strataray::viewer::{Action, Comparison, Layout, Picture};
+use strataray::viewer::{Action, CompareLayout, Comparison, Picture};
 
 use super::common::{copy_of_sample, data, gpu, sample};
 use super::driven::Driven;
@@ -59,7 +59,7 @@ fn colors_are_compared_of_strategies_and_a_wipe_is_dragged() {
     let Some(_) = gpu() else { return };
     let mut driven = Driven::showing(sample());
     let comparison = Comparison {
-        layout: Layout::ColorDifference,
+        layout: CompareLayout::ColorDifference,
         strategy: Some("srg".into()),
         ..Comparison::default()
     };
@@ -92,7 +92,7 @@ fn colors_are_compared_of_strategies_and_a_wipe_is_dragged() {
     compare(
         &mut driven,
         Comparison {
-            layout: Layout::Wipe(0.5),
+            layout: CompareLayout::Wipe(0.5),
             ..comparison
         },
     );
@@ -108,7 +108,7 @@ fn colors_are_compared_of_strategies_and_a_wipe_is_dragged() {
         .unwrap()
         .layout;
     assert!(
-        matches!(layout, Layout::Wipe(at) if at < 0.45),
+        matches!(layout, CompareLayout::Wipe(at) if at < 0.45),
         "{layout:?}"
     );
 }
@@ -172,7 +172,7 @@ fn a_difference_of_cases_is_made_cell_by_cell() {
     let mut driven = Driven::open(&[copy.clone(), sample()]);
     driven.wait_final();
     let of = |case: &std::path::Path, step: Option<usize>| Comparison {
-        layout: Layout::Difference,
+        layout: CompareLayout::Difference,
         case: Some(case.to_owned()),
         step: step.map(StepSpec::Index),
         ..Comparison::default()

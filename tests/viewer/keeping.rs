@@ -6,7 +6,7 @@ use egui_kittest::kittest::{NodeT, Queryable};
 use strataray::image::metrics::Comparison as Apart;
 use strataray::picture::film::FilmFormat;
 use strataray::scene::{Scene, StepSpec};
-use strataray::viewer::{Action, Comparison, Layout, Settings, State};
+use strataray::viewer::{Action, CompareLayout, Comparison, Settings, State};
 
 use super::common::{copy_of_sample, gpu, sample};
 use super::driven::Driven;
@@ -230,7 +230,7 @@ fn a_command_is_copied_at_the_size_of_the_window() {
     assert!(line.contains("\"property\":\"SOIL\""), "{line}");
     // A difference within the case is what the line draws.
     let difference = Comparison {
-        layout: Layout::Difference,
+        layout: CompareLayout::Difference,
         step: Some(StepSpec::Index(0)),
         ..Comparison::default()
     };

@@ -5,7 +5,7 @@ use egui_kittest::kittest::Queryable;
 use strataray::model::Ijk;
 use strataray::picking::Part;
 use strataray::scene::{Hull, OpacitySpec, Show};
-use strataray::viewer::{Action, Beside, Comparison, CurvePlots, Layout};
+use strataray::viewer::{Action, Beside, CompareLayout, Comparison, CurvePlots};
 
 use super::common::{gpu, sample};
 use super::driven::Driven;
@@ -166,7 +166,7 @@ fn right_of_a_wipe_the_second_picture_is_read() {
         .state_mut()
         .apply(Action::Compare(Some(Comparison {
             property: Some("PORO".into()),
-            layout: Layout::Wipe(0.5),
+            layout: CompareLayout::Wipe(0.5),
             ..Comparison::default()
         })));
     driven.wait_final();

@@ -2,7 +2,7 @@
 
 use eframe::egui::{Key, Modifiers, Pos2, vec2};
 use strataray::scene::CameraSpec;
-use strataray::viewer::{Action, Pace, Window};
+use strataray::viewer::{Action, Playback, Window};
 
 use super::common::{data, gpu};
 use super::driven::Driven;
@@ -91,11 +91,11 @@ fn every_step_that_plays_is_seen() {
     driven.wait_final();
     driven.press(Modifiers::NONE, Key::Home);
     driven.wait_final();
-    let pace = Pace {
+    let pace = Playback {
         steps_a_second: 30.0,
         repeats: false,
     };
-    driven.harness.state_mut().apply(Action::Pace(pace));
+    driven.harness.state_mut().apply(Action::Playback(pace));
     driven.press(Modifiers::NONE, Key::Space);
     let seen = std::cell::RefCell::new(vec![0]);
     driven.wait("the end", |w| {

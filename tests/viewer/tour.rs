@@ -7,7 +7,7 @@ use eframe::egui::{Key, Modifiers, Pos2, vec2};
 use strataray::model::Ijk;
 use strataray::model::topology::Face;
 use strataray::scene::{CameraSpec, CutFace, FramingCamera, Projection, PropertyFilter};
-use strataray::viewer::{Action, Comparison, Layout};
+use strataray::viewer::{Action, CompareLayout, Comparison};
 
 use super::common::gpu;
 use super::driven::Driven;
@@ -145,7 +145,7 @@ fn understand(driven: &mut Driven) {
     driven.click("Transfer function");
     // Before and after, with a line to drag.
     let comparison = Comparison {
-        layout: Layout::Wipe(0.5),
+        layout: CompareLayout::Wipe(0.5),
         step: Some(strataray::scene::StepSpec::Index(0)),
         ..Comparison::default()
     };
@@ -153,7 +153,7 @@ fn understand(driven: &mut Driven) {
     shot(driven, "9_compare");
     // What the flood took, in values.
     let comparison = Comparison {
-        layout: Layout::Difference,
+        layout: CompareLayout::Difference,
         step: Some(strataray::scene::StepSpec::Index(0)),
         ..Comparison::default()
     };

@@ -3,9 +3,8 @@
 use std::io::{self, BufWriter, Write};
 
 use super::GridUnit;
-use crate::geometry;
-use crate::parallel;
 use crate::records::refused;
+use crate::{geometry, parallel};
 
 /// Values that a thread turns into text at a time.
 const PIECE: usize = 1 << 16;

@@ -6,7 +6,7 @@ use super::{Integrator, Sample};
 use crate::model::Hexahedron;
 use crate::reference::locate::Located;
 use crate::scene::LightMode;
-use crate::view::lighting::{GRADIENT_FADE, Light, SHININESS, SPECULAR, SPOT_EDGE, Source};
+use crate::view::lighting::{GRADIENT_FADE, Light, LightSource, SHININESS, SPECULAR, SPOT_EDGE};
 use crate::view::surfaces::{HEADLIGHT_AMBIENT, HEADLIGHT_ASIDE};
 
 /// What a light is from a point.
@@ -143,15 +143,15 @@ impl Integrator<'_> {
 }
 
 impl Incident {
-    fn new(source: Source, point: DVec3) -> Self {
+    fn new(source: LightSource, point: DVec3) -> Self {
         match source {
-            Source::Directional { toward } => Self {
+            LightSource::Directional { toward } => Self {
                 direction: toward,
                 reach: f64::INFINITY,
                 part: 1.0,
             },
-            Source::Point { position } => Self::from_place(position, point),
-            Source::Spot {
+            LightSource::Point { position } => Self::from_place(position, point),
+            LightSource::Spot {
                 position,
                 axis,
                 opening,

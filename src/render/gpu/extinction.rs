@@ -17,7 +17,7 @@ use crate::view::voxels::Shape;
 
 /// What a pyramid is made from.
 #[derive(Clone, Copy)]
-pub struct Source<'a> {
+pub struct PyramidSource<'a> {
     /// Values, in packed voxels; shaders find them in bind group 2.
     pub values: &'a Volume,
     /// Number of their filling.
@@ -59,7 +59,7 @@ struct Of {
 }
 
 impl Of {
-    fn new(source: &Source<'_>, transfer: &TransferFunction) -> Self {
+    fn new(source: &PyramidSource<'_>, transfer: &TransferFunction) -> Self {
         Self {
             size: source.values.shape.size,
             values: source.number,
@@ -76,14 +76,14 @@ impl Of {
 
 impl Pyramid {
     /// True where it is what would be made.
-    pub fn is_of(&self, source: &Source<'_>, transfer: &TransferFunction) -> bool {
+    pub fn is_of(&self, source: &PyramidSource<'_>, transfer: &TransferFunction) -> bool {
         self.of == Of::new(source, transfer)
     }
 
     fn new(
         gpu: &Gpu,
         shape: Shape,
-        source: &Source<'_>,
+        source: &PyramidSource<'_>,
         transfer: &TransferFunction,
         before: Option<Self>,
     ) -> Self {
@@ -106,13 +106,13 @@ impl Pyramid {
 /// What a pass does and writes; its constants.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Pass {
-    work: Work,
+    work: PassWork,
     writes_depths: bool,
     clips: bool,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Work {
+enum PassWork {
     /// Opacities from values.
     Values,
     /// A Gaussian of opacities.
@@ -123,7 +123,7 @@ enum Work {
 
 /// How opacities are filtered along all axes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Filter {
+enum BlurFilter {
     /// Their means in larger voxels.
     Mean,
     /// By the Gaussian of a level.
@@ -158,7 +158,7 @@ impl Blurs {
     pub async fn make(
         &mut self,
         slabs: &mut Slabs<'_>,
-        source: &Source<'_>,
+        source: &PyramidSource<'_>,
         transfer: &TransferFunction,
         group: &wgpu::BindGroup,
         before: Option<Pyramid>,
@@ -173,12 +173,12 @@ impl Blurs {
                 // Blurred from means of what nothing has blurred: what a level loses beyond the box is not
                 // lost to those above.
                 let means = Volume::new(slabs.gpu, Shape::single(shape.at(level - 1), 1));
-                let filter = Filter::Mean;
+                let filter = BlurFilter::Mean;
                 self.filtered(slabs, source, group, filter, &below, (&means, 0))
                     .await?;
                 below = means;
             }
-            let filter = Filter::Gaussian(level);
+            let filter = BlurFilter::Gaussian(level);
             let target = (&made.volume, level);
             self.filtered(slabs, source, group, filter, &below, target)
                 .await?;
@@ -193,7 +193,7 @@ impl Blurs {
     pub async fn make_sharp(
         &mut self,
         slabs: &mut Slabs<'_>,
-        source: &Source<'_>,
+        source: &PyramidSource<'_>,
         transfer: &TransferFunction,
         group: &wgpu::BindGroup,
         before: Option<Pyramid>,
@@ -208,12 +208,12 @@ impl Blurs {
     async fn opacities(
         &mut self,
         slabs: &mut Slabs<'_>,
-        source: &Source<'_>,
+        source: &PyramidSource<'_>,
         group: &wgpu::BindGroup,
         target: &Volume,
     ) -> Result<(), RenderError> {
         let pass = Pass {
-            work: Work::Values,
+            work: PassWork::Values,
             writes_depths: false,
             clips: source.clip_count > 0,
         };
@@ -232,9 +232,9 @@ impl Blurs {
     async fn filtered(
         &mut self,
         slabs: &mut Slabs<'_>,
-        source: &Source<'_>,
+        source: &PyramidSource<'_>,
         group: &wgpu::BindGroup,
-        filter: Filter,
+        filter: BlurFilter,
         below: &Volume,
         (target, level): (&Volume, u32),
     ) -> Result<(), RenderError> {
@@ -249,14 +249,15 @@ impl Blurs {
                 _ => between[axis - 1].level(0),
             };
             let (work, deviation) = match filter {
-                Filter::Mean => (Work::Mean, 0.0),
-                Filter::Gaussian(level) => {
-                    (Work::Gaussian, source.deviation(axis, before[axis], level))
-                }
+                BlurFilter::Mean => (PassWork::Mean, 0.0),
+                BlurFilter::Gaussian(level) => (
+                    PassWork::Gaussian,
+                    source.deviation(axis, before[axis], level),
+                ),
             };
             let pass = Pass {
                 work,
-                writes_depths: axis == 2 && work == Work::Gaussian,
+                writes_depths: axis == 2 && work == PassWork::Gaussian,
                 clips: false,
             };
             let line = Line {
@@ -275,7 +276,7 @@ impl Blurs {
     async fn pass(
         &mut self,
         slabs: &mut Slabs<'_>,
-        source: &Source<'_>,
+        source: &PyramidSource<'_>,
         group: &wgpu::BindGroup,
         pass: Pass,
         line: Line,
@@ -320,7 +321,7 @@ impl Blurs {
     }
 }
 
-impl Source<'_> {
+impl PyramidSource<'_> {
     /// Width of the Gaussian along an axis that makes a level from means over all of the volume's voxels in
     /// `count` parts, in these parts: variances add up, and a mean has one already.
     fn deviation(&self, axis: usize, count: u32, level: u32) -> f64 {

@@ -25,7 +25,7 @@ use crate::render::job::Progress;
 use crate::render::stats::LightTimes;
 use crate::scene::lighting::LightMode;
 use crate::view::View;
-use crate::view::lighting::{Cone, Lighting, SPOT_EDGE, Source};
+use crate::view::lighting::{Cone, LightSource, Lighting, SPOT_EDGE};
 use crate::view::voxels::{Shape, Voxel};
 
 /// Options of the light that are constants of the strategies' pipelines.
@@ -96,7 +96,7 @@ fn mode(mode: LightMode) -> u32 {
 }
 
 /// How often each part has been made. The numbers never fall, so that what was made from a part that a
-/// cancelled update has dropped is stale for good.
+/// canceled update has dropped is stale for good.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Made {
     /// Fillings of the volume of values.
@@ -296,7 +296,7 @@ impl Illumination {
         let Some(field) = &self.field else {
             return Ok(());
         };
-        let source = super::extinction::Source {
+        let source = super::extinction::PyramidSource {
             values: &field.volume,
             number: self.made.fields,
             position: position(view, field.range),
@@ -737,11 +737,17 @@ impl Emitter {
         let camera = &view.camera;
         if camera.parallel.is_none() {
             let position = camera.eye;
-            return Self::at(&Source::Point { position }, DVec3::ONE, grid, view, space);
+            return Self::at(
+                &LightSource::Point { position },
+                DVec3::ONE,
+                grid,
+                view,
+                space,
+            );
         }
         let toward = -camera.forward;
         let viewer = Self::at(
-            &Source::Directional { toward },
+            &LightSource::Directional { toward },
             DVec3::ONE,
             grid,
             view,
@@ -768,11 +774,17 @@ impl Emitter {
         }
     }
 
-    fn at(source: &Source, color: DVec3, grid: &GpuGrid, view: &View, space: &LightSpace) -> Self {
+    fn at(
+        source: &LightSource,
+        color: DVec3,
+        grid: &GpuGrid,
+        view: &View,
+        space: &LightSpace,
+    ) -> Self {
         let none: Self = bytemuck::Zeroable::zeroed();
         let color = color.as_vec3().to_array();
         match *source {
-            Source::Directional { toward } => {
+            LightSource::Directional { toward } => {
                 let toward = space.direction(view, toward);
                 Self {
                     kind: layout::EMITTER_DIRECTIONAL,
@@ -782,13 +794,13 @@ impl Emitter {
                     ..none
                 }
             }
-            Source::Point { position } => Self {
+            LightSource::Point { position } => Self {
                 kind: layout::EMITTER_POINT,
                 at: space.point(grid, view, position).to_array(),
                 color,
                 ..none
             },
-            Source::Spot {
+            LightSource::Spot {
                 position,
                 axis,
                 opening,

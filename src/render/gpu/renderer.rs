@@ -37,12 +37,12 @@ pub struct GpuRenderer {
     solid: Option<Solid>,
     /// Made when points are first located.
     probe: Option<Probe>,
-    shown: Option<Shown>,
+    shown: Option<OnDevice>,
 }
 
 /// The field and selection that are on the device.
 #[derive(Clone, PartialEq)]
-struct Shown {
+struct OnDevice {
     field: Arc<CellField>,
     drawn: Arc<Vec<bool>>,
     interpolation: Interpolation,
@@ -172,7 +172,7 @@ impl Renderer for GpuRenderer {
 
     fn prepare(&mut self, view: &View) -> Result<(), RenderError> {
         let grid = shown_grid(&self.model, view.ghosts.as_ref());
-        let wanted = Shown {
+        let wanted = OnDevice {
             field: view.field.clone(),
             drawn: view.drawn.clone(),
             interpolation: view.interpolation,
@@ -184,7 +184,7 @@ impl Renderer for GpuRenderer {
             self.grid = self.grid.remade(&self.gpu, grid, is_ghost)?;
         }
         if self.shown.as_ref() != Some(&wanted) {
-            let Shown {
+            let OnDevice {
                 field,
                 drawn,
                 interpolation,

@@ -69,7 +69,7 @@ pub struct SurfacePainter {
     paint: Pipeline,
     /// Constants that it was compiled with.
     look: (Surfaces, Shading),
-    shown: Option<Shown>,
+    shown: Option<ShownSurfaces>,
     gap: f32,
     blending: Blending,
     /// Color of a faint hull.
@@ -81,7 +81,7 @@ pub struct SurfacePainter {
 }
 
 /// The surfaces that are shown.
-struct Shown {
+struct ShownSurfaces {
     surfaces: Surfaces,
     /// See [`View::chosen_faults`].
     chosen: Option<Arc<[bool]>>,
@@ -142,7 +142,7 @@ impl SurfacePainter {
             self.paint = Pipeline::variant(gpu, "paint", "main", &constants)?;
             self.look = look;
         }
-        let is_known = |s: &Shown| {
+        let is_known = |s: &ShownSurfaces| {
             let kinds = |s: Surfaces| (s.hull, s.faults);
             s.drawn == grid.versions.drawn
                 && kinds(s.surfaces) == kinds(view.surfaces)
@@ -150,7 +150,7 @@ impl SurfacePainter {
         };
         let shown = match self.shown.take().filter(is_known) {
             Some(known) => known,
-            None => Shown::new(gpu, model, grid, view, boundary)?,
+            None => ShownSurfaces::new(gpu, model, grid, view, boundary)?,
         };
         self.shown = Some(shown);
         self.gap = view.fault_gap() as f32;
@@ -260,7 +260,7 @@ impl SurfacePainter {
     }
 }
 
-impl Shown {
+impl ShownSurfaces {
     fn new(
         gpu: &Gpu,
         model: &Grid,

@@ -145,9 +145,9 @@ struct Fit {
 }
 
 /// A direction in the picture: the ends that sets of points ask for, and the slopes of the two sides.
-type Asked = Vec<(Span, [f64; 2])>;
+type Demands = Vec<(Span, [f64; 2])>;
 
-fn asked(seen: &[Seen]) -> [Asked; 2] {
+fn asked(seen: &[Seen]) -> [Demands; 2] {
     [
         seen.iter().map(|s| (s.across, s.opening.across)).collect(),
         seen.iter().map(|s| (s.upward, s.opening.upward)).collect(),

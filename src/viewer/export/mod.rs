@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::thread::JoinHandle;
 
-use super::state::Layout;
+use super::state::CompareLayout;
 use crate::case::Case;
 use crate::picture::film::{Film, FilmFormat, FilmShape};
 use crate::picture::filming::{FilmingError, shoot};
@@ -24,8 +24,8 @@ pub struct ExportSpec {
     /// How it looks; `size` is the picture's.
     pub scene: Scene,
     /// One picture, or a film.
-    pub kind: Kind,
-    /// Kind of file of a film.
+    pub kind: ExportKind,
+    /// ExportKind of file of a film.
     pub format: FilmFormat,
     /// Without title, legend and axes.
     pub plain: bool,
@@ -43,14 +43,14 @@ pub struct Compared {
     /// How it looks.
     pub scene: Scene,
     /// How both are shown.
-    pub layout: Layout,
+    pub layout: CompareLayout,
 }
 
 impl ExportSpec {
     /// Ending of the file; `None` for a folder of numbered pictures.
     pub fn ending(&self) -> Option<&'static str> {
         match self.kind {
-            Kind::Still => Some("png"),
+            ExportKind::Still => Some("png"),
             _ => self.format.ending(),
         }
     }
@@ -58,7 +58,7 @@ impl ExportSpec {
 
 /// What kind of file is made.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Kind {
+pub enum ExportKind {
     /// A picture.
     Still,
     /// A film of all time steps.
@@ -174,8 +174,8 @@ fn is_canceled(error: &(dyn std::error::Error + 'static)) -> bool {
 fn make(spec: &ExportSpec, path: &Path, progress: &dyn Fn(f64) -> bool) -> Fallible<()> {
     let case = &spec.case;
     let (fps, sequence) = match spec.kind {
-        Kind::Still => return still::still(spec, path, progress),
-        Kind::Steps { fps } => {
+        ExportKind::Still => return still::still(spec, path, progress),
+        ExportKind::Steps { fps } => {
             let steps = step::steps(case, None, 1)?;
             // Looking at all values is a small part of the work.
             let looks = |part: f64| progress(0.05 * part);
@@ -184,7 +184,7 @@ fn make(spec: &ExportSpec, path: &Path, progress: &dyn Fn(f64) -> bool) -> Falli
             };
             (fps, sequence)
         }
-        Kind::Orbit { fps, views } => {
+        ExportKind::Orbit { fps, views } => {
             let turn = Turn {
                 degrees: 360.0,
                 views,
@@ -215,7 +215,7 @@ fn make(spec: &ExportSpec, path: &Path, progress: &dyn Fn(f64) -> bool) -> Falli
 mod tests {
     use super::*;
 
-    fn spec(kind: Kind) -> ExportSpec {
+    fn spec(kind: ExportKind) -> ExportSpec {
         let sample = Path::new(env!("CARGO_MANIFEST_DIR")).join("samples/scissor/SCISSOR.EGRID");
         ExportSpec {
             case: Arc::new(crate::case::load::open(&sample).unwrap()),
@@ -252,17 +252,17 @@ mod tests {
         }
         let folder = tempfile::tempdir().unwrap();
         let file = |name: &str| folder.path().join(name);
-        made(spec(Kind::Still), file("a.png"), false).unwrap();
+        made(spec(ExportKind::Still), file("a.png"), false).unwrap();
         assert!(image::open(file("a.png")).unwrap().width() == 64);
-        let orbit = Kind::Orbit { fps: 5.0, views: 3 };
+        let orbit = ExportKind::Orbit { fps: 5.0, views: 3 };
         made(spec(orbit), file("turn.gif"), false).unwrap();
         assert!(file("turn.gif").metadata().unwrap().len() > 100);
-        let error = made(spec(Kind::Steps { fps: 5.0 }), file("b.gif"), true).unwrap_err();
+        let error = made(spec(ExportKind::Steps { fps: 5.0 }), file("b.gif"), true).unwrap_err();
         assert!(
             error.contains("canceled") && !file("b.gif").exists(),
             "{error}"
         );
-        let error = made(spec(Kind::Still), file("c.tiff"), false).unwrap_err();
+        let error = made(spec(ExportKind::Still), file("c.tiff"), false).unwrap_err();
         assert!(error.contains("c.tiff"), "{error}");
     }
 }

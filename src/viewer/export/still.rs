@@ -14,8 +14,8 @@ use crate::picture::{Annotations, Format, Shot, difference_colors, write_exr, wr
 use crate::render::{self, Executor, Renderer};
 use crate::scene::Scene;
 use crate::view::View;
-use crate::viewer::state::Layout;
-use crate::viewer::studio::{DIFFERENCE_SCALE, difference_title};
+use crate::viewer::render_session::{DIFFERENCE_SCALE, difference_title};
+use crate::viewer::state::CompareLayout;
 
 /// Makes one picture.
 pub fn still(spec: &ExportSpec, path: &Path, progress: &dyn Fn(f64) -> bool) -> Fallible<()> {
@@ -109,10 +109,10 @@ impl StillRenderer {
     ) -> Fallible<Rgb8> {
         let size = spec.scene.size;
         let sizes = match compared.layout {
-            Layout::Beside => halves(size),
+            CompareLayout::Beside => halves(size),
             _ => [size; 2],
         };
-        let is_colors = compared.layout == Layout::ColorDifference;
+        let is_colors = compared.layout == CompareLayout::ColorDifference;
         let spec = &ExportSpec {
             plain: spec.plain || is_colors,
             marked: if is_colors {
@@ -141,7 +141,7 @@ impl StillRenderer {
             false => differing([(cases[0], &a.view), (cases[1], &b.view)]),
         };
         Ok(match compared.layout {
-            Layout::Wipe(at) => wiped(cases[0], [a, b], &texts, at, spec.plain),
+            CompareLayout::Wipe(at) => wiped(cases[0], [a, b], &texts, at, spec.plain),
             _ => {
                 let pictures = [(a, &texts[0]), (b, &texts[1])].map(|(mut p, text)| {
                     let size = p.rgb.size;
@@ -191,7 +191,7 @@ mod tests {
     use super::*;
     use crate::picture::film::FilmFormat;
     use crate::scene::StepSpec;
-    use crate::viewer::export::Kind;
+    use crate::viewer::export::ExportKind;
 
     const SIZE: [u32; 2] = [480, 240];
 
@@ -203,7 +203,7 @@ mod tests {
                 size: SIZE,
                 ..Scene::default()
             },
-            kind: Kind::Still,
+            kind: ExportKind::Still,
             format: FilmFormat::Gif,
             plain: true,
             compared: None,
@@ -211,7 +211,7 @@ mod tests {
         }
     }
 
-    fn at_first_step(spec: &ExportSpec, layout: Layout) -> Compared {
+    fn at_first_step(spec: &ExportSpec, layout: CompareLayout) -> Compared {
         Compared {
             case: spec.case.clone(),
             scene: Scene {
@@ -253,10 +253,10 @@ mod tests {
             ..alone.clone()
         };
         // Left of a wipe the picture is what it was, right of it the other one.
-        let wiped = apart(&one, &saved(&with(Layout::Wipe(0.5)), folder.path()));
+        let wiped = apart(&one, &saved(&with(CompareLayout::Wipe(0.5)), folder.path()));
         assert!(wiped[0] <= SIZE[1] as usize && wiped[1] > 500, "{wiped:?}");
         // Beside each other both are smaller.
-        let both = saved(&with(Layout::Beside), folder.path());
+        let both = saved(&with(CompareLayout::Beside), folder.path());
         let columns = apart(&one, &both);
         assert!(columns[0] > 500 && columns[1] > 500, "{columns:?}");
         // What each has of its own is written on it, unless it is to be plain.
@@ -273,16 +273,16 @@ mod tests {
             ..alone.clone()
         };
         let named = ExportSpec {
-            compared: Some(at_first_step(&named, Layout::Beside)),
+            compared: Some(at_first_step(&named, CompareLayout::Beside)),
             ..named
         };
         let words = apart(&both, &saved(&named, folder.path()));
         assert!(words[0] > 20 && words[1] > 20, "{words:?}");
         // Colors of the two, and a picture for values in linear light, which only one has.
-        let colors = saved(&with(Layout::ColorDifference), folder.path());
+        let colors = saved(&with(CompareLayout::ColorDifference), folder.path());
         assert!(colors.iter().filter(|p| **p == [0, 0, 4]).count() > 1000);
         let exr = folder.path().join("both.exr");
-        let error = still(&with(Layout::Beside), &exr, &|_| true).unwrap_err();
+        let error = still(&with(CompareLayout::Beside), &exr, &|_| true).unwrap_err();
         assert!(error.to_string().contains(".png"), "{error}");
     }
 

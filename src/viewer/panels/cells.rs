@@ -2,7 +2,7 @@
 
 use eframe::egui::{self, Color32, Id, Role, Ui, WidgetInfo};
 
-use super::About;
+use super::PanelContext;
 use super::range_slider::RangeSlider;
 use crate::scene::{Filter, Indices};
 use crate::viewer::action::Action;
@@ -13,7 +13,7 @@ const FIELD: f32 = 84.0;
 /// Lists as they may be typed.
 const FORM: &str = "2,4-6,10-30:2";
 
-pub fn show(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
+pub fn show(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action>) {
     let dims = about.case.grid.dims();
     let mut filter = about.scene.filter.clone();
     for (axis, name) in AXES.into_iter().enumerate() {
@@ -130,7 +130,7 @@ fn wrong(ui: &Ui) -> Color32 {
 }
 
 /// Steps through single slices of an axis.
-fn slices(ui: &mut Ui, about: &About<'_>, filter: &mut Filter, actions: &mut Vec<Action>) {
+fn slices(ui: &mut Ui, about: &PanelContext<'_>, filter: &mut Filter, actions: &mut Vec<Action>) {
     let dims = about.case.grid.dims();
     let before = about.state.slicing;
     let mut slicing = before;
@@ -170,7 +170,7 @@ fn slices(ui: &mut Ui, about: &About<'_>, filter: &mut Filter, actions: &mut Vec
     }
 }
 
-fn exaggeration(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
+fn exaggeration(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action>) {
     let Some(picture) = about.picture else { return };
     let wanted = about.scene.vertical_exaggeration;
     let mut factor = wanted.unwrap_or(picture.view.vertical_exaggeration);

@@ -4,13 +4,13 @@
 use eframe::egui::{self, Ui};
 use glam::DVec3;
 
-use super::About;
+use super::PanelContext;
 use crate::scene::{ClipSpec, CutFace};
 use crate::view::View;
 use crate::view::clip::MAX_CLIP_PLANES;
 use crate::viewer::action::Action;
 
-pub fn show(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
+pub fn show(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action>) {
     let Some(picture) = about.picture else { return };
     let view = &picture.view;
     let mut planes = about.scene.clip.clone();

@@ -2,37 +2,41 @@
 
 use eframe::egui::Ui;
 
-use super::About;
+use super::PanelContext;
 use super::controls::list;
 use crate::scene::{StepSpec, StrategyKind};
 use crate::viewer::action::Action;
-use crate::viewer::state::{Comparison, Layout};
+use crate::viewer::state::{CompareLayout, Comparison};
 
 /// Part of the width that the first picture has when a wipe begins.
 const HALF: f64 = 0.5;
 
 /// Text of the button, layout, and what it shows.
-const LAYOUTS: [(&str, Option<Layout>, &str); 5] = [
+const LAYOUTS: [(&str, Option<CompareLayout>, &str); 5] = [
     ("Off", None, "One image"),
-    ("Beside", Some(Layout::Beside), "Two images from one camera"),
+    (
+        "Beside",
+        Some(CompareLayout::Beside),
+        "Two images from one camera",
+    ),
     (
         "Wipe",
-        Some(Layout::Wipe(HALF)),
+        Some(CompareLayout::Wipe(HALF)),
         "Both images in one place, with a line to drag between them",
     ),
     (
         "Difference",
-        Some(Layout::Difference),
+        Some(CompareLayout::Difference),
         "The values of the first minus those of the second, cell by cell",
     ),
     (
         "Color difference (CIEDE2000)",
-        Some(Layout::ColorDifference),
+        Some(CompareLayout::ColorDifference),
         "How far apart two strategies draw the same values",
     ),
 ];
 
-pub fn show(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
+pub fn show(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action>) {
     let before = &about.state.setup.comparison;
     let mut comparison = before.clone();
     layouts(ui, about, &mut comparison);
@@ -58,10 +62,10 @@ pub fn show(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
     }
 }
 
-fn layouts(ui: &mut Ui, about: &About<'_>, comparison: &mut Option<Comparison>) {
+fn layouts(ui: &mut Ui, about: &PanelContext<'_>, comparison: &mut Option<Comparison>) {
     let scene = &about.state.setup.scene;
     let current = comparison.as_ref().map(|c| c.layout);
-    let kind = |layout: &Option<Layout>| layout.as_ref().map(std::mem::discriminant);
+    let kind = |layout: &Option<CompareLayout>| layout.as_ref().map(std::mem::discriminant);
     ui.horizontal_wrapped(|ui| {
         for (name, layout, what) in LAYOUTS {
             let is_on = kind(&current) == kind(&layout);
@@ -78,16 +82,16 @@ fn layouts(ui: &mut Ui, about: &About<'_>, comparison: &mut Option<Comparison>) 
 }
 
 /// What the second image has of its own.
-fn other(ui: &mut Ui, about: &About<'_>, comparison: &mut Comparison) {
+fn other(ui: &mut Ui, about: &PanelContext<'_>, comparison: &mut Comparison) {
     ui.weak(match comparison.layout {
-        Layout::Beside | Layout::Wipe(_) => "The second image shows",
-        Layout::Difference => "The image minus",
-        Layout::ColorDifference => "The image against",
+        CompareLayout::Beside | CompareLayout::Wipe(_) => "The second image shows",
+        CompareLayout::Difference => "The image minus",
+        CompareLayout::ColorDifference => "The image against",
     });
-    if comparison.layout != Layout::ColorDifference {
+    if comparison.layout != CompareLayout::ColorDifference {
         values(ui, about, comparison);
     }
-    if comparison.layout != Layout::Difference {
+    if comparison.layout != CompareLayout::Difference {
         let strategies = StrategyKind::ALL.map(|k| (k.name().to_owned(), k.name().to_uppercase()));
         let value = &mut comparison.strategy;
         choice(
@@ -101,7 +105,7 @@ fn other(ui: &mut Ui, about: &About<'_>, comparison: &mut Comparison) {
 }
 
 /// What makes the values of the second image others.
-fn values(ui: &mut Ui, about: &About<'_>, comparison: &mut Comparison) {
+fn values(ui: &mut Ui, about: &PanelContext<'_>, comparison: &mut Comparison) {
     let steps = about.case.steps.iter().enumerate();
     let steps: Vec<_> = steps
         .map(|(n, s)| (StepSpec::Index(n), format!("{n}   {}", s.date)))

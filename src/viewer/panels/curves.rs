@@ -5,14 +5,14 @@ use std::ops::RangeInclusive;
 use eframe::egui::{self, Id, ScrollArea, Ui};
 use egui_plot::{GridInput, GridMark, Line, Plot, PlotResponse, Points, VLine};
 
-use super::About;
+use super::PanelContext;
 use super::controls::significant;
 use super::dates::Calendar;
 use super::values::named;
 use crate::case::Case;
 use crate::viewer::action::Action;
 use crate::viewer::marks;
-use crate::viewer::reader::{Curve, Curves};
+use crate::viewer::reader::{Curves, TimeCurve};
 use crate::viewer::state::CurvePlots;
 
 /// Points of a plot's height, at least.
@@ -22,7 +22,7 @@ const MARKS: [i64; 7] = [1, 3, 6, 12, 60, 120, 600];
 const MONTH: f64 = 30.44;
 
 /// Draws the curves, and which properties have some.
-pub fn show(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
+pub fn show(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action>) {
     ui.horizontal_wrapped(|ui| {
         properties(ui, about, actions);
         let step = pointed_before(ui).or(about.picture.map(|p| p.view.step));
@@ -57,7 +57,7 @@ fn pointed_before(ui: &Ui) -> Option<usize> {
 }
 
 /// A list of the properties that change with time.
-fn properties(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
+fn properties(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action>) {
     let chosen = &about.state.curves.properties;
     let mut choose = |properties| {
         actions.push(Action::Curves(CurvePlots {
@@ -100,9 +100,9 @@ fn properties(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
 /// The curves of a property; the step that the pointer points to.
 fn curve(
     ui: &mut Ui,
-    about: &About<'_>,
+    about: &PanelContext<'_>,
     curves: &Curves,
-    curve: &Curve,
+    curve: &TimeCurve,
     height: f32,
 ) -> Option<usize> {
     let case = about.case;
@@ -144,7 +144,7 @@ fn curve(
 }
 
 /// The values of the cells at a step, each in the color of its curve.
-fn values(ui: &mut Ui, curves: &Curves, curve: &Curve, step: Option<usize>) {
+fn values(ui: &mut Ui, curves: &Curves, curve: &TimeCurve, step: Option<usize>) {
     ui.horizontal_wrapped(|ui| {
         for (n, (cell, points)) in curves.of.cells.iter().zip(&curve.points).enumerate() {
             let value = points.iter().find(|(at, _)| Some(*at) == step);

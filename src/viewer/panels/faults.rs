@@ -2,7 +2,7 @@
 
 use eframe::egui::{self, Color32, Ui, vec2};
 
-use super::About;
+use super::PanelContext;
 use super::controls::significant;
 use crate::picture::short_unit;
 use crate::scene::ShownFaults;
@@ -12,7 +12,7 @@ use crate::viewer::action::Action;
 /// Height of the list, in points.
 const LIST: f32 = 180.0;
 
-pub fn show(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
+pub fn show(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action>) {
     let named = &about.case.about.named_faults;
     if named.is_empty() {
         ui.weak("This case names no faults. Names come from FAULTS in a deck: use File > Add files to the case (Ctrl + Shift + O).");
@@ -42,7 +42,7 @@ pub fn show(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
     }
 }
 
-fn list(ui: &mut Ui, about: &About<'_>, shown: &mut ShownFaults) {
+fn list(ui: &mut Ui, about: &PanelContext<'_>, shown: &mut ShownFaults) {
     let unit = short_unit(&about.case.about.length_unit);
     let named = &about.case.about.named_faults;
     let throws = about.case.largest_throws();

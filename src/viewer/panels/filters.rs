@@ -2,7 +2,7 @@
 
 use eframe::egui::{self, Color32, Role, Ui, WidgetInfo, vec2};
 
-use super::About;
+use super::PanelContext;
 use super::cells::clear;
 use super::controls::number;
 use super::range_slider::RangeSlider;
@@ -18,7 +18,7 @@ const BESIDE: f32 = 142.0;
 /// Height of a list of categories, in points.
 const LIST: f32 = 150.0;
 
-pub fn show(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
+pub fn show(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action>) {
     let mut filter = about.scene.filter.clone();
     let mut removed = None;
     for (n, row) in filter.properties.iter_mut().enumerate() {
@@ -52,7 +52,7 @@ pub fn show(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
 }
 
 /// Which property filters, whether it does, and how; true where it is to be removed.
-fn heading(ui: &mut Ui, about: &About<'_>, row: &mut PropertyFilter) -> bool {
+fn heading(ui: &mut Ui, about: &PanelContext<'_>, row: &mut PropertyFilter) -> bool {
     ui.horizontal(|ui| {
         let on = ui.checkbox(&mut row.enabled, "");
         on.widget_info(|| {
@@ -75,7 +75,7 @@ fn heading(ui: &mut Ui, about: &About<'_>, row: &mut PropertyFilter) -> bool {
     .inner
 }
 
-fn property(ui: &mut Ui, about: &About<'_>, name: &mut String) {
+fn property(ui: &mut Ui, about: &PanelContext<'_>, name: &mut String) {
     egui::ComboBox::from_id_salt("property")
         .width((ui.available_width() - BESIDE).max(60.0))
         .truncate()
@@ -90,7 +90,7 @@ fn property(ui: &mut Ui, about: &About<'_>, name: &mut String) {
 }
 
 /// Which values are kept.
-fn values(ui: &mut Ui, about: &About<'_>, row: &mut PropertyFilter) {
+fn values(ui: &mut Ui, about: &PanelContext<'_>, row: &mut PropertyFilter) {
     let mut known = about.spreads.iter().rev();
     let spread = known.find(|s| s.property == row.name);
     match spread.map(|s| s.counts.as_ref()) {
@@ -110,7 +110,7 @@ fn values(ui: &mut Ui, about: &About<'_>, row: &mut PropertyFilter) {
 /// Two handles over the histogram, and the bounds as numbers. A handle at its end leaves that side open.
 fn bounds(
     ui: &mut Ui,
-    about: &About<'_>,
+    about: &PanelContext<'_>,
     row: &mut PropertyFilter,
     (range, log): ([f64; 2], bool),
     bars: &[u32],
@@ -171,7 +171,7 @@ fn bounds(
 }
 
 /// A check box for each category: number, color, cells.
-fn categories(ui: &mut Ui, about: &About<'_>, row: &mut PropertyFilter, all: &[(f64, u32)]) {
+fn categories(ui: &mut Ui, about: &PanelContext<'_>, row: &mut PropertyFilter, all: &[(f64, u32)]) {
     let kept = |values: &Option<Vec<f64>>, v: f64| values.as_ref().is_none_or(|k| k.contains(&v));
     let before: Vec<bool> = all.iter().map(|(v, _)| kept(&row.values, *v)).collect();
     let mut flags = before.clone();
@@ -216,7 +216,7 @@ fn categories(ui: &mut Ui, about: &About<'_>, row: &mut PropertyFilter, all: &[(
 }
 
 /// The colors that categories have in the picture, where it shows them; else those that they would have.
-fn colors(about: &About<'_>, property: &str, all: &[(f64, u32)]) -> Vec<Color32> {
+fn colors(about: &PanelContext<'_>, property: &str, all: &[(f64, u32)]) -> Vec<Color32> {
     let shown = about.picture.filter(|p| p.view.property == property);
     let of_view = |value: f64| {
         let transfer = &shown?.view.transfer;

@@ -3,13 +3,13 @@
 use eframe::egui::{self, Ui};
 use glam::DVec3;
 
-use super::About;
+use super::PanelContext;
 use super::controls::{one_of, slider};
 use crate::scene::lighting::{LightSpec, OcclusionSpec, PRESETS};
 use crate::scene::{LightMode, LightingSpec};
 use crate::viewer::action::Action;
 
-pub fn show(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
+pub fn show(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action>) {
     let current = &about.scene.lighting;
     ui.horizontal_wrapped(|ui| {
         for (name, what) in PRESETS {

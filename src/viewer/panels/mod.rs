@@ -39,12 +39,12 @@ use crate::scene::Scene;
 
 pub use controls::{Choice, list, one_of};
 pub use curves::show as curves;
-pub use player::{Asked, player};
+pub use player::{PlayerRequest, player};
 pub use selection::hover_text;
 pub use table::csv;
 
 /// What a panel knows.
-pub struct About<'a> {
+pub struct PanelContext<'a> {
     /// The case.
     pub case: &'a Arc<Case>,
     /// What the user has set.
@@ -69,7 +69,7 @@ pub struct About<'a> {
     pub others: &'a [(PathBuf, String)],
 }
 
-impl About<'_> {
+impl PanelContext<'_> {
     /// The properties of the case in front; one that is a difference to another case is none of these.
     pub fn properties(&self) -> impl Iterator<Item = &Property> {
         let minus = self.case.minus.as_ref();
@@ -85,7 +85,7 @@ impl About<'_> {
 }
 
 /// What draws a panel.
-type Show = fn(&mut Ui, &About<'_>, &mut Vec<Action>);
+type Show = fn(&mut Ui, &PanelContext<'_>, &mut Vec<Action>);
 
 /// A panel.
 pub struct Panel {
@@ -94,7 +94,7 @@ pub struct Panel {
     /// It is open at first.
     pub is_open: bool,
     /// How many of its things are in use, which its title tells.
-    pub count: fn(&About<'_>) -> usize,
+    pub count: fn(&PanelContext<'_>) -> usize,
     /// Draws it.
     pub show: Show,
 }

@@ -8,7 +8,7 @@ use crate::viewer::document::Document;
 use crate::viewer::keys::Command;
 
 /// What the user asked the player for.
-pub enum Asked {
+pub enum PlayerRequest {
     /// What keys do too.
     Do(Command),
     /// A change.
@@ -16,7 +16,7 @@ pub enum Asked {
 }
 
 /// Draws the player; nothing where there are no steps.
-pub fn player(ui: &mut Ui, document: &Document) -> Option<Asked> {
+pub fn player(ui: &mut Ui, document: &Document) -> Option<PlayerRequest> {
     let (step, count) = document.step()?;
     let case = document.case.as_ref()?;
     let mut asked = None;
@@ -34,7 +34,7 @@ pub fn player(ui: &mut Ui, document: &Document) -> Option<Asked> {
             ("Last", "Last step (End)", Command::End(true)),
         ] {
             if ui.button(name).on_hover_text(what).clicked() {
-                asked = Some(Asked::Do(does));
+                asked = Some(PlayerRequest::Do(does));
             }
         }
         let mut pace = document.state.pace;
@@ -48,7 +48,7 @@ pub fn player(ui: &mut Ui, document: &Document) -> Option<Asked> {
         ui.add(speed)
             .on_hover_text("Steps per second at most; each stays until its image is drawn");
         if pace != document.state.pace {
-            asked = Some(Asked::Change(Action::Pace(pace)));
+            asked = Some(PlayerRequest::Change(Action::Playback(pace)));
         }
         let mut wanted = step;
         let slider = egui::Slider::new(&mut wanted, 0..=count - 1).show_value(false);
@@ -79,7 +79,7 @@ pub fn player(ui: &mut Ui, document: &Document) -> Option<Asked> {
             .response
             .on_hover_text(told(step));
         if wanted != step {
-            asked = Some(Asked::Change(Action::Step(wanted)));
+            asked = Some(PlayerRequest::Change(Action::Step(wanted)));
         }
     });
     asked

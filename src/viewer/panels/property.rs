@@ -2,7 +2,7 @@
 
 use eframe::egui::{self, Ui};
 
-use super::About;
+use super::PanelContext;
 use super::controls::{list, number, one_of, show_chosen};
 use crate::case::{Kind, Property};
 use crate::scene::{Coloring, Interpolation, Mode, OwnRange, RangeSpec, ScaleSpec};
@@ -15,7 +15,7 @@ const GROUPS: [(Kind, &str); 3] = [
     (Kind::Derived, "Derived"),
 ];
 
-pub fn show(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
+pub fn show(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action>) {
     let shown = about.picture.map(|p| p.view.property.as_str());
     let current = about.scene.property.as_deref().or(shown).unwrap_or("");
     properties(ui, about, current, actions);
@@ -31,7 +31,7 @@ pub fn show(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
 }
 
 /// The properties by group, those whose name has the text that is searched.
-fn properties(ui: &mut Ui, about: &About<'_>, current: &str, actions: &mut Vec<Action>) {
+fn properties(ui: &mut Ui, about: &PanelContext<'_>, current: &str, actions: &mut Vec<Action>) {
     let id = ui.scope_id().with("search");
     let mut search: String = ui.data(|d| d.get_temp(id)).unwrap_or_default();
     let edit = egui::TextEdit::singleline(&mut search).hint_text("Search");
@@ -77,7 +77,7 @@ fn properties(ui: &mut Ui, about: &About<'_>, current: &str, actions: &mut Vec<A
 }
 
 /// Turns a property that changes with time into its difference to a step, and back.
-fn differences(ui: &mut Ui, about: &About<'_>, current: &str, actions: &mut Vec<Action>) {
+fn differences(ui: &mut Ui, about: &PanelContext<'_>, current: &str, actions: &mut Vec<Action>) {
     if !about.case.is_dynamic(current) {
         return;
     }
@@ -107,7 +107,7 @@ fn differences(ui: &mut Ui, about: &About<'_>, current: &str, actions: &mut Vec<
     });
 }
 
-fn interpolation(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
+fn interpolation(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action>) {
     let choices = [
         (
             Interpolation::Cell,
@@ -141,7 +141,7 @@ enum Of {
     Fixed,
 }
 
-fn range(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
+fn range(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action>) {
     let Some(picture) = about.picture else { return };
     let [mut low, mut high] = match about.scene.range {
         RangeSpec::Fixed(range) => range,

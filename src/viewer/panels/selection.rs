@@ -5,7 +5,7 @@ use eframe::egui::{self, Ui};
 use super::cells::clear;
 use super::controls::significant;
 use super::values::named;
-use super::{About, table, values};
+use super::{PanelContext, table, values};
 use crate::case::Case;
 use crate::model::Ijk;
 use crate::picking::{Fault, Hit, Part, Pick};
@@ -20,7 +20,7 @@ const ALIKE_FACTOR: f64 = 1.25;
 /// Half of the part of the color range within which values are alike.
 const ALIKE: f64 = 0.025;
 
-pub fn show(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
+pub fn show(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action>) {
     let selected = &about.state.selected;
     let Some(last) = selected.last() else {
         ui.weak("Click a cell in the picture; Ctrl adds more.");
@@ -129,7 +129,7 @@ fn along_ray(ui: &mut Ui, pick: &Pick, cell: Ijk, actions: &mut Vec<Action>) {
 }
 
 /// A cell by its numbers.
-fn go_to(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
+fn go_to(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action>) {
     let dims = about.case.grid.dims();
     let id = ui.scope_id().with("cell");
     let start = about.state.selected.last().copied().unwrap_or([1; 3]);
@@ -155,7 +155,7 @@ fn go_to(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
     ui.data_mut(|d| d.insert_temp(id, (start, cell)));
 }
 
-fn buttons(ui: &mut Ui, about: &About<'_>, table: &Table, actions: &mut Vec<Action>) {
+fn buttons(ui: &mut Ui, about: &PanelContext<'_>, table: &Table, actions: &mut Vec<Action>) {
     ui.horizontal_wrapped(|ui| {
         let curves = ui
             .button("Curves ...")
@@ -236,7 +236,7 @@ fn buttons(ui: &mut Ui, about: &About<'_>, table: &Table, actions: &mut Vec<Acti
 
 /// The filter that keeps values like the last cell's: the same where they are whole numbers, else those
 /// within a part of the color range.
-fn like(about: &About<'_>) -> Option<Filter> {
+fn like(about: &PanelContext<'_>) -> Option<Filter> {
     let picture = about.picture?;
     let name = &picture.view.property;
     let grid = &about.case.grid;

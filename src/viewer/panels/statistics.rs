@@ -5,14 +5,14 @@ use std::time::Duration;
 
 use eframe::egui::{self, Ui};
 
-use super::About;
+use super::PanelContext;
 use super::controls::significant;
 use crate::model::{CellField, Summary};
 use crate::view::View;
 use crate::viewer::action::Action;
 use crate::viewer::job::Picture;
 
-pub fn show(ui: &mut Ui, about: &About<'_>, _actions: &mut Vec<Action>) {
+pub fn show(ui: &mut Ui, about: &PanelContext<'_>, _actions: &mut Vec<Action>) {
     let Some(picture) = about.picture else { return };
     values(ui, about, picture);
     let ms = |d: Duration| format!("{:.1} ms", 1e3 * d.as_secs_f64());
@@ -44,7 +44,7 @@ pub fn show(ui: &mut Ui, about: &About<'_>, _actions: &mut Vec<Action>) {
 type Counted = (Weak<CellField>, Weak<Vec<bool>>);
 
 /// Values of the drawn cells at the step shown.
-fn values(ui: &mut Ui, about: &About<'_>, picture: &Picture) {
+fn values(ui: &mut Ui, about: &PanelContext<'_>, picture: &Picture) {
     let view = &picture.view;
     // Counted again only where values or cells are others.
     let of = (Arc::downgrade(&view.field), Arc::downgrade(&view.drawn));
@@ -93,7 +93,7 @@ fn values(ui: &mut Ui, about: &About<'_>, picture: &Picture) {
     ui.separator();
 }
 
-fn summary(about: &About<'_>, view: &View) -> Option<Summary> {
+fn summary(about: &PanelContext<'_>, view: &View) -> Option<Summary> {
     let field = about.case.field(&view.property, view.step).ok()?;
     let weights = about.case.field("PORV", 0).ok();
     let weights = weights.as_ref().map(|w| w.values());

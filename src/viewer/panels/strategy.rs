@@ -2,12 +2,12 @@
 
 use eframe::egui::{self, Ui};
 
-use super::About;
+use super::PanelContext;
 use super::controls::slider;
 use crate::scene::{Integration, StrategyKind};
 use crate::viewer::action::Action;
 
-pub fn show(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
+pub fn show(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action>) {
     ui.horizontal(|ui| {
         for kind in StrategyKind::ALL {
             let is_on = about.scene.strategy == kind.name();
@@ -34,7 +34,7 @@ pub fn show(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
         .on_hover_text("How rays are sampled; the defaults suit most models");
 }
 
-fn sampling_step(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
+fn sampling_step(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action>) {
     if let Some(picture) = about.picture {
         let mut step = picture.view.sampling_step;
         let speed = 0.01 * step;
@@ -57,7 +57,7 @@ fn sampling_step(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
     }
 }
 
-fn libc(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
+fn libc(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action>) {
     let mut settings = about.scene.libc;
     let mut segments = settings.integration == Integration::Segments;
     ui.checkbox(&mut segments, "Integrate whole segments")
@@ -73,7 +73,7 @@ fn libc(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
     }
 }
 
-fn srg(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
+fn srg(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action>) {
     let mut settings = about.scene.srg;
     let mut budget = settings.budget_mb.unwrap_or(32);
     let of = egui::Slider::new(&mut budget, 1..=4096).logarithmic(true);

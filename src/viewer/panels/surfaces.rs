@@ -2,14 +2,14 @@
 
 use eframe::egui::{self, Ui};
 
-use super::About;
+use super::PanelContext;
 use super::controls::one_of;
 use crate::scene::{CutFace, Hull, Inactive, Mode, Show, ShownFaults};
 use crate::transfer::presets::parse_color;
 use crate::view::Surfaces;
 use crate::viewer::action::Action;
 
-pub fn show(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
+pub fn show(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action>) {
     let mut show = about.scene.show.clone();
     hull(ui, about, &mut show);
     egui::Grid::new("what is shown").num_columns(2).show(ui, |ui| {
@@ -50,7 +50,7 @@ pub fn show(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
 }
 
 /// The outer faces of what is drawn; of opaque cells they are the image.
-fn hull(ui: &mut Ui, about: &About<'_>, show: &mut Show) {
+fn hull(ui: &mut Ui, about: &PanelContext<'_>, show: &mut Show) {
     let choices = [
         (Hull::Hidden, "None", "Only the inside is drawn"),
         (
@@ -75,7 +75,7 @@ fn hull(ui: &mut Ui, about: &About<'_>, show: &mut Show) {
 }
 
 /// The background of the image.
-fn background(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
+fn background(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action>) {
     let Some(color) = parse_color(&about.scene.background) else {
         return;
     };
@@ -92,7 +92,7 @@ fn background(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
     });
 }
 
-fn connections(ui: &mut Ui, about: &About<'_>, show: &mut Show) {
+fn connections(ui: &mut Ui, about: &PanelContext<'_>, show: &mut Show) {
     let count = about.case.about.nnc;
     let button = egui::Checkbox::new(&mut show.nnc, "NNC");
     ui.add_enabled(count > 0, button).on_hover_text(format!(

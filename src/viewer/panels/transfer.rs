@@ -3,7 +3,7 @@
 use eframe::egui::{Rect, Ui, vec2};
 
 use super::controls::{list, number, one_of};
-use super::{About, curve};
+use super::{PanelContext, curve};
 use crate::model::derivatives;
 use crate::scene::transfer::BANDS;
 use crate::scene::{ColorSpec, Coloring, OpacitySpec, RangeSpec, ScaleSpec, TransferSpec};
@@ -14,7 +14,7 @@ use crate::view::look::look_of;
 use crate::viewer::action::Action;
 use crate::viewer::overlay;
 
-pub fn show(ui: &mut Ui, about: &About<'_>, actions: &mut Vec<Action>) {
+pub fn show(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action>) {
     let Some(picture) = about.picture else { return };
     let before = &about.scene.transfer;
     let mut spec = before.clone();
@@ -79,7 +79,7 @@ const PRESETS: [Preset; 5] = [
     ),
 ];
 
-fn opacities(ui: &mut Ui, about: &About<'_>, spec: &mut TransferSpec) {
+fn opacities(ui: &mut Ui, about: &PanelContext<'_>, spec: &mut TransferSpec) {
     ui.horizontal_wrapped(|ui| {
         ui.label("Opacity");
         for (name, what, points) in PRESETS {
@@ -102,7 +102,7 @@ fn opacities(ui: &mut Ui, about: &About<'_>, spec: &mut TransferSpec) {
 }
 
 /// Positions of the smallest and largest value of the step shown.
-fn extent(about: &About<'_>) -> [f64; 2] {
+fn extent(about: &PanelContext<'_>) -> [f64; 2] {
     let view = about.picture.map(|p| &p.view);
     let found = view.and_then(|v| Some((v.field.statistics()?, &v.transfer)));
     found.map_or([0.0, 1.0], |(values, transfer)| {
@@ -124,7 +124,7 @@ fn over([low, high]: [f64; 2], curve: &[[f64; 2]]) -> Vec<[f64; 2]> {
 }
 
 /// Peaks at the boundaries in what is shown.
-fn found_in(about: &About<'_>) -> Option<Vec<[f64; 2]>> {
+fn found_in(about: &PanelContext<'_>) -> Option<Vec<[f64; 2]>> {
     let view = &about.picture?.view;
     let grid = shown_grid(&about.case.grid, view.ghosts.as_ref());
     let found = boundaries::find(&derivatives::samples(grid, &view.field));

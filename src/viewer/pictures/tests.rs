@@ -199,11 +199,11 @@ fn only_clicks_take_the_place_of_a_final_picture() {
             wanted: wanted.clone(),
             is_draft: false,
             is_slow: true,
-            is_cancelled: false,
+            is_canceled: false,
             is_forgotten: false,
         });
         let pictures = &mut turning.pictures;
         pictures.pick(0, wanted.clone(), DVec2::splat(0.5), why);
-        assert_eq!(pictures.flight.as_ref().unwrap().is_cancelled, is_left);
+        assert_eq!(pictures.flight.as_ref().unwrap().is_canceled, is_left);
     }
 }

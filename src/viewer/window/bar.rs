@@ -6,7 +6,7 @@ use super::Window;
 use crate::scene::Mode;
 use crate::viewer::action::Action;
 use crate::viewer::keys::{self, CameraMove, Command};
-use crate::viewer::panels::{self, Asked};
+use crate::viewer::panels::{self, PlayerRequest};
 
 /// The menus and what is in them.
 const MENUS: [(&str, &[Command]); 5] = [
@@ -183,8 +183,8 @@ pub fn bottom(window: &mut Window, ui: &mut Ui, ctx: &Context) {
     let mut command = None;
     egui::Panel::bottom("status").show(ui, |ui| {
         match window.document().and_then(|d| panels::player(ui, d)) {
-            Some(Asked::Do(asked)) => command = Some(asked),
-            Some(Asked::Change(action)) => window.apply(action),
+            Some(PlayerRequest::Do(asked)) => command = Some(asked),
+            Some(PlayerRequest::Change(action)) => window.apply(action),
             None => {}
         }
         let row = egui::vec2(ui.available_width(), ui.spacing().interact_size.y);

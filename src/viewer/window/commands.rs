@@ -7,7 +7,7 @@ use std::time::Instant;
 use eframe::egui::Context;
 
 use super::Window;
-use super::requests::Asked;
+use super::requests::ReadRequests;
 use super::sheets::Sheets;
 use crate::case::Case;
 use crate::scene::{LightingSpec, Scene};
@@ -109,7 +109,7 @@ impl Window {
     pub(super) fn forget(&mut self, case: &Arc<Case>) {
         self.pictures.forget(case);
         self.reader.forget(case);
-        self.asked = Asked::default();
+        self.asked = ReadRequests::default();
     }
 
     fn copy_command(&mut self, ctx: &Context) {

@@ -10,8 +10,8 @@ use super::Window;
 use crate::case::Case;
 use crate::scene::Scene;
 use crate::viewer::action::Action;
-use crate::viewer::panels::{self, About, Panel};
-use crate::viewer::state::{CurvePlots, Layout};
+use crate::viewer::panels::{self, Panel, PanelContext};
+use crate::viewer::state::{CompareLayout, CurvePlots};
 
 /// Points of a side's panels.
 const WIDTH: f32 = 280.0;
@@ -130,11 +130,11 @@ impl Window {
         case: &'a Arc<Case>,
         scene: &'a Scene,
         others: &'a [(PathBuf, String)],
-    ) -> Option<About<'a>> {
+    ) -> Option<PanelContext<'a>> {
         let document = self.document()?;
         let comparison = document.state.setup.comparison.as_ref();
-        let is_compared = comparison.is_some_and(|c| c.layout == Layout::ColorDifference);
-        Some(About {
+        let is_compared = comparison.is_some_and(|c| c.layout == CompareLayout::ColorDifference);
+        Some(PanelContext {
             case,
             state: &document.state,
             scene,
@@ -162,7 +162,7 @@ fn unfolded(
     ui: &mut Ui,
     side: usize,
     list: &[Panel],
-    about: &About<'_>,
+    about: &PanelContext<'_>,
     actions: &mut Vec<Action>,
 ) -> bool {
     let mut folds = false;

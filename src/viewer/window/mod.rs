@@ -21,7 +21,7 @@ use super::cases::{self, Meaning};
 use super::dialogs::{CasesSheet, Dialog};
 use super::document::Document;
 use super::export::Export;
-use super::job::{Difference, Picture};
+use super::job::{ImageDifference, Picture};
 use super::keys;
 use super::loading::Loading;
 use super::pictures::{DraftCount, Pictures};
@@ -32,7 +32,7 @@ use crate::case::load::{self, CasePaths};
 use crate::picking::Pick;
 use difference::CaseDifference;
 use docks::Docks;
-use requests::Asked;
+use requests::ReadRequests;
 use sheets::Sheets;
 use sides::Sides;
 
@@ -57,7 +57,7 @@ pub struct Window {
     /// The property that is to be shown once it is known how it looks.
     awaited: Option<String>,
     /// What the reader was asked for last.
-    asked: Asked,
+    asked: ReadRequests,
     /// The difference of two cases that was asked for last.
     case_difference: Option<CaseDifference>,
     /// The size of letters that is remembered has been set.
@@ -83,7 +83,7 @@ impl Window {
             message: None,
             watches,
             awaited: None,
-            asked: Asked::default(),
+            asked: ReadRequests::default(),
             case_difference: None,
             is_zoomed: false,
         };
@@ -233,7 +233,7 @@ impl Window {
     }
 
     /// How far the two pictures shown are apart, once that is known.
-    pub fn difference(&self) -> Option<&Difference> {
+    pub fn difference(&self) -> Option<&ImageDifference> {
         self.pictures.difference().map(|d| &d.difference)
     }
 

@@ -16,7 +16,7 @@ use crate::viewer::spread::Spread;
 
 /// What the reader was asked for last.
 #[derive(Default, PartialEq)]
-pub struct Asked {
+pub struct ReadRequests {
     table: Option<(Cells, usize)>,
     curves: Option<(Cells, Vec<String>)>,
     ahead: Option<(usize, Vec<(String, usize)>)>,
@@ -124,7 +124,7 @@ impl Window {
             return;
         };
         let cells = document.state.selected.clone();
-        let mut asked = Asked::default();
+        let mut asked = ReadRequests::default();
         if cells.is_empty() {
             (document.table, document.curves) = (None, None);
         } else {

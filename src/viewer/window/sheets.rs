@@ -5,12 +5,12 @@ use eframe::egui::{self, Context, Ui};
 use super::Window;
 use crate::picture::film::FilmFormat;
 use crate::scene::Scene;
-use crate::viewer::dialogs::{Asked, CasesSheet, PathSheet, Purpose};
-use crate::viewer::export::{ExportSpec, Kind};
+use crate::viewer::dialogs::{CasesSheet, PathSheet, Purpose, SheetResult};
+use crate::viewer::export::{ExportKind, ExportSpec};
 use crate::viewer::keys;
 use crate::viewer::panels::{Choice, list, one_of};
-use crate::viewer::settings::{Film, Mouse};
-use crate::viewer::state::Pace;
+use crate::viewer::settings::{AnimationSettings, Mouse};
+use crate::viewer::state::Playback;
 
 /// Which sheets are open.
 #[derive(Default)]
@@ -69,7 +69,7 @@ impl Window {
         }
         if let Some(asked) = self.sheets.path.as_mut().and_then(|sheet| sheet.show(ctx)) {
             self.sheets.path = None;
-            if let Asked::Files(purpose, paths) = asked {
+            if let SheetResult::Files(purpose, paths) = asked {
                 self.choose(ctx, purpose, paths);
             }
         }
@@ -208,13 +208,13 @@ fn first_property(ui: &mut Ui, chosen: &mut Option<String>, shown: Option<&str>)
     });
 }
 
-fn kind(is_film: bool, film: &Film, pace: Pace) -> Kind {
+fn kind(is_film: bool, film: &AnimationSettings, pace: Playback) -> ExportKind {
     match (is_film, film.turns) {
-        (false, _) => Kind::Still,
-        (true, false) => Kind::Steps {
+        (false, _) => ExportKind::Still,
+        (true, false) => ExportKind::Steps {
             fps: film.steps_per_second.unwrap_or(pace.steps_a_second),
         },
-        (true, true) => Kind::Orbit {
+        (true, true) => ExportKind::Orbit {
             fps: film.turn_fps,
             views: film.views,
         },
@@ -265,7 +265,7 @@ fn size(ui: &mut Ui, size: &mut [u32; 2], window: Option<[u32; 2]>) {
     });
 }
 
-fn film(ui: &mut Ui, film: &mut Film, pace: Pace) {
+fn film(ui: &mut Ui, film: &mut AnimationSettings, pace: Playback) {
     let kinds = [
         (false, "Time steps", "One image per time step"),
         (true, "Rotation", "One full rotation about the model"),

@@ -16,10 +16,10 @@ use crate::viewer::action::Action;
 use crate::viewer::job::{PickPurpose, RenderRequest};
 use crate::viewer::keys::Command;
 use crate::viewer::pages::{self, Page};
-use crate::viewer::state::{Comparison, Layout};
-use crate::viewer::studio::difference_title;
+use crate::viewer::render_session::difference_title;
+use crate::viewer::state::{CompareLayout, Comparison};
 use crate::viewer::viewport::{self, Touched, Viewport};
-use crate::viewer::welcome::{self, Answer, Asked};
+use crate::viewer::welcome::{self, MissingCaseAnswer, WelcomeRequest};
 use crate::viewer::{handles, marks, overlay, panels};
 
 /// Where the pictures are, and what the pointer is on.
@@ -74,16 +74,16 @@ impl Window {
     pub(super) fn body(&mut self, ui: &mut Ui, ctx: &Context) {
         let Some(document) = self.documents.get_mut(self.current) else {
             match welcome::show(ui, &self.settings) {
-                Some(Asked::Open(path)) => self.open(ctx, vec![path]),
-                Some(Asked::Dialog) => self.perform(ctx, Command::Open),
+                Some(WelcomeRequest::Open(path)) => self.open(ctx, vec![path]),
+                Some(WelcomeRequest::Dialog) => self.perform(ctx, Command::Open),
                 None => {}
             }
             return;
         };
         if document.case.is_none() {
             match welcome::waiting(ui, document) {
-                Some(Answer::Close) => self.close(self.current),
-                Some(Answer::Again) => self.reload(ctx),
+                Some(MissingCaseAnswer::Close) => self.close(self.current),
+                Some(MissingCaseAnswer::Again) => self.reload(ctx),
                 None => {}
             }
             return;
@@ -137,25 +137,25 @@ impl Window {
             (other, rects[1], &setup.comparison)
         {
             match layout {
-                Some(Layout::Beside) => {
+                Some(CompareLayout::Beside) => {
                     let there = self.viewport(ui, &other, &scene, Some(rect), 1);
                     let link = self.link();
                     let back = |c| link.map_or_else(|| CameraSpec::clone(&c), |l| l.back(&c));
                     touched.camera = touched.camera.or(there.camera.map(back));
                     clicked = clicked.or(there.pick.map(|at| (1, at)));
                 }
-                Some(Layout::Wipe(at)) => {
+                Some(CompareLayout::Wipe(at)) => {
                     let moved = self.wipe(ui, &other, &scene, rect, at);
                     if let Some(at) = moved {
                         touched.actions.push(Action::Compare(Some(Comparison {
-                            layout: Layout::Wipe(at),
+                            layout: CompareLayout::Wipe(at),
                             ..comparison.clone()
                         })));
                     }
                 }
                 _ => self.difference_map(ui, rect),
             }
-            if layout == Some(Layout::ColorDifference) && self.pictures.are_final() {
+            if layout == Some(CompareLayout::ColorDifference) && self.pictures.are_final() {
                 self.pictures.compare();
             }
         }
@@ -188,7 +188,7 @@ impl Window {
         let Some(document) = self.document() else {
             return;
         };
-        let is_beside = comparison.is_some_and(|c| c.layout == Layout::Beside);
+        let is_beside = comparison.is_some_and(|c| c.layout == CompareLayout::Beside);
         for (n, rect) in rects.iter().enumerate().take(1 + usize::from(is_beside)) {
             if let (Some(rect), Some(shown)) = (rect, self.pictures.shown(n, case)) {
                 let view = &shown.picture.view;
@@ -293,7 +293,7 @@ impl Window {
         ui: &Ui,
         pages: &[Option<Page>; 2],
         cases: &[Option<Arc<Case>>; 2],
-        layout: Option<Layout>,
+        layout: Option<CompareLayout>,
     ) {
         for (n, page) in pages.iter().flatten().enumerate() {
             let id = ui.scope_id().with(("image", n));
@@ -308,11 +308,11 @@ impl Window {
             _ => Default::default(),
         };
         let figures = match layout {
-            Some(Layout::ColorDifference) => self.pictures.difference(),
+            Some(CompareLayout::ColorDifference) => self.pictures.difference(),
             _ => None,
         };
         let figures = figures.map(|d| difference_title(&d.difference.figures));
-        let is_shared = matches!(layout, Some(Layout::Wipe(_)));
+        let is_shared = matches!(layout, Some(CompareLayout::Wipe(_)));
         if is_shared && let ([Some(page), _], [Some(first), Some(second)]) = (pages, &shown) {
             pages::draw_shared(ui.painter(), page, [first, second], &own);
             return;
@@ -323,7 +323,7 @@ impl Window {
                 pages::draw(ui.painter(), page, shown, title, &own[n]);
             }
             // Both have the same place.
-            if layout == Some(Layout::ColorDifference) {
+            if layout == Some(CompareLayout::ColorDifference) {
                 break;
             }
         }
@@ -371,7 +371,7 @@ impl Window {
     }
 
     /// Reads the cell and the fault that the pointer rests on, once all pictures are there: none waits for it.
-    fn hover(&mut self, ui: &Ui, ctx: &Context, sides: &[Seen; 2], layout: Option<Layout>) {
+    fn hover(&mut self, ui: &Ui, ctx: &Context, sides: &[Seen; 2], layout: Option<CompareLayout>) {
         let pointed = self.pointed(ui, ctx, sides, layout);
         if self.sides.asked != pointed {
             self.sides.hover = None;
@@ -405,11 +405,14 @@ impl Window {
         ui: &Ui,
         ctx: &Context,
         sides: &[Seen; 2],
-        layout: Option<Layout>,
+        layout: Option<CompareLayout>,
     ) -> Option<Pointed> {
         let pointer = ctx.input(|i| i.pointer.hover_pos())?;
         let is_covered = ctx.layer_id_at(pointer).is_some_and(|l| l != ui.layer_id());
-        if is_covered || ctx.egui_is_using_pointer() || layout == Some(Layout::ColorDifference) {
+        if is_covered
+            || ctx.egui_is_using_pointer()
+            || layout == Some(CompareLayout::ColorDifference)
+        {
             return None;
         }
         let is_on = |rect: &Option<Rect>| rect.is_some_and(|r| r.contains(pointer));
@@ -429,19 +432,22 @@ impl Window {
 }
 
 /// The side that is seen at a place in the first picture.
-fn side_at(layout: Option<Layout>, at: DVec2) -> usize {
+fn side_at(layout: Option<CompareLayout>, at: DVec2) -> usize {
     match layout {
-        Some(Layout::Wipe(line)) if at.x > line => 1,
+        Some(CompareLayout::Wipe(line)) if at.x > line => 1,
         _ => 0,
     }
 }
 
 /// Places of both pictures, and how they are shown.
-fn layout(place: Rect, comparison: Option<&Comparison>) -> ([Option<Rect>; 2], Option<Layout>) {
+fn layout(
+    place: Rect,
+    comparison: Option<&Comparison>,
+) -> ([Option<Rect>; 2], Option<CompareLayout>) {
     let layout = comparison.map(|c| c.layout);
     let rects = match layout {
         None => [Some(place), None],
-        Some(Layout::Beside) => {
+        Some(CompareLayout::Beside) => {
             let (left, right) = place.split_left_right_at_fraction(0.5);
             [
                 left.with_max_x(left.right() - 1.0),
@@ -449,8 +455,8 @@ fn layout(place: Rect, comparison: Option<&Comparison>) -> ([Option<Rect>; 2], O
             ]
             .map(Some)
         }
-        Some(Layout::Difference) => [Some(place), None],
-        Some(Layout::Wipe(_) | Layout::ColorDifference) => [Some(place), Some(place)],
+        Some(CompareLayout::Difference) => [Some(place), None],
+        Some(CompareLayout::Wipe(_) | CompareLayout::ColorDifference) => [Some(place), Some(place)],
     };
     (rects, layout)
 }

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use glam::DVec2;
 
-use super::job::{Answer, Difference, Job, Picture, RenderRequest};
+use super::job::{Answer, ImageDifference, ImageJob, Picture, RenderRequest};
 use crate::case::Case;
 use crate::image::Rgb8;
 use crate::image::metrics::{Comparison, ciede2000_map};
@@ -33,21 +33,21 @@ type Say<'a> = &'a dyn Fn(Answer);
 
 /// The device and two sides of it.
 #[derive(Default)]
-pub struct Studio {
+pub struct RenderSession {
     executor: Option<Arc<dyn Executor>>,
-    sides: [Side; 2],
+    sides: [SideState; 2],
 }
 
 /// A grid on the device, and the scenes that were resolved last: of a draft and of a final picture.
 #[derive(Default)]
-struct Side {
+struct SideState {
     /// Cases that share a grid share what is on the device.
     renderer: Option<Box<dyn Renderer>>,
     resolved: VecDeque<(RenderRequest, Arc<View>)>,
     picker: Picker,
 }
 
-impl Studio {
+impl RenderSession {
     /// The device, opened when it is first asked for.
     ///
     /// # Errors
@@ -67,10 +67,10 @@ impl Studio {
     }
 
     /// Does a job.
-    pub fn answer(&mut self, job: Job, cancel: &AtomicBool, say: Say<'_>) -> Answer {
-        let is_picture = matches!(job, Job::Picture { .. });
+    pub fn answer(&mut self, job: ImageJob, cancel: &AtomicBool, say: Say<'_>) -> Answer {
+        let is_picture = matches!(job, ImageJob::Picture { .. });
         let answer = match job {
-            Job::Picture {
+            ImageJob::Picture {
                 side,
                 wanted,
                 is_draft,
@@ -86,7 +86,7 @@ impl Studio {
                     None => Answer::Canceled,
                 })
             }
-            Job::Pick {
+            ImageJob::Pick {
                 side,
                 wanted,
                 at,
@@ -95,8 +95,8 @@ impl Studio {
                 let pick = self.pick(side, &wanted, at, say);
                 pick.map(|pick| Answer::Picked(why, Box::new(pick)))
             }
-            Job::Difference(of) => difference(of).map(|d| Answer::Difference(Box::new(d))),
-            Job::Forget(case, grid) => self.forget(&case, &grid).map(|()| Answer::Forgotten),
+            ImageJob::Difference(of) => difference(of).map(|d| Answer::Difference(Box::new(d))),
+            ImageJob::Forget(case, grid) => self.forget(&case, &grid).map(|()| Answer::Forgotten),
         };
         answer.unwrap_or_else(|error| {
             if error.is_device {
@@ -155,12 +155,12 @@ impl Studio {
 
     /// Frees the second side's grid where the first one shows another case alone.
     fn share(&mut self, side: usize, case: &Arc<Case>) {
-        let holds_other = |s: &Side| {
+        let holds_other = |s: &SideState| {
             let kept = s.renderer.as_ref();
             kept.is_some_and(|kept| !Arc::ptr_eq(kept.grid(), &case.grid))
         };
         if side == 0 && holds_other(&self.sides[0]) {
-            self.sides[1] = Side::default();
+            self.sides[1] = SideState::default();
         }
     }
 
@@ -203,7 +203,7 @@ impl Studio {
     }
 }
 
-impl Side {
+impl SideState {
     /// The renderer of a case: the one at hand, or a new one.
     fn renderer(
         &mut self,
@@ -250,14 +250,14 @@ impl Side {
     }
 }
 
-fn difference(of: [Arc<Rgb8>; 2]) -> Result<Difference, Failure> {
+fn difference(of: [Arc<Rgb8>; 2]) -> Result<ImageDifference, Failure> {
     let figures = Comparison::of(&of[0], &of[1]).map_err(|e| Failure {
         sentence: e.to_string(),
         is_device: false,
     })?;
     let differences = ciede2000_map(&of[0].pixels, &of[1].pixels).unwrap_or_default();
     let map = picture::difference_colors(&differences, of[0].size, DIFFERENCE_SCALE);
-    Ok(Difference { of, map, figures })
+    Ok(ImageDifference { of, map, figures })
 }
 
 /// Why there is no answer.
@@ -290,9 +290,9 @@ mod tests {
             return;
         };
         let gpu = executor.gpu().clone();
-        let mut studio = Studio {
+        let mut session = RenderSession {
             executor: Some(Arc::new(executor)),
-            ..Studio::default()
+            ..RenderSession::default()
         };
         let sample = Path::new(env!("CARGO_MANIFEST_DIR")).join("samples/scissor/SCISSOR.EGRID");
         let case = Arc::new(crate::case::load::open(&sample).unwrap());
@@ -304,12 +304,12 @@ mod tests {
                     ..Scene::default()
                 },
             };
-            let job = Job::Picture {
+            let job = ImageJob::Picture {
                 side: 0,
                 wanted,
                 is_draft: false,
             };
-            studio.answer(job, &AtomicBool::new(false), &silent)
+            session.answer(job, &AtomicBool::new(false), &silent)
         };
         assert!(matches!(picture(), Answer::Picture(0, _)));
         gpu.device.destroy();
