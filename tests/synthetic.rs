@@ -387,5 +387,5 @@ fn ok_cancelled_writing_says_so() {
     let folder = tempfile::tempdir().unwrap();
     let model = build("box", dims(2, 2, 2), 1);
     let result = save::synthetic(model, &target(folder.path()), &|done| done < 0.3);
-    assert!(matches!(result, Err(save::SaveError::Cancelled)));
+    assert!(matches!(result, Err(save::SaveError::Canceled)));
 }

@@ -38,7 +38,7 @@ pub struct Head {
     /// Number of wells (item 17).
     pub wells: i32,
     /// Strings per well in ZWEL (item 28).
-    pub strings_a_well: i32,
+    pub strings_per_well: i32,
 }
 
 impl CellArrays {
@@ -108,7 +108,7 @@ impl CellArrays {
             },
             clock: [item(207), item(208), item(411)],
             wells: item(17),
-            strings_a_well: item(28),
+            strings_per_well: item(28),
         })
     }
 }
@@ -149,7 +149,7 @@ impl Head {
         set(12, self.active);
         set(15, self.phases);
         set(17, self.wells);
-        set(28, self.strings_a_well);
+        set(28, self.strings_per_well);
         set(65, day);
         set(66, month);
         set(67, year);

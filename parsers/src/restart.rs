@@ -224,7 +224,7 @@ impl Step {
             return Ok(Vec::new());
         };
         let strings = self.arrays.file().strings(entry)?;
-        let each = usize::try_from(self.head.strings_a_well)
+        let each = usize::try_from(self.head.strings_per_well)
             .unwrap_or(0)
             .max(1);
         let wells = usize::try_from(self.head.wells).unwrap_or(0);
@@ -267,7 +267,7 @@ impl<W: Write> RestartWriter<W> {
         let number = |n: usize| i32::try_from(n).map_err(|_| refused(format!("{n} wells")));
         let head = Head {
             wells: number(wells.len())?,
-            strings_a_well: i32::from(!wells.is_empty()),
+            strings_per_well: i32::from(!wells.is_empty()),
             ..head.clone()
         };
         let report = i32::try_from(report).map_err(|_| refused(format!("report {report}")))?;

@@ -128,7 +128,7 @@ fn head() -> Head {
         date: "2001-06-30".into(),
         clock: [23, 59, 30_000_000],
         wells: 0,
-        strings_a_well: 0,
+        strings_per_well: 0,
     }
 }
 

@@ -124,7 +124,7 @@ impl<'a> Comparer<'a> {
         let view = &plan.views.get(n)?.view;
         let mut pictures = Pictures {
             done: 0,
-            all: plan.pictures_a_view(),
+            all: plan.images_per_view(),
             progress,
         };
         let mut shots = Vec::new();
@@ -270,7 +270,7 @@ impl Plan {
         self.strategies.iter().any(|k| self.reference.is(*k))
     }
 
-    fn pictures_a_view(&self) -> usize {
+    fn images_per_view(&self) -> usize {
         let frames = 1 + self.frames.max(1);
         self.strategies.len() * frames + usize::from(!self.has_reference())
     }

@@ -140,7 +140,7 @@ pub struct Lighting {
 const MOST_ALONG: u32 = 2048;
 /// Voxels of the extinction volume for each cell of the grid, at most: about what the paper took for
 /// its models of ten to fifty thousand cells.
-const VOXELS_A_CELL: f64 = 256.0;
+const VOXELS_PER_CELL: f64 = 256.0;
 /// Bytes that a voxel of the extinction volume takes while it is made: value, extinction, pyramid, in
 /// half floats (campagnolo-2021, 4.3.4).
 const VOXEL_BYTES: f64 = 2.0 * (2.0 + 1.0 / 7.0);
@@ -155,7 +155,7 @@ impl VolumeSpec {
         self.size.unwrap_or_else(|| {
             let budget = self.budget_mb.unwrap_or(BUDGET_MB);
             let bytes = f64::from(budget) * f64::from(1 << 20);
-            let voxels = (bytes / VOXEL_BYTES).min(VOXELS_A_CELL * cells as f64);
+            let voxels = (bytes / VOXEL_BYTES).min(VOXELS_PER_CELL * cells as f64);
             let edge = (extent.element_product() / voxels.max(1.0)).cbrt();
             (extent / edge)
                 .to_array()

@@ -111,7 +111,8 @@ pub struct CurvePlots {
 #[serde(default)]
 pub struct Playback {
     /// Steps a second, at most: a step stays until its picture has been seen.
-    pub steps_a_second: f64,
+    #[serde(alias = "steps_a_second")]
+    pub steps_per_second: f64,
     /// After the last step comes the first.
     pub repeats: bool,
 }
@@ -119,7 +120,7 @@ pub struct Playback {
 impl Default for Playback {
     fn default() -> Self {
         Self {
-            steps_a_second: 2.5,
+            steps_per_second: 2.5,
             repeats: true,
         }
     }

@@ -140,7 +140,7 @@ fn an_animation_has_the_players_pace_and_only_formats_of_this_build() {
     driven.press(Modifiers::COMMAND, Key::F12);
     driven.wait_settled();
     assert_eq!(settings().film.steps_per_second, None);
-    let pace = driven.document().state.pace.steps_a_second;
+    let pace = driven.document().state.pace.steps_per_second;
     driven
         .harness
         .get_by_label(&format!("Player speed ({pace} steps/s)"));

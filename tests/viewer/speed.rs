@@ -92,7 +92,7 @@ fn every_step_that_plays_is_seen() {
     driven.press(Modifiers::NONE, Key::Home);
     driven.wait_final();
     let pace = Playback {
-        steps_a_second: 30.0,
+        steps_per_second: 30.0,
         repeats: false,
     };
     driven.harness.state_mut().apply(Action::Playback(pace));

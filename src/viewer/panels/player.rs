@@ -40,7 +40,7 @@ pub fn player(ui: &mut Ui, document: &Document) -> Option<PlayerRequest> {
         let mut pace = document.state.pace;
         ui.checkbox(&mut pace.repeats, "Repeat")
             .on_hover_text("Starts over after the last step");
-        let speed = egui::DragValue::new(&mut pace.steps_a_second)
+        let speed = egui::DragValue::new(&mut pace.steps_per_second)
             .range(0.1..=30.0)
             .speed(0.05)
             .max_decimals(1)

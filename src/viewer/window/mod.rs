@@ -283,7 +283,7 @@ impl Window {
             return;
         };
         let pace = document.state.pace;
-        let waits = Duration::from_secs_f64(1.0 / pace.steps_a_second.max(0.01));
+        let waits = Duration::from_secs_f64(1.0 / pace.steps_per_second.max(0.01));
         let waits = waits.saturating_sub(since.elapsed());
         if waits.is_zero() && has_picture {
             let is_last = document

@@ -212,7 +212,7 @@ fn kind(is_film: bool, film: &AnimationSettings, pace: Playback) -> ExportKind {
     match (is_film, film.turns) {
         (false, _) => ExportKind::Still,
         (true, false) => ExportKind::Steps {
-            fps: film.steps_per_second.unwrap_or(pace.steps_a_second),
+            fps: film.steps_per_second.unwrap_or(pace.steps_per_second),
         },
         (true, true) => ExportKind::Orbit {
             fps: film.turn_fps,
@@ -291,9 +291,9 @@ fn film(ui: &mut Ui, film: &mut AnimationSettings, pace: Playback) {
         }
         false => {
             let mut follows = film.steps_per_second.is_none();
-            let text = format!("Player speed ({} steps/s)", pace.steps_a_second);
+            let text = format!("Player speed ({} steps/s)", pace.steps_per_second);
             if ui.checkbox(&mut follows, text).changed() {
-                film.steps_per_second = (!follows).then_some(pace.steps_a_second);
+                film.steps_per_second = (!follows).then_some(pace.steps_per_second);
             }
             if let Some(steps) = &mut film.steps_per_second {
                 let drag = egui::DragValue::new(steps)
