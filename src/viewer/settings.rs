@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use etcetera::base_strategy::{BaseStrategy, choose_native_strategy};
 use serde::{Deserialize, Serialize};
 
 use super::state::Playback;
@@ -35,6 +36,9 @@ pub struct Settings {
     /// Where they are kept; `None` where they are not.
     #[serde(skip)]
     file: Option<PathBuf>,
+    /// What is wrong with the file, in one sentence.
+    #[serde(skip)]
+    pub problem: Option<String>,
 }
 
 /// What the buttons of the mouse do: a preset (`src/viewer/mouse.rs` has the table).
@@ -149,6 +153,7 @@ impl Default for Settings {
             first_property: None,
             export: ExportSettings::default(),
             file: None,
+            problem: None,
         }
     }
 }
@@ -162,10 +167,31 @@ impl Settings {
     /// Those that a file keeps, or the default ones where it does not.
     pub fn in_file(path: PathBuf) -> Self {
         let text = std::fs::read_to_string(&path).unwrap_or_default();
-        let known: Self = serde_json::from_str(&text).unwrap_or_default();
+        let known = match serde_json::from_str(&text) {
+            Ok(known) => known,
+            Err(error) if !text.trim().is_empty() => Self::instead_of(&path, &error),
+            Err(_) => Self::default(),
+        };
         Self {
             file: Some(path),
             ..known
+        }
+    }
+
+    /// The default ones where a file is broken, which is kept under another name, for it is written anew.
+    fn instead_of(path: &Path, error: &serde_json::Error) -> Self {
+        let copy = path.with_extension("broken.json");
+        let kept = match std::fs::copy(path, &copy) {
+            Ok(_) => format!("a copy of it is {}", copy.display()),
+            Err(error) => format!("it cannot be copied to {}: {error}", copy.display()),
+        };
+        let problem = format!(
+            "{} is not valid, so the settings are the default ones; {kept} ({error})",
+            path.display()
+        );
+        Self {
+            problem: Some(problem),
+            ..Self::default()
         }
     }
 
@@ -197,11 +223,33 @@ impl Settings {
 
 /// Where they are kept; `None` where the system has no such place.
 fn file() -> Option<PathBuf> {
-    let set = |name: &str| std::env::var_os(name).filter(|v| !v.is_empty());
-    let folder = set("STRATARAY_CONFIG")
-        .or_else(|| set("XDG_CONFIG_HOME"))
-        .or_else(|| set("APPDATA"))
-        .map(PathBuf::from)
-        .or_else(|| Some(PathBuf::from(set("HOME")?).join(".config")))?;
+    let chosen = std::env::var_os("STRATARAY_CONFIG").filter(|v| !v.is_empty());
+    let folder = match chosen {
+        Some(chosen) => PathBuf::from(chosen),
+        None => choose_native_strategy().ok()?.config_dir(),
+    };
     Some(folder.join("strataray").join("settings.json"))
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "tests")]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_broken_file_is_kept_and_told() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("settings.json");
+        let read = |text: &str| {
+            std::fs::write(&path, text).unwrap();
+            Settings::in_file(path.clone())
+        };
+        let broken = read("{\"dark\": tru");
+        assert!(broken.dark && broken.problem.unwrap().contains("settings.broken.json"));
+        let copy = std::fs::read_to_string(folder.path().join("settings.broken.json"));
+        assert_eq!(copy.unwrap(), "{\"dark\": tru");
+        let known = read("{\"dark\": false}");
+        assert!(!known.dark && known.problem.is_none());
+        assert!(read("").problem.is_none());
+    }
 }

@@ -68,6 +68,7 @@ impl Window {
     /// The window on some cases; where it `watches`, it follows their files.
     pub fn new(ctx: &Context, cases: Vec<PathBuf>, watches: bool, settings: Settings) -> Self {
         let (waker, reader_waker) = (ctx.clone(), ctx.clone());
+        let message = settings.problem.clone().map(|problem| (problem, true));
         let mut window = Self {
             documents: Vec::new(),
             current: 0,
@@ -80,7 +81,7 @@ impl Window {
             sheets: Sheets::default(),
             dialog: None,
             export: None,
-            message: None,
+            message,
             watches,
             awaited: None,
             asked: ReadRequests::default(),
