@@ -33,7 +33,7 @@ const STRANGERS: [(&str, &[&str]); 4] = [
 
 /// Crates, and the only rooms that know them; `cli` is the command.
 const CRATES: [(&str, &[&str]); 6] = [
-    ("strataray_parsers", &["case"]),
+    ("strataray_parsers", &["case", "lib.rs"]),
     ("wgpu", &["render/gpu"]),
     ("eframe", &["viewer"]),
     ("rfd", &["viewer"]),
@@ -315,6 +315,10 @@ fn rooms_have_one_direction() {
         imports.len()
     );
     assert_eq!(climbs(&imports), Vec::<String>::new());
+    // Whoever wants images knows the contract, and no executor.
+    let gpu = ["render".to_owned(), "gpu".to_owned()];
+    let knows = |(from, to): &&Import| to.starts_with(&gpu) && from[0] != "render";
+    assert_eq!(imports.iter().find(knows), None);
     assert_eq!(circles(&imports), Vec::<String>::new());
 }
 

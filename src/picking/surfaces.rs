@@ -10,9 +10,9 @@ use super::ray::{Ray, is_kept};
 use crate::case::Case;
 use crate::model::topology::Face;
 use crate::model::{CellIndex, FaultFaces, Grid, Ijk};
-use crate::render::gpu::layout::SHEET_LAYERS;
 use crate::scene::Hull;
 use crate::view::View;
+use crate::view::surfaces::SHEET_LAYERS;
 
 /// Part of a box's size by which it is wider than what is in it: a ray along a side must not miss it.
 const SLACK: f64 = 1e-9;

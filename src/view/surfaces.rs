@@ -124,6 +124,8 @@ pub const HEADLIGHT_AMBIENT: f64 = 0.35;
 /// How far to the right of the viewer the headlight is, and how far above, as a part of the distance.
 pub const HEADLIGHT_ASIDE: [f64; 2] = [-0.2, 0.3];
 
+/// Points of sheets that a ray meets, at most.
+pub const SHEET_LAYERS: u32 = 4;
 /// Opacity of a fault's sheet.
 pub const SHEET_OPACITY: f64 = 0.5;
 /// Color (sRGB, 0..1) of faults without a name.

@@ -278,8 +278,7 @@ pub const PACKED_GHOST: u32 = 2047;
 pub const LOOK_COLORED: u32 = 0;
 /// A layer of a faint hull.
 pub const LOOK_FAINT: u32 = 1;
-/// Points of sheets that a ray meets, at most.
-pub const SHEET_LAYERS: u32 = 4;
+pub use crate::view::surfaces::SHEET_LAYERS;
 /// Loop iterations that a point of a surface costs beside its light, about.
 pub const PAINT_WORK: u32 = 2;
 /// Counters, each of a low and a high word.
