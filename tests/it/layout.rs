@@ -1,7 +1,9 @@
 //! Host mirrors against `shaders/shared/layout.wgsl`: names, offsets, spans, constants.
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::mem::{offset_of, size_of};
 
+use strataray::model::topology;
 use strataray::render::gpu::layout::{
     self, BlurInfo, BricksInfo, Emitter, Found, Frame, GridInfo, LightingInfo, PaintInfo, Slab,
     Tile, VolumeInfo,
@@ -10,6 +12,9 @@ use strataray::render::gpu::shader;
 use strataray::view::{lighting, surfaces};
 use wgpu::naga::front::wgsl;
 use wgpu::naga::{Expression, Literal, Module, TypeInner};
+
+/// Both sides' text, to find what the other lacks.
+const HOST: &str = include_str!("../../src/render/gpu/layout.rs");
 
 fn module() -> Module {
     wgsl::parse_str(&shader::compose("layout").unwrap()).unwrap()
@@ -40,167 +45,202 @@ macro_rules! agrees {
         assert_eq!(wgsl, host, stringify!($type));
         // A uniform's span is rounded up; the host may end earlier by trailing padding only.
         assert_eq!(span, size_of::<$type>(), stringify!($type));
+        stringify!($type)
     }};
 }
 
-#[test]
-fn structs_agree() {
-    let m = &module();
-    agrees!(
-        m,
-        Frame,
-        eye,
-        step,
-        forward,
-        early_termination,
-        right,
-        value_low,
-        up,
-        value_scale,
-        grid_from_world_x,
-        width,
-        grid_from_world_y,
-        height,
-        grid_from_world_z,
-        interpolation,
-        box_low,
-        clip_count,
-        box_high,
-        opaque_cuts,
-        view_x,
-        farthest,
-        view_y,
-        world_handedness,
-        view_z,
-        grid_handedness,
-        origin_right,
-        is_parallel,
-        origin_up,
-        reserved,
-        headlight,
-        headlight_scale,
-        ghost,
-        clip_planes
-    );
-    agrees!(
-        m,
-        Tile,
-        origin,
-        size,
-        resume,
-        work_limit,
-        layers,
-        part_width,
-        part_origin,
-        reserved
-    );
-    agrees!(
-        m, PaintInfo, palette, faint, faults, layer, first_row, rows, look, facing, edge_on,
-        reserved
-    );
-    agrees!(
-        m,
-        GridInfo,
-        ni,
-        nj,
-        nk,
-        bins_x,
-        bins_y,
-        reserved,
-        bin_origin,
-        bin_size,
-        depth_low,
-        depth_scale
-    );
+/// Compares the structs of a frame, and gives their names.
+fn structs_of_frames(m: &Module) -> Vec<&'static str> {
+    vec![
+        agrees!(
+            m,
+            Frame,
+            eye,
+            step,
+            forward,
+            early_termination,
+            right,
+            value_low,
+            up,
+            value_scale,
+            grid_from_world_x,
+            width,
+            grid_from_world_y,
+            height,
+            grid_from_world_z,
+            interpolation,
+            box_low,
+            clip_count,
+            box_high,
+            opaque_cuts,
+            view_x,
+            farthest,
+            view_y,
+            world_handedness,
+            view_z,
+            grid_handedness,
+            origin_right,
+            is_parallel,
+            origin_up,
+            reserved,
+            headlight,
+            headlight_scale,
+            ghost,
+            clip_planes
+        ),
+        agrees!(
+            m,
+            Tile,
+            origin,
+            size,
+            resume,
+            work_limit,
+            layers,
+            part_width,
+            part_origin,
+            reserved
+        ),
+        agrees!(
+            m, PaintInfo, palette, faint, faults, layer, first_row, rows, look, facing, edge_on,
+            reserved
+        ),
+        agrees!(
+            m,
+            GridInfo,
+            ni,
+            nj,
+            nk,
+            bins_x,
+            bins_y,
+            reserved,
+            bin_origin,
+            bin_size,
+            depth_low,
+            depth_scale
+        ),
+    ]
+}
+
+fn structs_of_volumes(m: &Module) -> Vec<&'static str> {
+    vec![
+        agrees!(
+            m,
+            VolumeInfo,
+            box_low,
+            value_low,
+            box_extent,
+            value_scale,
+            size,
+            interpolation
+        ),
+        agrees!(m, Slab, first, row, size, level),
+        agrees!(
+            m,
+            BricksInfo,
+            count,
+            levels,
+            position_low,
+            position_scale,
+            empty,
+            even,
+            thin,
+            averages,
+            reserved0,
+            reserved1
+        ),
+        agrees!(
+            m, Found, column, layer, reserved0, reserved1, parameters, value
+        ),
+    ]
+}
+
+fn structs_of_light(m: &Module) -> Vec<&'static str> {
+    vec![
+        agrees!(
+            m,
+            BlurInfo,
+            axis,
+            source_count,
+            made_count,
+            deviation,
+            box_low,
+            position_low,
+            spacing,
+            position_scale,
+            sigma,
+            ghost,
+            clip_count,
+            reserved,
+            clip_planes
+        ),
+        agrees!(
+            m,
+            LightingInfo,
+            box_low,
+            sigma,
+            scale,
+            strength,
+            size,
+            ambient,
+            light_size,
+            volumes,
+            emitters,
+            levels,
+            position_low,
+            position_scale,
+            rays,
+            seed,
+            step,
+            gradient_scale,
+            work,
+            rays_gap,
+            reserved0,
+            reserved1
+        ),
+        agrees!(
+            m, Emitter, at, kind, axis, cos_outer, color, cos_inner, first, ones, threes, sevens,
+            tangent, cosine, length, volume
+        ),
+    ]
 }
 
 #[test]
-fn structs_of_volumes_agree() {
+fn structs_agree_and_none_is_missing() {
+    let text = shader::compose("layout").unwrap();
     let m = &module();
-    agrees!(
-        m,
-        VolumeInfo,
-        box_low,
-        value_low,
-        box_extent,
-        value_scale,
-        size,
-        interpolation
-    );
-    agrees!(m, Slab, first, row, size, level);
-    agrees!(
-        m,
-        BricksInfo,
-        count,
-        levels,
-        position_low,
-        position_scale,
-        empty,
-        even,
-        thin,
-        averages,
-        reserved0,
-        reserved1
-    );
-    agrees!(
-        m, Found, column, layer, reserved0, reserved1, parameters, value
-    );
+    let compared = [structs_of_frames, structs_of_volumes, structs_of_light];
+    let compared: BTreeSet<&str> = compared.iter().flat_map(|of| of(m)).collect();
+    let structs = |text: &str| -> BTreeSet<String> {
+        let module = wgsl::parse_str(text).unwrap();
+        let structs = module.types.iter();
+        let structs = structs.filter(|(_, t)| matches!(t.inner, TypeInner::Struct { .. }));
+        structs.map(|(_, t)| t.name.clone().unwrap()).collect()
+    };
+    let missing = |text: &str| {
+        let found = structs(text).into_iter();
+        found
+            .filter(|name| !compared.contains(name.as_str()))
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(missing(&text), Vec::<String>::new());
+    // The twin: a struct that the host does not know.
+    let more = format!("{text}\nstruct Sheet {{ depth: f32 }}");
+    assert_eq!(missing(&more), ["Sheet"]);
 }
 
-#[test]
-fn structs_of_light_agree() {
-    let m = &module();
-    agrees!(
-        m,
-        BlurInfo,
-        axis,
-        source_count,
-        made_count,
-        deviation,
-        box_low,
-        position_low,
-        spacing,
-        position_scale,
-        sigma,
-        ghost,
-        clip_count,
-        reserved,
-        clip_planes
-    );
-    agrees!(
-        m,
-        LightingInfo,
-        box_low,
-        sigma,
-        scale,
-        strength,
-        size,
-        ambient,
-        light_size,
-        volumes,
-        emitters,
-        levels,
-        position_low,
-        position_scale,
-        rays,
-        seed,
-        step,
-        gradient_scale,
-        work,
-        rays_gap,
-        reserved0,
-        reserved1
-    );
-    agrees!(
-        m, Emitter, at, kind, axis, cos_outer, color, cos_inner, first, ones, threes, sevens,
-        tangent, cosine, length, volume
-    );
+/// A constant.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Number {
+    U32(u32),
+    F32(f32),
 }
 
-#[test]
-fn constants_agree() {
-    let m = module();
-    for (name, host) in [
+/// What shaders tell each other and the host never asks: how SRG passes a brick.
+const AMONG_SHADERS: [&str; 4] = ["PASS_PLAIN", "PASS_EMPTY", "PASS_EVEN", "PASS_THIN"];
+
+/// The host's constants by the names that shaders give them.
+fn twins() -> BTreeMap<String, Number> {
+    let whole = [
         ("INTERPOLATION_CELL", layout::INTERPOLATION_CELL),
         ("INTERPOLATION_VERTEX", layout::INTERPOLATION_VERTEX),
         ("LUT_SIZE", layout::LUT_SIZE),
@@ -243,23 +283,8 @@ fn constants_agree() {
         ("LIGHT_IMAGE", layout::LIGHT_IMAGE),
         ("LIGHT_VOLUME", layout::LIGHT_VOLUME),
         ("LIGHT_RAYS", layout::LIGHT_RAYS),
-    ] {
-        let (_, constant) = m
-            .constants
-            .iter()
-            .find(|(_, c)| c.name.as_deref() == Some(name))
-            .unwrap();
-        let Expression::Literal(Literal::U32(value)) = m.global_expressions[constant.init] else {
-            panic!("{name} is no u32")
-        };
-        assert_eq!(value, host, "{name}");
-    }
-}
-
-#[test]
-fn numbers_of_the_shading_agree() {
-    let m = module();
-    for (name, host) in [
+    ];
+    let real = [
         ("GRADIENT_FADE_LOW", lighting::GRADIENT_FADE[0]),
         ("GRADIENT_FADE_HIGH", lighting::GRADIENT_FADE[1]),
         ("SPECULAR", lighting::SPECULAR),
@@ -270,14 +295,62 @@ fn numbers_of_the_shading_agree() {
         ("EDGE_DARKNESS", surfaces::EDGE_DARKNESS),
         ("EDGE_FADE_LOW", surfaces::EDGE_FADE[0]),
         ("EDGE_FADE_HIGH", surfaces::EDGE_FADE[1]),
-    ] {
-        let named = |(_, c): &(_, &wgpu::naga::Constant)| c.name.as_deref() == Some(name);
-        let (_, constant) = m.constants.iter().find(named).unwrap();
-        let Expression::Literal(Literal::F32(value)) = m.global_expressions[constant.init] else {
-            panic!("{name} is no f32")
+        ("COINCIDENT", topology::COINCIDENT),
+    ];
+    let whole = whole.map(|(name, n)| (name.to_owned(), Number::U32(n)));
+    let real = real.map(|(name, n)| (name.to_owned(), Number::F32(n as f32)));
+    whole.into_iter().chain(real).collect()
+}
+
+/// The constants of a shader's text.
+fn constants(text: &str) -> BTreeMap<String, Number> {
+    let module = wgsl::parse_str(text).unwrap();
+    let constants = module.constants.iter().map(|(_, constant)| {
+        let name = constant.name.clone().unwrap();
+        let number = match module.global_expressions[constant.init] {
+            Expression::Literal(Literal::U32(value)) => Number::U32(value),
+            Expression::Literal(Literal::F32(value)) => Number::F32(value),
+            ref other => panic!("{name} is {other:?}"),
         };
-        assert_eq!(value, host as f32, "{name}");
+        (name, number)
+    });
+    constants.collect()
+}
+
+/// Names of the constants that differ, or that one side lacks.
+fn apart<'a>(
+    shaders: &'a BTreeMap<String, Number>,
+    host: &'a BTreeMap<String, Number>,
+) -> BTreeSet<&'a str> {
+    let names = shaders.keys().chain(host.keys());
+    names
+        .filter(|name| shaders.get(*name) != host.get(*name))
+        .map(String::as_str)
+        .collect()
+}
+
+#[test]
+fn constants_agree_and_none_is_missing() {
+    let text = shader::compose("layout").unwrap();
+    let (shaders, mut host) = (constants(&text), twins());
+    assert_eq!(apart(&shaders, &host), BTreeSet::from(AMONG_SHADERS));
+    // Every constant of the host's module is one of the shaders' too.
+    let declared = HOST.lines().filter_map(|l| l.strip_prefix("pub const "));
+    let declared: Vec<&str> = declared.filter_map(|l| l.split(':').next()).collect();
+    assert!(declared.len() > 30, "{declared:?}");
+    for name in declared {
+        assert!(host.contains_key(name), "{name}");
     }
+    // The twins: another number, and one that the other side lacks.
+    let other = text.replace("const BRICK: u32 = 8u", "const BRICK: u32 = 9u");
+    let more = format!("{text}\nconst BRICKS: u32 = 8u;");
+    for (text, name) in [(other, "BRICK"), (more, "BRICKS")] {
+        let shaders = constants(&text);
+        let mut apart = apart(&shaders, &host);
+        assert!(apart.remove(name) && apart == BTreeSet::from(AMONG_SHADERS));
+    }
+    host.insert("GONE".into(), Number::U32(1));
+    assert!(apart(&shaders, &host).contains("GONE"));
 }
 
 #[test]
