@@ -41,7 +41,7 @@ fn psnr(a: &Image, b: &Image, view: &View) -> f64 {
     psnr_8bit(a.as_flattened(), b.as_flattened())
 }
 
-/// PSNR in dB that a strategy must reach: `tests/pictures.rs` says why they differ.
+/// PSNR in dB that a strategy must reach: `pictures.rs` says why they differ.
 fn least(strategy: StrategyKind) -> f64 {
     match strategy {
         StrategyKind::Plts => 60.0,

@@ -3,49 +3,61 @@
 use crate::common;
 use crate::common::cone::{Model, Traced};
 use glam::DVec3;
-use serde_json::{Value, json};
+use serde_json::json;
 use strataray::render::gpu::cones::ConeTable;
 
 /// Half floats of transmittances, and the optical depth behind which cones end.
 const HALVES: f64 = 0.0008;
 
+/// A table of another program: half angle in degrees, splits, length; and distance, sigma, level, parts, radius,
+/// amplitude and weight of each section.
+type Table = ([f64; 3], Vec<[f64; 7]>);
+
+fn tables() -> Vec<Table> {
+    let text = std::fs::read_to_string(common::bundled("metrics/cone_tables.csv")).unwrap();
+    let mut tables: Vec<Table> = Vec::new();
+    for line in text.lines().filter(|line| !line.starts_with('#')) {
+        let numbers: Vec<f64> = line.split(',').map(|n| n.parse().unwrap()).collect();
+        let (head, section) = numbers.split_at(3);
+        let (head, section) = (head.try_into().unwrap(), section.try_into().unwrap());
+        match tables.last_mut() {
+            Some((last, sections)) if *last == head => sections.push(section),
+            _ => tables.push((head, vec![section])),
+        }
+    }
+    tables
+}
+
 #[test]
 fn tables_are_those_of_another_program() {
-    let Some(path) = common::data("metrics/cone_tables.json") else {
-        return;
-    };
-    let file: Value = serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap();
-    let tables = file["tables"].as_array().unwrap();
+    let tables = tables();
     assert_eq!(tables.len(), 12);
-    let apart = |expected: &Value, splits: u64| -> f64 {
-        let number = |of: &Value, name: &str| of[name].as_f64().unwrap();
-        let angle = number(expected, "half_angle_degrees").to_radians();
-        let table = ConeTable::new(angle, splits as u32, 3.0, number(expected, "length"));
-        let sections = expected["sections"].as_array().unwrap();
-        if table.sections.len() != sections.len() {
+    let apart = |([angle, _, length], expected): &Table, splits: f64| -> f64 {
+        let table = ConeTable::new(angle.to_radians(), splits as u32, 3.0, *length);
+        if table.sections.len() != expected.len() {
             return f64::INFINITY;
         }
-        let pairs = table.sections.iter().zip(sections);
-        let differences = pairs.flat_map(|(s, e)| {
+        let found = table.sections.iter().map(|s| {
+            let [level, parts] = [s.level, s.parts].map(f64::from);
             [
-                (s.distance, "distance"),
-                (s.sigma, "sigma"),
-                (f64::from(s.level), "level"),
-                (f64::from(s.parts), "cones"),
-                (s.radius, "radius"),
-                (s.amplitude, "amplitude"),
-                (s.weight, "weight"),
+                s.distance,
+                s.sigma,
+                level,
+                parts,
+                s.radius,
+                s.amplitude,
+                s.weight,
             ]
-            .map(|(found, name)| (found - number(e, name)).abs())
         });
-        differences.fold(0.0, f64::max)
+        let pairs = found.flatten().zip(expected.as_flattened());
+        pairs.map(|(f, e)| (f - e).abs()).fold(0.0, f64::max)
     };
     let mut twins = 0;
-    for table in tables {
-        let splits = table["splits"].as_u64().unwrap();
+    for table in &tables {
+        let [_, splits, _] = table.0;
         let error = apart(table, splits);
         assert!(error < 1e-9, "{splits}: {error}");
-        twins += u32::from(apart(table, if splits == 1 { 3 } else { 1 }) > 0.01);
+        twins += u32::from(apart(table, if splits == 1.0 { 3.0 } else { 1.0 }) > 0.01);
     }
     // A cone of one degree is never split.
     assert_eq!(twins, 9);

@@ -32,9 +32,7 @@ fn deviations(found: Comparison, pair: &serde_json::Value) -> [f64; 4] {
 
 #[test]
 fn figures_are_those_of_scikit_image() {
-    let Some(path) = common::data("metrics/metrics.json") else {
-        return;
-    };
+    let path = common::bundled("metrics/metrics.json");
     let text = std::fs::read_to_string(&path).unwrap();
     let expected: serde_json::Value = serde_json::from_str(&text).unwrap();
     let pairs = expected["pairs"].as_array().unwrap();
@@ -56,10 +54,7 @@ fn figures_are_those_of_scikit_image() {
 
 #[test]
 fn ciede2000_is_that_of_the_published_pairs() {
-    let Some(path) = common::data("metrics/ciede2000_pairs.csv") else {
-        return;
-    };
-    let text = std::fs::read_to_string(path).unwrap();
+    let text = std::fs::read_to_string(common::bundled("metrics/ciede2000_pairs.csv")).unwrap();
     let pairs: Vec<[f64; 7]> = text
         .lines()
         .filter(|line| !line.starts_with('#'))

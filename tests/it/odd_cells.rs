@@ -264,13 +264,9 @@ fn radial_grids_have_no_grooves() {
 
 #[test]
 fn the_reported_taper_is_whole() {
-    let (Some(gpu), Some(model), Some(file)) = (
-        common::gpu(),
-        common::data("reported/F06_TAPER.EGRID"),
-        common::data("reported/F06_points.csv"),
-    ) else {
-        return;
-    };
+    let Some(gpu) = common::gpu() else { return };
+    let [model, file] =
+        ["F06_TAPER.EGRID", "F06_points.csv"].map(|file| common::bundled("reported").join(file));
     let case = load::open(&model).unwrap();
     let text = std::fs::read_to_string(file).unwrap();
     let number = |v: &str| v.trim().parse::<f64>().unwrap();

@@ -174,47 +174,88 @@ fn statistics(facts: &Value, dual: bool) -> (Vec<String>, Vec<Value>) {
     asked.into_iter().unzip()
 }
 
+/// What other programs say of the cases of a file.
+fn cases(path: &Path) -> serde_json::Map<String, Value> {
+    let read: Value = serde_json::from_slice(&std::fs::read(path).unwrap()).unwrap();
+    read.as_object().unwrap().clone()
+}
+
+/// The facts that every clone has; their cases are named from the project's folder.
+fn bundled() -> (&'static Path, serde_json::Map<String, Value>) {
+    let cases = cases(&common::bundled("facts.json"));
+    (Path::new(env!("CARGO_MANIFEST_DIR")), cases)
+}
+
 #[test]
-fn info_agrees_with_other_programs() {
+fn info_agrees_with_a_plain_program() {
+    let (folder, cases) = bundled();
+    let compared = cases.iter().map(|(c, facts)| compare(c, folder, facts));
+    let compared: Vec<usize> = compared.collect();
+    println!("{compared:?} facts agree");
+    assert_eq!(cases.len(), 3);
+    assert!(compared.iter().sum::<usize>() > 100, "{compared:?}");
+}
+
+#[test]
+fn info_agrees_with_other_programs_on_real_models() {
     let Some(path) = common::data("oracle.json") else {
         return;
     };
     let folder = path.parent().unwrap();
-    let oracle: Value = serde_json::from_slice(&std::fs::read(&path).unwrap()).unwrap();
-    let mut cases = 0;
-    for (case, facts) in oracle.as_object().unwrap() {
+    let mut count = 0;
+    for (case, facts) in cases(&path) {
         if case.starts_with('_') || facts["formatted"] == true {
             continue;
         }
-        let compared = compare(case, folder, facts);
+        let compared = compare(&case, folder, &facts);
         println!("{case}: {compared} facts agree");
-        cases += 1;
+        count += 1;
     }
-    assert!(cases >= 20, "only {cases} cases were compared");
+    assert!(count >= 20, "only {count} cases were compared");
 }
 
 #[test]
 fn a_wrong_fact_is_noticed() {
-    let Some(path) = common::data("oracle.json") else {
-        return;
-    };
-    let oracle: Value = serde_json::from_slice(&std::fs::read(&path).unwrap()).unwrap();
-    let case = "editnnc/9_EDITNNC.EGRID";
+    let (folder, cases) = bundled();
+    let case = "samples/scissor/SCISSOR.EGRID";
     for pointer in [
         "/grid/active_cells",
         "/grid/bulk_volume_active_trilinear",
+        "/grid/fault_faces_active_pairs/tol_0.001/J",
         "/nnc/nnc_global_global",
         "/grid/bbox_active_raw/x/1",
+        "/init/stats/PORO/mean",
+        "/restart/detail/10/SWAT/max",
+        "/restart/report_steps/20/days",
     ] {
-        let mut facts = oracle[case].clone();
+        let mut facts = cases[case].clone();
         let fact = facts.pointer_mut(pointer).unwrap();
         *fact = if fact.is_u64() {
             (fact.as_u64().unwrap() + 1).into()
         } else {
             (fact.as_f64().unwrap() * 1.0001).into()
         };
-        let folder = path.parent().unwrap().to_owned();
-        let noticed = std::panic::catch_unwind(move || compare(case, &folder, &facts));
+        let noticed = std::panic::catch_unwind(move || compare(case, folder, &facts));
         assert!(noticed.is_err(), "{pointer}");
     }
+}
+
+#[test]
+fn real_models_that_are_not_there_fail_where_they_are_required() {
+    // This program runs the test above, without the folder.
+    let passes = |required: &str| {
+        let mut tests = Command::new(std::env::current_exe().unwrap());
+        tests
+            .args([
+                "--exact",
+                "oracle::info_agrees_with_other_programs_on_real_models",
+            ])
+            .env("REQUIRE_DATA", required)
+            .env_remove("STRATARAY_DATA");
+        let output = tests.output().unwrap();
+        let said = String::from_utf8(output.stdout).unwrap();
+        assert!(said.contains("running 1 test"), "{said}");
+        output.status.success()
+    };
+    assert!(passes("0") && !passes("1"));
 }

@@ -92,13 +92,9 @@ fn a_hidden_cell_takes_no_point_from_one_that_is_drawn() {
 
 #[test]
 fn the_reported_grid_has_the_right_mean() {
-    let (Some(gpu), Some(model), Some(scene)) = (
-        common::gpu(),
-        common::data("reported/F25_OVERLAP.GRDECL"),
-        common::data("reported/F25_OVERLAP.json"),
-    ) else {
-        return;
-    };
+    let Some(gpu) = common::gpu() else { return };
+    let [model, scene] = ["F25_OVERLAP.GRDECL", "F25_OVERLAP.json"]
+        .map(|file| common::bundled("reported").join(file));
     let case = load::open(&model).unwrap();
     let mut renderer = GpuRenderer::new(gpu, &case.grid).unwrap();
     let text = std::fs::read_to_string(scene).unwrap();

@@ -395,7 +395,7 @@ fn ghosts_of_inactive_cells_agree_with_the_reference() {
                     case.about.name,
                     strategy.name()
                 );
-                // A resampled grid's own error may exceed what ghosts change; tests/srg.rs has them alone.
+                // A resampled grid's own error may exceed what ghosts change; srg.rs has them alone.
                 let gain = match strategy {
                     StrategyKind::Srg => f64::NEG_INFINITY,
                     _ => 6.0,
