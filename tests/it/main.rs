@@ -36,6 +36,7 @@ mod occlusion;
 mod odd_cells;
 mod oracle;
 mod overlap;
+mod parameters;
 mod picking;
 mod pictures;
 mod point_location;
