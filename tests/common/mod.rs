@@ -18,15 +18,29 @@ use std::sync::Arc;
 
 use strataray::render::gpu::Gpu;
 
-/// The folder of real models, or `None` with a sentence where it is absent.
+/// A file in the folder of real models, or `None` with a sentence where the folder is absent, which is a failure
+/// where REQUIRE_DATA is 1.
 pub fn data(file: &str) -> Option<PathBuf> {
     let Some(folder) = std::env::var_os("STRATARAY_DATA") else {
-        eprintln!("SKIPPED: STRATARAY_DATA is not set, so {file} is not there");
+        let missing = format!("STRATARAY_DATA is not set, so {file} is not there");
+        assert!(!is_required("REQUIRE_DATA"), "{missing}");
+        eprintln!("SKIPPED: {missing}");
         return None;
     };
     let path = Path::new(&folder).join(file);
     assert!(path.exists(), "{} is missing", path.display());
     Some(path)
+}
+
+/// A file of the tests' own small data, which every clone has.
+pub fn bundled(file: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data");
+    folder.join(file)
+}
+
+/// Whether a variable says that what a test needs must be there.
+fn is_required(variable: &str) -> bool {
+    std::env::var(variable).is_ok_and(|v| v == "1")
 }
 
 /// The bundled sample.
@@ -60,7 +74,7 @@ pub fn models() -> Vec<PathBuf> {
 pub fn gpu() -> Option<Arc<Gpu>> {
     match Gpu::new(None) {
         Ok(gpu) => Some(Arc::new(gpu)),
-        Err(error) if std::env::var("REQUIRE_GPU").is_ok_and(|v| v == "1") => panic!("{error}"),
+        Err(error) if is_required("REQUIRE_GPU") => panic!("{error}"),
         Err(error) => {
             eprintln!("SKIPPED: {error}");
             None

@@ -25,6 +25,15 @@ pub enum Parameters {
 }
 
 impl Parameters {
+    /// The way of a name, `uniform` or `storage`.
+    pub fn named(name: &str) -> Option<Self> {
+        match name {
+            "uniform" => Some(Self::Uniform),
+            "storage" => Some(Self::Storage),
+            _ => None,
+        }
+    }
+
     pub(super) fn declared(self, text: String) -> String {
         match self {
             Self::Uniform => text,
@@ -45,6 +54,11 @@ impl SharedLayouts {
             groups: groups.map(|g| layout(device, &module, g)).collect(),
             parameters,
         })
+    }
+
+    /// How shaders read their parameters.
+    pub fn parameters(&self) -> Parameters {
+        self.parameters
     }
 
     /// The layout of a shared group.

@@ -24,6 +24,10 @@ impl LateError {
     }
 }
 
+/// The variable that says how shaders read their parameters, `uniform` or `storage`, whatever suits the adapter:
+/// so the way of GPUs can be tried on software.
+pub const PARAMETERS: &str = "STRATARAY_PARAMETERS";
+
 /// A device with its queue. Errors that the driver reports late are kept until [`Gpu::check`].
 pub struct Gpu {
     /// The logical device.
@@ -46,22 +50,31 @@ impl Gpu {
     /// contains `wanted`, whatever the letter case.
     ///
     /// # Errors
-    /// When there is no (such) adapter, or it lacks a limit.
+    /// When there is no (such) adapter, it lacks a limit, or [`PARAMETERS`] has an unknown value.
     pub fn new(wanted: Option<&str>) -> Result<Self, RenderError> {
-        Self::open(&best_adapter(wanted)?)
+        let adapter = best_adapter(wanted)?;
+        let parameters = parameters_for(&adapter.get_info())?;
+        Self::open(&adapter, parameters)
     }
 
-    fn open(adapter: &wgpu::Adapter) -> Result<Self, RenderError> {
+    /// As [`Gpu::new`], with parameters read in a given way.
+    ///
+    /// # Errors
+    /// When there is no (such) adapter, or it lacks a limit.
+    pub fn with_parameters(
+        wanted: Option<&str>,
+        parameters: Parameters,
+    ) -> Result<Self, RenderError> {
+        Self::open(&best_adapter(wanted)?, parameters)
+    }
+
+    fn open(adapter: &wgpu::Adapter, parameters: Parameters) -> Result<Self, RenderError> {
         let info = adapter.get_info();
         let unsuitable = |reason: String| RenderError::Unsuitable {
             adapter: info.name.clone(),
             reason,
         };
         let offered = adapter.limits();
-        let parameters = match info.device_type {
-            wgpu::DeviceType::Cpu => Parameters::Storage,
-            _ => Parameters::Uniform,
-        };
         let needed = match parameters {
             Parameters::Uniform => 17,
             Parameters::Storage => 23,
@@ -336,6 +349,21 @@ fn best_adapter(wanted: Option<&str>) -> Result<wgpu::Adapter, RenderError> {
         }),
         _ => Err(RenderError::NoAdapter),
     }
+}
+
+/// How shaders read their parameters: as [`PARAMETERS`] says, or as suits the adapter.
+fn parameters_for(info: &wgpu::AdapterInfo) -> Result<Parameters, RenderError> {
+    let Some(name) = std::env::var_os(PARAMETERS) else {
+        return Ok(match is_software(info) {
+            true => Parameters::Storage,
+            false => Parameters::Uniform,
+        });
+    };
+    let name = name.to_string_lossy();
+    Parameters::named(&name).ok_or_else(|| RenderError::Unsuitable {
+        adapter: info.name.clone(),
+        reason: format!("{PARAMETERS} is {name}, but can only be uniform or storage"),
+    })
 }
 
 fn is_software(info: &wgpu::AdapterInfo) -> bool {

@@ -1,0 +1,48 @@
+//! Tests of the library and of the command, one module for each subject.
+//!
+//! They are one binary, because linking the device and the window takes longer than compiling a test. What needs a
+//! display or a window of its own is a binary of its own, and so is what only reads source text.
+#![allow(
+    missing_docs,
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    reason = "tests"
+)]
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod analytic;
+mod bad_input;
+mod bench;
+mod colors;
+mod compare;
+mod cone_accuracy;
+mod cones;
+mod dispatch;
+mod extinction;
+mod facts;
+mod films;
+mod filters;
+mod first_pictures;
+mod framing;
+mod layout;
+mod libc;
+mod light_updates;
+mod lighting;
+mod metrics;
+mod occlusion;
+mod odd_cells;
+mod oracle;
+mod overlap;
+mod parameters;
+mod picking;
+mod pictures;
+mod point_location;
+mod reported;
+mod shadows;
+mod srg;
+mod statistics;
+mod surfaces;
+mod synthetic;
