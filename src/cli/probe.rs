@@ -126,7 +126,7 @@ fn on_gpu(
         ..Scene::default()
     };
     let view = view::resolve(&scene, case)?;
-    let to_world = |p: &DVec3| view.spaces.world_from_grid.transform_point3(*p);
+    let to_world = |p: &DVec3| view.world.spaces.world_from_grid.transform_point3(*p);
     let in_world: Vec<DVec3> = points.iter().map(to_world).collect();
     let executor = render::executor(arguments.adapter.as_deref())?;
     let located = executor.renderer(&case.grid)?.locate(&view, &in_world)?;

@@ -113,7 +113,7 @@ fn executed(
     stages.light = first.light;
     reporter.detail(&format!(
         "{}: {:.1} ms for the rays, {:.1} ms to prepare, on {}",
-        view.strategy.name(),
+        view.sampling.strategy.name(),
         1e3 * first.stats.frame.as_secs_f64(),
         1e3 * first.prepare.as_secs_f64(),
         info.adapter
@@ -152,10 +152,10 @@ fn statistics(
     let load = case.about.load_times;
     let stats = &frame.stats;
     json!({
-        "strategy": shot.view.strategy.name(),
+        "strategy": shot.view.sampling.strategy.name(),
         "executor": info.executor,
         "adapter": info.adapter,
-        "budget_mb": {"extinction": shot.view.lighting.budget_mb(), "srg": shot.view.srg.budget_bytes() >> 20},
+        "budget_mb": {"extinction": shot.view.style.lighting.budget_mb(), "srg": shot.view.sampling.srg.budget_bytes() >> 20},
         "size": shot.layout.size.to_array().map(|n| n as u32),
         "volume_size": shot.view.size,
         "frame_ms": ms(stats.frame),

@@ -168,10 +168,7 @@ impl<'a> Comparer<'a> {
         kind: StrategyKind,
         pictures: &mut Pictures,
     ) -> Option<Attempt> {
-        let view = View {
-            strategy: kind,
-            ..view.clone()
-        };
+        let view = view.by(kind);
         let progress = pictures.next();
         match self.renderer.render(&view, &progress) {
             Err(RenderError::Canceled) => None,
@@ -260,7 +257,7 @@ type Attempt = Result<Frame, String>;
 fn finished(image: &Image, view: &View) -> Rgb8 {
     Rgb8 {
         size: image.size,
-        pixels: image.over_background_8bit(view.background),
+        pixels: image.over_background_8bit(view.style.background),
     }
 }
 

@@ -223,19 +223,24 @@ fn conditions(setting: &Setting, rows: &[Row], reference_times: &[Duration]) -> 
 }
 
 fn conditions_of_view(case: &Case, view: &View) -> [markdown::Row; 3] {
-    let step = case.steps.get(view.step);
-    let step = step.filter(|_| case.is_dynamic(&view.property));
-    let step = step.map_or_else(String::new, |s| format!(", step {}, {}", view.step, s.date));
-    let values = match view.interpolation {
+    let step = case.steps.get(view.shown.step);
+    let step = step.filter(|_| case.is_dynamic(&view.shown.property));
+    let step = step.map_or_else(String::new, |s| {
+        format!(", step {}, {}", view.shown.step, s.date)
+    });
+    let values = match view.shown.interpolation {
         Interpolation::Cell => "values of cells",
         Interpolation::Vertex => "values between vertices",
     };
     [
         row(["size", &format!("{} x {}", view.size[0], view.size[1])]),
-        row(["property", &format!("{}{step}, {values}", view.property)]),
+        row([
+            "property",
+            &format!("{}{step}, {values}", view.shown.property),
+        ]),
         row([
             "sampling step",
-            &format!("{:.4} {}", view.sampling_step, case.about.length_unit),
+            &format!("{:.4} {}", view.sampling.step, case.about.length_unit),
         ]),
     ]
 }

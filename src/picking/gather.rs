@@ -64,20 +64,20 @@ impl Gathered {
         let mut transmittance = 1.0;
         let mut color = DVec3::ZERO;
         let weigh = |piece: Piece| {
-            let is_open = transmittance > 0.0 && transmittance >= view.early_termination;
+            let is_open = transmittance > 0.0 && transmittance >= view.sampling.early_termination;
             let contribution = match is_open {
                 true => transmittance * piece.opacity,
                 false => 0.0,
             };
             transmittance -= contribution;
-            color += contribution * DVec3::from_array(view.blending.of_srgb(piece.color));
+            color += contribution * DVec3::from_array(view.style.blending.of_srgb(piece.color));
             (piece, contribution)
         };
         Self {
             pieces: pieces.into_iter().map(weigh).collect(),
             opacity: 1.0 - transmittance,
             color,
-            blending: view.blending,
+            blending: view.style.blending,
         }
     }
 

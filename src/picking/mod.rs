@@ -182,8 +182,8 @@ impl Picker {
         at: DVec2,
     ) -> Result<Pick, PickError> {
         let nothing = Pick {
-            property: view.property.clone(),
-            step: view.step,
+            property: view.shown.property.clone(),
+            step: view.shown.step,
             ..Pick::default()
         };
         let ray = Ray::through(view, at);
@@ -212,7 +212,7 @@ impl Picker {
 /// The cells with their values.
 fn cells(case: &Case, view: &View, gathered: &Gathered) -> Result<Vec<CellOnRay>, CaseError> {
     // Not the view's own values, which may be rounded logarithms.
-    let field = case.field(&view.property, view.step)?;
+    let field = case.field(&view.shown.property, view.shown.step)?;
     let grid = &case.grid;
     let valued = |passed: Passed| CellOnRay {
         ijk: passed.ijk,
@@ -255,7 +255,11 @@ fn hit(
     Some(Hit {
         ijk: cell.ijk,
         world,
-        map: DVec3::new(world.x, world.y, -world.z / view.vertical_exaggeration),
+        map: DVec3::new(
+            world.x,
+            world.y,
+            -world.z / view.world.vertical_exaggeration,
+        ),
         part,
         value: cell.value,
         shown: shown.map_or(cell.value, |value| view.true_value(value)),

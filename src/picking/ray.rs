@@ -43,7 +43,7 @@ impl Ray {
 
     /// The same ray in grid space; a point keeps its distance, so that the direction has no unit length there.
     pub fn in_grid(&self, view: &View) -> Self {
-        let grid_from_world = view.spaces.grid_from_world;
+        let grid_from_world = view.world.spaces.grid_from_world;
         Self {
             origin: grid_from_world.transform_point3(self.origin),
             direction: grid_from_world.transform_vector3(self.direction),
@@ -81,11 +81,11 @@ impl Ray {
 
     /// Where samples of a view lie on the ray; `None` where it misses all that is kept.
     pub fn span(&self, view: &View) -> Option<Span> {
-        let ends = [view.box_corners[0], view.box_corners[7]];
-        let ends = ends.map(|c| view.spaces.grid_from_world.transform_point3(c));
+        let ends = [view.world.corners[0], view.world.corners[7]];
+        let ends = ends.map(|c| view.world.spaces.grid_from_world.transform_point3(c));
         let [box_enter, box_leave] = self.in_grid(view).within(ends);
         let (mut enter, mut leave, mut section) = (0.0, f64::INFINITY, None);
-        for plane in &view.clip {
+        for plane in &view.shown.clip {
             let rate = self.direction.dot(plane.normal);
             let height = (self.origin - plane.point).dot(plane.normal);
             if rate == 0.0 && height < 0.0 {
@@ -102,7 +102,7 @@ impl Ray {
             return None;
         }
         let length = box_leave - box_enter.max(0.0);
-        let step = view.sampling_step.max(length / MOST_SAMPLES);
+        let step = view.sampling.step.max(length / MOST_SAMPLES);
         // The box has slack of a sample, clip planes have none: they cut through cells.
         let first = (box_enter / step - 0.5).floor();
         let first = first.max((enter / step - 0.5).ceil()).max(0.0);
@@ -119,6 +119,6 @@ impl Ray {
 
 /// True on the kept side of every clip plane.
 pub(super) fn is_kept(view: &View, point: DVec3) -> bool {
-    let mut planes = view.clip.iter();
+    let mut planes = view.shown.clip.iter();
     planes.all(|plane| (point - plane.point).dot(plane.normal) >= 0.0)
 }

@@ -51,7 +51,7 @@ impl Surface {
 impl<'a> Sight<'a> {
     /// Along a ray that meets these points of hull or faults, whichever the view shows.
     pub fn new(case: &'a Case, view: &'a View, ray: Ray, span: Span, met: Vec<Met>) -> Self {
-        let surface = match view.surfaces.hull {
+        let surface = match view.style.surfaces.hull {
             Hull::Opaque => Surface::Hull,
             Hull::Hidden | Hull::Faint => Surface::Sheet,
         };
@@ -68,7 +68,7 @@ impl<'a> Sight<'a> {
 
     /// Points of world space whose cells have to be known: beside each surface, then the samples.
     pub fn points(&self) -> Vec<DVec3> {
-        let beside = BESIDE * self.view.sampling_step;
+        let beside = BESIDE * self.view.sampling.step;
         let surfaces = self.surfaces.iter().map(|surface| match surface {
             Surface::Hull(met) if met.is_back => met.distance - beside,
             other => other.distance() + beside,
@@ -109,19 +109,19 @@ impl<'a> Sight<'a> {
     /// True where a value in the scale of the view is another one than a cell's own by what a legend tells
     /// apart.
     pub fn is_apart(&self, ijk: Ijk, value: f64) -> bool {
-        let position = |value| self.view.transfer.position(value);
+        let position = |value| self.view.style.transfer.position(value);
         let own = self.own_value(ijk);
         own.is_some_and(|own| (position(own) - position(value)).abs() >= TOLD_APART)
     }
 
     /// The color of a value in the scale of the view.
     fn color(&self, value: f64) -> [f64; 3] {
-        let transfer = &self.view.transfer;
+        let transfer = &self.view.style.transfer;
         transfer.srgb(transfer.position(value))
     }
 
     fn sample(&self, at: f64, located: Located) -> Option<Piece> {
-        let transfer = &self.view.transfer;
+        let transfer = &self.view.style.transfer;
         let (extinction, color, of) = match self.is_ghost(located.ijk) {
             true => (
                 transfer.extinction_of(ghosts::OPACITY),
@@ -155,7 +155,7 @@ impl<'a> Sight<'a> {
     /// Nothing is drawn before the hull where a ray comes from outside: a sample there is rounding.
     fn is_before_hull(&self, at: f64) -> bool {
         let hull = self.surfaces.iter().find(|s| matches!(s, Surface::Hull(_)));
-        let has_more = self.span.starts_inside || self.view.ghosts.is_some();
+        let has_more = self.span.starts_inside || self.view.shown.ghosts.is_some();
         hull.is_some_and(|hull| !has_more && at < hull.distance())
     }
 
@@ -182,7 +182,7 @@ impl<'a> Sight<'a> {
                 (1.0, self.color(value), of)
             }
             Surface::Sheet(met) => {
-                let color = fault_color(self.view.named_faults.fault_of(met.cell, met.face));
+                let color = fault_color(self.view.shown.named_faults.fault_of(met.cell, met.face));
                 (SHEET_OPACITY, color, PieceSource::Sheet(met))
             }
         };
@@ -197,12 +197,12 @@ impl<'a> Sight<'a> {
 
     /// A cell's value in the scale of the view.
     fn own_value(&self, ijk: Ijk) -> Option<f64> {
-        let grid = shown_grid(&self.case.grid, self.view.ghosts.as_ref());
-        let value = self.view.field.value(grid, grid.dims().cell(ijk));
+        let grid = shown_grid(&self.case.grid, self.view.shown.ghosts.as_ref());
+        let value = self.view.shown.field.value(grid, grid.dims().cell(ijk));
         value.map(f64::from)
     }
 
     fn is_ghost(&self, ijk: Ijk) -> bool {
-        self.view.ghosts.is_some() && !self.case.grid.is_active(ijk)
+        self.view.shown.ghosts.is_some() && !self.case.grid.is_active(ijk)
     }
 }

@@ -66,14 +66,14 @@ impl SurfaceFaces {
     /// of the hull, or the nearest fault sheets.
     pub fn seen(&mut self, case: &Case, view: &View, ray: &Ray) -> Vec<Met> {
         // A faint hull is there for orientation, and is never what one clicks on.
-        if view.surfaces.hull != Hull::Opaque && !view.surfaces.faults {
+        if view.style.surfaces.hull != Hull::Opaque && !view.style.surfaces.faults {
             return Vec::new();
         }
         self.update(case, view);
         let mut met = self.met(&case.grid, view, ray);
         met.retain(|m| is_kept(view, ray.at(m.distance)));
         let gap = view.fault_gap();
-        if view.surfaces.hull == Hull::Opaque {
+        if view.style.surfaces.hull == Hull::Opaque {
             let counts_as = |m: &Met| m.distance + if m.is_back { gap } else { 0.0 };
             let nearest = met
                 .into_iter()
@@ -97,17 +97,17 @@ impl SurfaceFaces {
     /// Lists the faces anew where others are shown.
     fn update(&mut self, case: &Case, view: &View) {
         let now = FacesKey {
-            case: view.named_faults.clone(),
-            drawn: view.drawn.clone(),
-            hull: view.surfaces.hull,
-            faults: view.surfaces.faults,
+            case: view.shown.named_faults.clone(),
+            drawn: view.shown.drawn.clone(),
+            hull: view.style.surfaces.hull,
+            faults: view.style.surfaces.faults,
         };
         if self.of.as_ref().is_some_and(|known| known.is_same(&now)) {
             return;
         }
         let grid = &case.grid;
         let dims = grid.dims();
-        let mut faces: Vec<(Ijk, Face)> = match view.surfaces.hull {
+        let mut faces: Vec<(Ijk, Face)> = match view.style.surfaces.hull {
             Hull::Opaque => view.hull_faces(grid),
             Hull::Hidden | Hull::Faint => {
                 let faults = view.fault_faces(grid).into_iter();

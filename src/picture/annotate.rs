@@ -43,28 +43,32 @@ impl Annotations {
     /// What belongs to a view of a case: its name, the property, when it was so, and what is drawn in numbers.
     pub fn of(case: &Case, view: &View) -> Self {
         let when = when(case, view);
-        let facts = view.facts.as_ref();
+        let facts = view.notes.facts.as_ref();
         Self {
-            title: format!("{}   {}", case.about.name, case.title_of(&view.property)),
+            title: format!(
+                "{}   {}",
+                case.about.name,
+                case.title_of(&view.shown.property)
+            ),
             info: facts.map(|facts| Info::of(case, view, facts, &when)),
             when: match when.is_empty() {
                 true => when,
                 false => format!("   {when}"),
             },
-            property: case.heading_of(&view.property),
-            unit: case.unit(&view.property).to_owned(),
+            property: case.heading_of(&view.shown.property),
+            unit: case.unit(&view.shown.property).to_owned(),
             length_unit: short_unit(&case.about.length_unit),
-            has_opacity: !view.surfaces.solid,
-            show_legend: view.show_legend,
-            show_box: view.show_box,
+            has_opacity: !view.style.surfaces.solid,
+            show_legend: view.notes.has_legend,
+            show_box: view.notes.has_box,
         }
     }
 
     /// The legend of a view's colors.
     pub fn key<'a>(&'a self, view: &'a View, unit: f64, width: &'a dyn Fn(&str) -> f64) -> Key<'a> {
         Key {
-            transfer: &view.transfer,
-            beyond: view.beyond,
+            transfer: &view.style.transfer,
+            beyond: view.style.beyond,
             heading: [&self.property, &self.unit],
             has_opacity: self.has_opacity,
             unit,
@@ -75,8 +79,8 @@ impl Annotations {
 
 /// Date and report of the step that a view shows; empty where its property does not change with time.
 pub fn when(case: &Case, view: &View) -> String {
-    let step = case.steps.get(view.step);
-    let step = step.filter(|_| case.is_dynamic(&view.property));
+    let step = case.steps.get(view.shown.step);
+    let step = step.filter(|_| case.is_dynamic(&view.shown.property));
     let Some(step) = step else {
         return String::new();
     };
@@ -88,7 +92,7 @@ pub fn when(case: &Case, view: &View) -> String {
         (false, true) => format!("{}   report {}", step.date, step.report),
         (false, false) => step.date.clone(),
         (true, true) => format!("report {}", step.report),
-        (true, false) => format!("step {}", view.step),
+        (true, false) => format!("step {}", view.shown.step),
     }
 }
 
@@ -178,7 +182,7 @@ fn composed(
 ) -> Rgb8 {
     let mut volume = Rgb8 {
         size: image.size,
-        pixels: image.over_background_8bit(view.background),
+        pixels: image.over_background_8bit(view.style.background),
     };
     if !layout.is_plain {
         over_volume(&mut volume, image, view, layout.unit, annotations);
@@ -188,7 +192,7 @@ fn composed(
     if size == image.size {
         return volume;
     }
-    let mut picture = Rgb8::filled(size, srgb_8bit(view.background));
+    let mut picture = Rgb8::filled(size, srgb_8bit(view.style.background));
     picture.paste(&volume, layout.volume_corner());
     beside_volume(&mut picture, view, layout, annotations);
     picture
@@ -203,7 +207,7 @@ fn over_volume(
     annotations: &Annotations,
 ) {
     let size = DVec2::from_array(image.size.map(f64::from));
-    let mut pen = Pen::new(volume.canvas(), view.background, unit);
+    let mut pen = Pen::new(volume.canvas(), view.style.background, unit);
     axes::draw_connections(&mut pen, view, size);
     if annotations.show_box {
         axes::draw_edges(&mut pen, image, &Orientation::box_edges(view, size));
@@ -225,7 +229,7 @@ fn over_volume(
 /// Draws title, legend and facts.
 fn beside_volume(picture: &mut Rgb8, view: &View, layout: &Layout, annotations: &Annotations) {
     let unit = layout.unit;
-    let mut pen = Pen::new(picture.canvas(), view.background, unit);
+    let mut pen = Pen::new(picture.canvas(), view.style.background, unit);
     if layout.title.is_some() {
         pen.title_until(&annotations.title, &annotations.when);
     }
@@ -261,7 +265,7 @@ pub(super) mod tests {
     use crate::model::{CellField, Spaces};
     use crate::scene::{Interpolation, Projection, StrategyKind};
     use crate::transfer::{TransferFunction, presets};
-    use crate::view::Camera;
+    use crate::view::{Camera, Notes, Sampling, Shown, Style, World};
 
     /// A view from the southwest on a box of 10 by 9 by 4.
     pub fn view(size: [u32; 2], background: f64) -> View {
@@ -274,49 +278,59 @@ pub(super) mod tests {
         let aspect = f64::from(size[0]) / f64::from(size[1]);
         View {
             size,
-            background: [background; 3],
             camera: Camera::framing(&box_corners, 3.6, 0.6, 1.0, aspect, Projection::Perspective)
                 .unwrap(),
-            spaces,
-            vertical_exaggeration: 2.0,
-            world_bounds: [DVec3::new(0.0, 0.0, -4.0), DVec3::new(10.0, 9.0, 0.0)],
-            box_corners,
-            subject: crate::view::Subject::of_box(box_corners).into(),
-            strategy: StrategyKind::ALL[0],
-            beyond: [false; 2],
-            property: "SWAT".into(),
-            step: 0,
-            field: CellField::new(Vec::new()).into(),
-            interpolation: Interpolation::Cell,
-            transfer: TransferFunction {
-                color: presets::color_map("turbo").unwrap(),
-                opacity: vec![(0.0, 0.1), (1.0, 0.5)],
-                range: [0.0, 1.0],
-                scale: crate::transfer::Scale::Linear,
-                bands: None,
-                reference_length: 1.0,
+            style: Style {
+                background: [background; 3],
+                beyond: [false; 2],
+                transfer: TransferFunction {
+                    color: presets::color_map("turbo").unwrap(),
+                    opacity: vec![(0.0, 0.1), (1.0, 0.5)],
+                    range: [0.0, 1.0],
+                    scale: crate::transfer::Scale::Linear,
+                    bands: None,
+                    reference_length: 1.0,
+                },
+                blending: crate::image::Blending::Linear,
+                surfaces: crate::view::Surfaces::default(),
+                lighting: crate::view::lighting::resolve(
+                    &crate::scene::LightingSpec::default(),
+                    DVec3::ONE,
+                    1,
+                )
+                .unwrap(),
             },
-            blending: crate::image::Blending::Linear,
-            sampling_step: 1.0,
-            early_termination: 0.0,
-            surfaces: crate::view::Surfaces::default(),
-            connections: std::sync::Arc::default(),
-            named_faults: std::sync::Arc::default(),
-            chosen_faults: None,
-            drawn: Vec::new().into(),
-            clip: Vec::new(),
-            ghosts: None,
-            lighting: crate::view::lighting::resolve(
-                &crate::scene::LightingSpec::default(),
-                DVec3::ONE,
-                1,
-            )
-            .unwrap(),
-            libc: crate::scene::LibcSettings::default(),
-            srg: crate::scene::SrgSettings::default(),
-            show_box: true,
-            show_legend: true,
-            facts: None,
+            world: World {
+                spaces,
+                vertical_exaggeration: 2.0,
+                bounds: [DVec3::new(0.0, 0.0, -4.0), DVec3::new(10.0, 9.0, 0.0)],
+                corners: box_corners,
+                subject: crate::view::Subject::of_box(box_corners).into(),
+            },
+            sampling: Sampling {
+                strategy: StrategyKind::ALL[0],
+                step: 1.0,
+                early_termination: 0.0,
+                libc: crate::scene::LibcSettings::default(),
+                srg: crate::scene::SrgSettings::default(),
+            },
+            shown: Shown {
+                property: "SWAT".into(),
+                step: 0,
+                field: CellField::new(Vec::new()).into(),
+                interpolation: Interpolation::Cell,
+                connections: std::sync::Arc::default(),
+                named_faults: std::sync::Arc::default(),
+                chosen_faults: None,
+                drawn: Vec::new().into(),
+                clip: Vec::new(),
+                ghosts: None,
+            },
+            notes: Notes {
+                has_box: true,
+                has_legend: true,
+                facts: None,
+            },
         }
     }
 
@@ -364,7 +378,7 @@ pub(super) mod tests {
         let count = seen.size[0] as usize * seen.size[1] as usize;
         let image = Image {
             size: seen.size,
-            blending: seen.blending,
+            blending: seen.style.blending,
             // A color that nothing beside the volume has.
             pixels: vec![[0.0, alpha, 0.0, alpha]; count],
         };
@@ -424,12 +438,12 @@ pub(super) mod tests {
         for odd in [f64::NAN, f64::INFINITY, 0.0, -1e300] {
             drawn_of([300, 200], 0.2, &all, 0.5, |view| {
                 view.camera.right *= odd;
-                let mut corners = view.box_corners;
+                let mut corners = view.world.corners;
                 corners[3].x = odd;
-                view.subject = crate::view::Subject::of_box(corners).into();
-                view.transfer.range = [odd, 1.0];
-                view.transfer.opacity = vec![(0.0, odd)];
-                view.vertical_exaggeration = odd;
+                view.world.subject = crate::view::Subject::of_box(corners).into();
+                view.style.transfer.range = [odd, 1.0];
+                view.style.transfer.opacity = vec![(0.0, odd)];
+                view.world.vertical_exaggeration = odd;
             });
         }
     }

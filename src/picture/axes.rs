@@ -13,7 +13,7 @@ pub const CONNECTION: [u8; 3] = [225, 30, 170];
 /// Draws lines between the cells of the view's connections, over the volume: its depth is not known here.
 pub fn draw_connections(pen: &mut Pen, view: &View, size: DVec2) {
     let thin = pen.thin;
-    for ends in view.connections.iter() {
+    for ends in view.shown.connections.iter() {
         if let Some(line) = on_screen(view, *ends, size) {
             let line = line.map(|p| p.to_array());
             pen.canvas.line(line, [thin; 2], CONNECTION, |_, _| 0.8);

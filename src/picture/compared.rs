@@ -56,7 +56,7 @@ pub fn cropped(picture: &Rgb8, columns: u32) -> Rgb8 {
 /// picture of `size`.
 pub fn write_own(picture: &mut Rgb8, view: &View, size: [u32; 2], column: u32, text: &str) {
     let unit = Pen::unit_of(size);
-    let mut pen = Pen::new(picture.canvas(), view.background, unit);
+    let mut pen = Pen::new(picture.canvas(), view.style.background, unit);
     let left = f64::from(column) + unit;
     let (top, end) = (2.4 * unit, left + pen.canvas.text_width(text, unit));
     pen.plate(
@@ -76,7 +76,7 @@ pub fn write_title(picture: &mut Rgb8, text: &str) {
 pub fn draw_legend(part: &mut Rgb8, view: &View, annotations: &Annotations, size: [u32; 2]) {
     let unit = Pen::unit_of(size);
     let [width, height] = part.size.map(f64::from);
-    let mut pen = Pen::new(part.canvas(), view.background, unit);
+    let mut pen = Pen::new(part.canvas(), view.style.background, unit);
     let legend = {
         let text = |text: &str| pen.canvas.text_width(text, unit);
         let key = annotations.key(view, unit, &text);
@@ -92,9 +92,9 @@ pub fn differing(of: [(&Case, &View); 2]) -> [String; 2] {
     let facts = of.map(|(case, view)| {
         [
             case.about.name.clone(),
-            case.title_of(&view.property),
+            case.title_of(&view.shown.property),
             when(case, view),
-            view.strategy.name().to_uppercase(),
+            view.sampling.strategy.name().to_uppercase(),
         ]
     });
     let differ = |n: &usize| facts[0][*n] != facts[1][*n];

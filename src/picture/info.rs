@@ -43,13 +43,13 @@ impl Info {
         }
         items.push(cells(facts));
         if let Some(values) = &facts.values {
-            let unit = case.unit(&view.property);
-            let is_log = view.transfer.scale == Scale::Log;
-            let heading = case.heading_of(&view.property);
+            let unit = case.unit(&view.shown.property);
+            let is_log = view.style.transfer.scale == Scale::Log;
+            let heading = case.heading_of(&view.shown.property);
             items.push(said(values, &heading, unit, is_log));
         }
         let doubt = case
-            .property(&view.property)
+            .property(&view.shown.property)
             .ok()
             .and_then(|p| p.doubt.as_ref());
         if let Some(doubt) = doubt {
@@ -58,7 +58,7 @@ impl Info {
                 (13, "not as in the deck".into()),
             ]));
         }
-        let factor = format!("{:.2}", view.vertical_exaggeration);
+        let factor = format!("{:.2}", view.world.vertical_exaggeration);
         items.push(Item::of([(6, format!("Z x {}", shortened(&factor)))]));
         let selection = |long: String, short: &str| Item {
             is_about_selection: true,
@@ -72,7 +72,7 @@ impl Info {
             1 => items.push(selection("cut by a plane".into(), "cut")),
             n => items.push(selection(format!("cut by {n} planes"), "cut")),
         }
-        if view.strategy == StrategyKind::Srg {
+        if view.sampling.strategy == StrategyKind::Srg {
             let words = [(2, "SRG: resampled"), (7, "SRG")];
             items.push(Item::of(
                 words.map(|(worth, text)| (worth, text.to_owned())),

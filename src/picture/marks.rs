@@ -21,7 +21,7 @@ pub fn mark_color(n: usize) -> [u8; 3] {
 /// left out.
 pub fn cell_edges(view: &View, grid: &Grid, cell: Ijk, size: DVec2) -> Vec<[DVec2; 2]> {
     let corners = grid.hexahedron(cell).0;
-    let corners = corners.map(|c| view.spaces.world_from_grid.transform_point3(c));
+    let corners = corners.map(|c| view.world.spaces.world_from_grid.transform_point3(c));
     let ends = (0..8usize).flat_map(|a| [1, 2, 4].map(|bit| (a, a | bit)));
     let edges = ends.filter(|(a, b)| a != b);
     edges

@@ -28,7 +28,7 @@ pub fn render(grid: &Grid, view: &View, progress: &(dyn Fn(f64) -> bool + Sync))
         .collect();
     Some(Image {
         size: view.size,
-        blending: view.blending,
+        blending: view.style.blending,
         pixels: rows?.concat(),
     })
 }

@@ -13,7 +13,7 @@ use crate::model::{CellField, Dims, Grid, GridInput, Ijk, MapAxes, Spaces, Verte
 use crate::scene::lighting::{LightSpec, VolumeSpec};
 use crate::scene::{Interpolation, LightingSpec, StrategyKind};
 use crate::transfer::TransferFunction;
-use crate::view::{Camera, View, lighting};
+use crate::view::{Camera, Notes, Sampling, Shown, Style, View, World, lighting};
 
 /// A grid whose pillars and depths are functions of their place.
 struct Shape<'a> {
@@ -103,56 +103,66 @@ fn view(grid: &Grid, field: CellField, extinction: f64, sampling_step: f64) -> V
     });
     View {
         size: [9, 9],
-        background: [1.0; 3],
         camera: Camera::look_at(eye, center, DVec3::Z, 0.3).unwrap(),
-        spaces,
-        vertical_exaggeration: 2.0,
-        world_bounds,
-        box_corners,
-        subject: crate::view::Subject::of_box(box_corners).into(),
-        strategy: StrategyKind::ALL[0],
-        beyond: [false; 2],
-        property: "TEST".into(),
-        step: 0,
-        interpolation: Interpolation::Cell,
-        transfer: TransferFunction {
-            color: vec![(0.0, srgb)],
-            opacity: vec![(0.0, 1.0 - (-extinction).exp())],
-            range: [0.0, 1.0],
-            scale: crate::transfer::Scale::Linear,
-            bands: None,
-            reference_length: 1.0,
+        style: Style {
+            background: [1.0; 3],
+            beyond: [false; 2],
+            transfer: TransferFunction {
+                color: vec![(0.0, srgb)],
+                opacity: vec![(0.0, 1.0 - (-extinction).exp())],
+                range: [0.0, 1.0],
+                scale: crate::transfer::Scale::Linear,
+                bands: None,
+                reference_length: 1.0,
+            },
+            blending: crate::image::Blending::Linear,
+            surfaces: crate::view::Surfaces::default(),
+            lighting: lighting::resolve(&LightingSpec::default(), DVec3::ONE, 1).unwrap(),
         },
-        blending: crate::image::Blending::Linear,
-        sampling_step,
-        early_termination: 0.0,
-        surfaces: crate::view::Surfaces::default(),
-        connections: std::sync::Arc::default(),
-        named_faults: std::sync::Arc::default(),
-        chosen_faults: None,
-        drawn: vec![true; grid.active_cells().len()].into(),
-        clip: Vec::new(),
-        ghosts: None,
-        lighting: lighting::resolve(&LightingSpec::default(), DVec3::ONE, 1).unwrap(),
-        libc: crate::scene::LibcSettings::default(),
-        srg: crate::scene::SrgSettings::default(),
-        field: field.into(),
-        show_box: false,
-        show_legend: false,
-        facts: None,
+        world: World {
+            spaces,
+            vertical_exaggeration: 2.0,
+            bounds: world_bounds,
+            corners: box_corners,
+            subject: crate::view::Subject::of_box(box_corners).into(),
+        },
+        sampling: Sampling {
+            strategy: StrategyKind::ALL[0],
+            step: sampling_step,
+            early_termination: 0.0,
+            libc: crate::scene::LibcSettings::default(),
+            srg: crate::scene::SrgSettings::default(),
+        },
+        shown: Shown {
+            property: "TEST".into(),
+            step: 0,
+            interpolation: Interpolation::Cell,
+            connections: std::sync::Arc::default(),
+            named_faults: std::sync::Arc::default(),
+            chosen_faults: None,
+            drawn: vec![true; grid.active_cells().len()].into(),
+            clip: Vec::new(),
+            ghosts: None,
+            field: field.into(),
+        },
+        notes: Notes {
+            has_box: false,
+            has_legend: false,
+            facts: None,
+        },
     }
 }
 
 /// Lights a view of a grid along the axes, with voxels of these edges.
 fn light(view: &mut View, spec: LightingSpec, voxel: DVec3) {
-    let extent = view.world_bounds[1] - view.world_bounds[0];
+    let extent = view.world.bounds[1] - view.world.bounds[0];
     let size = (extent / voxel).to_array().map(|n| n.round() as u32);
     let volume = VolumeSpec {
         size: Some(size),
         ..spec.volume
     };
     let spec = LightingSpec { volume, ..spec };
-    view.lighting = lighting::resolve(&spec, extent, view.drawn.len()).unwrap();
+    view.style.lighting = lighting::resolve(&spec, extent, view.shown.drawn.len()).unwrap();
 }
 
 /// A white light with sharp shadows that shines along `direction`.
@@ -349,7 +359,7 @@ fn a_slab_has_the_same_transmittance_everywhere_in_parallel() {
     let grid = Shape::default().grid();
     let (extinction, step) = (0.07, 0.3);
     let mut view = view(&grid, constant(&grid), extinction, step);
-    let center = 0.5 * (view.world_bounds[0] + view.world_bounds[1]);
+    let center = 0.5 * (view.world.bounds[0] + view.world.bounds[1]);
     let perspective = render(&grid, &view, &|_| true).unwrap();
     view.camera = view.camera.with(crate::scene::Projection::Parallel, center);
     // A picture as high as the slab is 12 high, and as wide as it is 40 wide.
@@ -375,7 +385,7 @@ fn hidden_and_undefined_cells_are_empty() {
     // The central ray runs along the edge of four pairs of cells, which the first pair has.
     let mut hidden = view(&grid, constant(&grid), 0.07, 0.3);
     for n in [0, 2, 4, 6] {
-        std::sync::Arc::make_mut(&mut hidden.drawn)[n] = false;
+        std::sync::Arc::make_mut(&mut hidden.shown.drawn)[n] = false;
     }
     let expected = |samples: f64| 1.0 - (-0.07 * 0.3 * samples).exp();
     // 90..100 has samples n = 300..=332 (33 of them), 100..110 the other 34.
@@ -392,7 +402,7 @@ fn hidden_and_undefined_cells_are_empty() {
 fn early_termination_ends_a_ray() {
     let grid = Shape::default().grid();
     let mut view = view(&grid, constant(&grid), 1.0, 0.3);
-    view.early_termination = 0.01;
+    view.sampling.early_termination = 0.01;
     // exp(-0.3 n) falls below 0.01 at n = 16.
     let expected = 1.0 - (-0.3f64 * 16.0).exp();
     assert!((central_ray(&grid, &view)[3] - expected).abs() < 1e-12);
@@ -417,10 +427,10 @@ fn picture_does_not_depend_on_where_the_model_is_nor_on_its_axes() {
     let picture = |grid: &Grid| {
         let field = CellField::new((0..60).map(|n| n as f32 / 60.0).collect());
         let mut view = view(grid, field, 0.01, 3.0);
-        view.transfer.opacity = vec![(0.0, 0.0), (1.0, 0.05)];
-        view.interpolation = Interpolation::Vertex;
+        view.style.transfer.opacity = vec![(0.0, 0.0), (1.0, 0.05)];
+        view.shown.interpolation = Interpolation::Vertex;
         view.camera = Camera::framing(
-            &view.box_corners,
+            &view.world.corners,
             1.0,
             0.5,
             1.0,
@@ -506,5 +516,5 @@ fn rays_through_pixels_agree_with_the_projection() {
         let expected = DVec2::new((f64::from(x) + 0.5) / 40.0, (f64::from(y) + 0.5) / 20.0);
         assert!(at.is_some_and(|at| at.distance(expected) < 1e-12));
     }
-    assert_ne!(view.spaces.world_from_grid, DAffine3::IDENTITY);
+    assert_ne!(view.world.spaces.world_from_grid, DAffine3::IDENTITY);
 }

@@ -245,7 +245,7 @@ impl View {
     /// The camera with which a turn about the middle of what is drawn begins, given the scene's camera: one that
     /// frames looks at that middle.
     pub(super) fn turning_camera(&self, spec: &CameraSpec) -> Camera {
-        let Subject { points, middle, .. } = &*self.subject;
+        let Subject { points, middle, .. } = &*self.world.subject;
         match spec.framing_zoom() {
             None => self.camera,
             Some(zoom) => {

@@ -87,7 +87,7 @@ impl TurnAxis {
 /// after another, lead back to the start, which is not shown again. A camera that frames what is drawn
 /// looks at the middle and stands as far away as the view that needs the most.
 pub fn half_turns(scene: &Scene, view: &View, about: TurnAxis, count: usize) -> Vec<NamedView> {
-    let middle = view.subject.middle;
+    let middle = view.world.subject.middle;
     let start = view.turning_camera(&scene.camera);
     let placed: Vec<_> = (0..count).map(|n| about.place(n, count)).collect();
     let camera = |&(at, angle): &(usize, f64)| {
@@ -95,11 +95,16 @@ pub fn half_turns(scene: &Scene, view: &View, about: TurnAxis, count: usize) -> 
         let done = done.fold(DQuat::IDENTITY, |before, turn| turn * before);
         start
             .turned(middle, about.axes()[at].turn(angle) * done)
-            .before(&view.box_corners)
+            .before(&view.world.corners)
     };
     let mut cameras: Vec<Camera> = placed.iter().map(camera).collect();
     if scene.camera.framing_zoom().is_some() {
-        Camera::stand_back(&mut cameras, &view.subject.points, middle, view.aspect());
+        Camera::stand_back(
+            &mut cameras,
+            &view.world.subject.points,
+            middle,
+            view.aspect(),
+        );
     }
     let named = |((at, angle), camera): ((usize, f64), Camera)| NamedView {
         name: format!("{} {:.0}°", about.axes()[at].name, angle.to_degrees()),

@@ -51,48 +51,52 @@ use resolve::{camera as placed, checked_size};
 pub struct View {
     /// Width and height in pixels.
     pub size: [u32; 2],
-    /// Background in sRGB, 0..1.
-    pub background: [f64; 3],
     /// The camera in world space.
     pub camera: Camera,
+    /// Where the model is.
+    pub world: World,
+    /// What is shown of it.
+    pub shown: Shown,
+    /// How that looks.
+    pub style: Style,
+    /// How rays sample it.
+    pub sampling: Sampling,
+    /// What is written beside and over it.
+    pub notes: Notes,
+}
+
+/// Where a model is in world space.
+#[derive(Debug, Clone)]
+pub struct World {
     /// Grid to world and back.
     pub spaces: Spaces,
     /// Factor on depth in world space.
     pub vertical_exaggeration: f64,
     /// Box of the active cells in world space.
-    pub world_bounds: [DVec3; 2],
+    pub bounds: [DVec3; 2],
     /// Corners of the model's box in world space; bit n of the index is the end along axis n.
-    pub box_corners: [DVec3; 8],
+    pub corners: [DVec3; 8],
     /// The cells that cameras frame.
     pub subject: Arc<Subject>,
-    /// The strategy asked for.
-    pub strategy: StrategyKind,
-    /// Name of the property shown.
+}
+
+/// What a view shows of a case.
+#[derive(Debug, Clone)]
+pub struct Shown {
+    /// Name of the property.
     pub property: String,
-    /// Step shown.
+    /// Step.
     pub step: usize,
-    /// Its values, in the scale of the transfer function; see [`Self::true_value`].
+    /// Its values, in the scale of the transfer function; see [`View::true_value`].
     pub field: Arc<CellField>,
     /// How values vary inside a cell.
     pub interpolation: Interpolation,
-    /// Value to color and extinction.
-    pub transfer: TransferFunction,
-    /// Values of the step shown lie below its range, and above.
-    pub beyond: [bool; 2],
-    /// The numbers in which colors are shaded and blended.
-    pub blending: Blending,
-    /// Samples lie at distances `(n + 1/2) * sampling_step` from where rays start.
-    pub sampling_step: f64,
-    /// Transmittance at which a ray ends.
-    pub early_termination: f64,
     /// By active index: true where the cell is drawn (has thickness and a value, passes the filter).
     pub drawn: Arc<Vec<bool>>,
     /// Where inactive cells are shown: the grid that field and selection go by then.
     pub ghosts: Option<Arc<Ghosts>>,
     /// Planes that cut parts away.
     pub clip: Vec<ClipPlane>,
-    /// Surfaces in the volume.
-    pub surfaces: Surfaces,
     /// Ends in world space of the connections that are marked: those of drawn cells.
     pub connections: Arc<Vec<[DVec3; 2]>>,
     /// Which faces lie on faults that have a name.
@@ -100,29 +104,68 @@ pub struct View {
     /// By number of the named faults: true where the fault is drawn, of which those without a name are none;
     /// all faults where absent.
     pub chosen_faults: Option<Arc<[bool]>>,
+}
+
+/// How what is shown looks.
+#[derive(Debug, Clone)]
+pub struct Style {
+    /// Background in sRGB, 0..1.
+    pub background: [f64; 3],
+    /// Value to color and extinction.
+    pub transfer: TransferFunction,
+    /// Values of the step shown lie below its range, and above.
+    pub beyond: [bool; 2],
+    /// The numbers in which colors are shaded and blended.
+    pub blending: Blending,
+    /// Surfaces in the volume.
+    pub surfaces: Surfaces,
     /// Occlusion and lights.
     pub lighting: Lighting,
+}
+
+/// How rays sample what is shown.
+#[derive(Debug, Clone)]
+pub struct Sampling {
+    /// The strategy asked for.
+    pub strategy: StrategyKind,
+    /// Samples lie at distances `(n + 1/2) * step` from where rays start.
+    pub step: f64,
+    /// Transmittance at which a ray ends.
+    pub early_termination: f64,
     /// Settings of the cell-to-cell strategy.
     pub libc: LibcSettings,
     /// Settings of the resampled-grid strategy.
     pub srg: SrgSettings,
+}
+
+/// What is written beside and over an image.
+#[derive(Debug, Clone)]
+pub struct Notes {
     /// Draw the box and axes.
-    pub show_box: bool,
+    pub has_box: bool,
     /// Draw legend and title.
-    pub show_legend: bool,
+    pub has_legend: bool,
     /// What is drawn in numbers, for the line below the picture; `None` where that is hidden.
     pub facts: Option<Arc<Facts>>,
 }
 
 impl View {
+    /// The same view by a strategy.
+    #[must_use]
+    pub fn by(&self, strategy: StrategyKind) -> Self {
+        let mut view = self.clone();
+        view.sampling.strategy = strategy;
+        view
+    }
+
     /// The same view from another camera, in another size; nothing is read.
     ///
     /// # Errors
     /// When camera or size are not allowed.
     pub fn seen_from(&self, camera_spec: &CameraSpec, size: [u32; 2]) -> Result<Self, SceneError> {
         let size = checked_size(size)?;
-        let of = (&*self.subject, &self.box_corners);
-        let camera = placed(camera_spec, size, of, self.show_box)?;
+        let of = (&*self.world.subject, &self.world.corners);
+        let camera = placed(camera_spec, size, of, self.notes.has_box)?;
         Ok(Self {
             size,
             camera,
@@ -141,22 +184,24 @@ impl View {
     /// Corners in world space of a box given by its smallest and largest corner in grid space; bit n of the
     /// index is the end along axis n.
     pub fn corners_of(&self, bounds: [DVec3; 2]) -> [DVec3; 8] {
-        box_corners(&self.spaces, bounds)
+        box_corners(&self.world.spaces, bounds)
     }
 
     /// The value that a number of [`Self::field`], or between such numbers, stands for.
     pub fn true_value(&self, shown: f64) -> f64 {
-        self.transfer.scale.true_value(shown)
+        self.style.transfer.scale.true_value(shown)
     }
 
     /// True where rays pass through something: between the faces of solid cells there is nothing but ghosts.
     pub fn casts_rays(&self) -> bool {
-        !self.surfaces.solid || self.ghosts.is_some()
+        !self.style.surfaces.solid || self.shown.ghosts.is_some()
     }
 
     /// Color of a position in the range of values, in the numbers that are blended.
     pub fn color_at(&self, position: f64) -> [f64; 3] {
-        self.blending.of_srgb(self.transfer.srgb(position))
+        self.style
+            .blending
+            .of_srgb(self.style.transfer.srgb(position))
     }
 
     /// Width over height.

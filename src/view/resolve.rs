@@ -14,7 +14,9 @@ use super::lighting::{self, Lighting};
 use super::look::default_property;
 use super::step::step_of;
 use super::voxels::Shape;
-use super::{Camera, ClipPlane, Surfaces, View, clip, filter, surfaces};
+use super::{
+    Camera, ClipPlane, Notes, Sampling, Shown, Style, Surfaces, View, World, clip, filter, surfaces,
+};
 use crate::case::Case;
 use crate::model::{CellField, CellIndex, Dims, Ijk, Spaces};
 use crate::scene::{CameraSpec, Inactive, Mode, Scene, SrgSettings, StrategyKind};
@@ -72,42 +74,61 @@ pub(super) fn resolve_over(
     let size = checked_size(scene.size)?;
     Ok(View {
         size,
-        background: presets::parse_color(&scene.background)
-            .ok_or_else(|| wrong("background", "must be a color like #ffffff"))?,
         camera: camera(
             &scene.camera,
             size,
             (&subject, &box_corners),
             scene.show.r#box,
         )?,
-        spaces,
-        vertical_exaggeration: exaggeration,
-        world_bounds,
-        box_corners,
-        subject: Arc::new(subject),
+        sampling: sampling(scene, case.grid.dims(), edges, world_bounds)?,
+        style: Style {
+            background: presets::parse_color(&scene.background)
+                .ok_or_else(|| wrong("background", "must be a color like #ffffff"))?,
+            transfer,
+            beyond,
+            blending: scene.blending,
+            surfaces: Surfaces::of(scene),
+            lighting: lighting(scene, case, &box_corners)?,
+        },
+        shown: Shown {
+            property,
+            step,
+            field,
+            interpolation: interpolation(scene),
+            drawn: Arc::new(drawn),
+            ghosts,
+            clip,
+            connections,
+            named_faults: case.fault_faces.clone(),
+            chosen_faults: surfaces::chosen(&scene.show.faults, case)?,
+        },
+        world: World {
+            spaces,
+            vertical_exaggeration: exaggeration,
+            bounds: world_bounds,
+            corners: box_corners,
+            subject: Arc::new(subject),
+        },
+        notes: Notes {
+            has_box: scene.show.r#box,
+            has_legend: scene.show.legend,
+            facts,
+        },
+    })
+}
+
+fn sampling(
+    scene: &Scene,
+    dims: Dims,
+    edges: DVec3,
+    bounds: [DVec3; 2],
+) -> Result<Sampling, SceneError> {
+    Ok(Sampling {
         strategy: strategy(scene)?,
-        step,
-        interpolation: interpolation(scene),
-        transfer,
-        beyond,
-        blending: scene.blending,
-        sampling_step: sampling_step(scene, edges, world_bounds)?,
+        step: sampling_step(scene, edges, bounds)?,
         early_termination: early_termination(scene)?,
-        property,
-        field,
-        drawn: Arc::new(drawn),
-        ghosts,
-        clip,
-        surfaces: Surfaces::of(scene),
-        connections,
-        named_faults: case.fault_faces.clone(),
-        chosen_faults: surfaces::chosen(&scene.show.faults, case)?,
-        lighting: lighting(scene, case, &box_corners)?,
         libc: scene.libc,
-        srg: srg(scene, case.grid.dims())?,
-        show_box: scene.show.r#box,
-        show_legend: scene.show.legend,
-        facts,
+        srg: srg(scene, dims)?,
     })
 }
 

@@ -173,7 +173,7 @@ impl Sequence {
     pub fn range(&self) -> [f64; 2] {
         match &self.views {
             Views::Steps { range, .. } => *range,
-            Views::Turn { view, .. } => view.transfer.true_range(),
+            Views::Turn { view, .. } => view.style.transfer.true_range(),
         }
     }
 
@@ -199,15 +199,20 @@ impl Sequence {
 
 /// The cameras of a turn of a scene, whose own view is given.
 fn cameras(scene: &Scene, view: &View, turn: Turn) -> Vec<Camera> {
-    let middle = view.subject.middle;
+    let middle = view.world.subject.middle;
     let start = view.turning_camera(&scene.camera);
     let turned = |a: f64| {
         let turned = start.turned(middle, DQuat::from_rotation_z(-a));
-        turned.before(&view.box_corners)
+        turned.before(&view.world.corners)
     };
     let mut cameras: Vec<Camera> = turn.radians().map(turned).collect();
     if scene.camera.framing_zoom().is_some() {
-        Camera::stand_back(&mut cameras, &view.subject.points, middle, view.aspect());
+        Camera::stand_back(
+            &mut cameras,
+            &view.world.subject.points,
+            middle,
+            view.aspect(),
+        );
     }
     cameras
 }
@@ -222,8 +227,8 @@ fn at_step(scene: &Scene, step: usize) -> Scene {
 /// The scene's range, or that of the values of one step; `None` where none is defined.
 fn defined_range(scene: &Scene, view: &View) -> Option<[f64; 2]> {
     let fixed = matches!(scene.range, RangeSpec::Fixed(_));
-    let defined = fixed || view.field.statistics().is_some();
-    defined.then(|| view.transfer.true_range())
+    let defined = fixed || view.shown.field.statistics().is_some();
+    defined.then(|| view.style.transfer.true_range())
 }
 
 fn union(a: Option<[f64; 2]>, b: Option<[f64; 2]>) -> Option<[f64; 2]> {

@@ -157,17 +157,17 @@ impl View {
     /// Distance along a ray within which the faces on both sides of a fault lie: they are on one surface,
     /// but their triangles are not.
     pub fn fault_gap(&self) -> f64 {
-        2.0 * self.sampling_step
+        2.0 * self.sampling.step
     }
 
     /// Which active cells of `grid` (the case's) are drawn, by active index.
     pub fn drawn_active(&self, grid: &Grid) -> Vec<bool> {
-        match &self.ghosts {
-            None => self.drawn.to_vec(),
+        match &self.shown.ghosts {
+            None => self.shown.drawn.to_vec(),
             Some(ghosts) => {
                 let cells = grid.active_cells().iter();
                 let of_all = cells.filter_map(|&cell| ghosts.grid.active_index(cell));
-                of_all.map(|a| self.drawn[a.0 as usize]).collect()
+                of_all.map(|a| self.shown.drawn[a.0 as usize]).collect()
             }
         }
     }
@@ -181,17 +181,17 @@ impl View {
     /// The fault faces of the drawn cells of `grid` (the case's) that the view shows, with the fault's number
     /// where it has a name; those of named faults are there whatever their throw.
     pub fn fault_faces(&self, grid: &Grid) -> Vec<(Ijk, Face, Option<usize>)> {
-        let faces = grid.fault_faces_of(&self.drawn_active(grid), &self.named_faults);
+        let faces = grid.fault_faces_of(&self.drawn_active(grid), &self.shown.named_faults);
         faces
             .into_iter()
-            .map(|(cell, face)| (cell, face, self.named_faults.fault_of(cell, face)))
+            .map(|(cell, face)| (cell, face, self.shown.named_faults.fault_of(cell, face)))
             .filter(|(.., fault)| self.shows_fault(*fault))
             .collect()
     }
 
     /// True where a fault is among those that the view shows, by its number where it has a name.
     fn shows_fault(&self, fault: Option<usize>) -> bool {
-        let Some(chosen) = &self.chosen_faults else {
+        let Some(chosen) = &self.shown.chosen_faults else {
             return true;
         };
         fault.is_some_and(|n| chosen.get(n) == Some(&true))

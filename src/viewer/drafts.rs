@@ -127,7 +127,7 @@ impl ShownSide {
             self.budget_of = Arc::downgrade(&of.case);
         }
         self.budget.learn(&spent(&picture), picture.is_draft);
-        let whole = picture.view.lighting.size();
+        let whole = picture.view.style.lighting.size();
         self.light_size = Some(Lighting::light_size_of(whole));
         // A draft replaces what was finished before.
         self.finished = (!picture.is_draft).then(|| of.clone());
@@ -183,10 +183,10 @@ fn spent(picture: &Picture) -> Spent {
     let ms = |time: std::time::Duration| 1e3 * time.as_secs_f64();
     let [width, height] = picture.rgb.size.map(f64::from);
     let light = picture.light.volumes;
-    let voxels = picture.view.lighting.light_size();
+    let voxels = picture.view.style.lighting.light_size();
     let voxels: f64 = voxels.into_iter().map(f64::from).product();
     Spent {
-        strategy: picture.view.strategy,
+        strategy: picture.view.sampling.strategy,
         pixels: width * height,
         rays_ms: ms(picture.stats.wall),
         voxels: if light.is_zero() { 0.0 } else { voxels },

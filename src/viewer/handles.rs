@@ -26,7 +26,7 @@ pub fn show(ui: &mut Ui, rect: Rect, shown: &View, scene: &Scene) -> Option<Vec<
         let at = pos2(at.x as f32, at.y as f32);
         Some(rect.lerp_inside(vec2(at.x, at.y)))
     };
-    let arrow = ARROW * view.world_bounds[0].distance(view.world_bounds[1]);
+    let arrow = ARROW * view.world.bounds[0].distance(view.world.bounds[1]);
     let mut planes = scene.clip.clone();
     let mut changed = false;
     let painter = ui.painter_at(rect);
@@ -83,7 +83,7 @@ fn handle(ui: &mut Ui, (n, what): (usize, &str), at: Pos2, color: Color32) -> Op
 
 /// Corners of a plane's section through the model's box, in order around it.
 fn outline(view: &View, point: DVec3, normal: DVec3) -> Vec<DVec3> {
-    let corners = &view.box_corners;
+    let corners = &view.world.corners;
     let height = |c: usize| (corners[c] - point).dot(normal);
     let mut cuts = Vec::new();
     for a in 0..8 {

@@ -77,11 +77,11 @@ pub fn drag_of(angles: DVec2) -> DVec2 {
 /// nothing is drawn, where the ray passes by.
 pub fn point_under(view: &View, drawn: Option<[DVec3; 2]>, at: DVec2) -> DVec3 {
     let Some([low, high]) = drawn else {
-        return middle(&view.box_corners);
+        return middle(&view.world.corners);
     };
     let (origin, direction) = view.camera.ray(at, view.aspect());
     // The box lies along the axes of grid space, and lengths along a ray are the same there.
-    let to_grid = &view.spaces.grid_from_world;
+    let to_grid = &view.world.spaces.grid_from_world;
     let start = to_grid.transform_point3(origin);
     let way = to_grid.transform_vector3(direction);
     let (a, b) = ((low - start) / way, (high - start) / way);
@@ -172,16 +172,16 @@ mod tests {
     /// A camera on a box of 4 by 3 by 2 around the origin, as a scene's explicit one.
     fn seen(spec: &CameraSpec) -> View {
         let mut view = crate::picture::test_view([300, 200], 1.0);
-        view.spaces = crate::model::Spaces::new(None, 2.0);
-        view.box_corners = view.corners_of(BOUNDS);
-        view.subject = crate::view::Subject::of_box(view.box_corners).into();
+        view.world.spaces = crate::model::Spaces::new(None, 2.0);
+        view.world.corners = view.corners_of(BOUNDS);
+        view.world.subject = crate::view::Subject::of_box(view.world.corners).into();
         view.seen_from(spec, [300, 200]).unwrap()
     }
 
     const BOUNDS: [DVec3; 2] = [DVec3::new(-2.0, -1.5, -0.5), DVec3::new(2.0, 1.5, 0.5)];
 
     fn explicit(projection: Projection) -> CameraSpec {
-        let corners = seen(&standard(0, projection)).box_corners;
+        let corners = seen(&standard(0, projection)).world.corners;
         let camera = camera().with(projection, DVec3::ZERO);
         spec(&camera, &corners)
     }
@@ -190,7 +190,7 @@ mod tests {
     fn cameras_come_back_from_their_scenes() {
         for projection in [Projection::Perspective, Projection::Parallel] {
             let view = seen(&explicit(projection));
-            let again = seen(&spec(&view.camera, &view.box_corners)).camera;
+            let again = seen(&spec(&view.camera, &view.world.corners)).camera;
             assert!(again.eye.distance(view.camera.eye) < 1e-9);
             assert_eq!(again.parallel.is_some(), projection == Projection::Parallel);
             let heights = [again, view.camera].map(|c| c.half_height(c.depth(DVec3::ZERO)));
@@ -200,8 +200,8 @@ mod tests {
                 eye: DVec3::ZERO,
                 ..view.camera
             };
-            let moved = seen(&spec(&inside, &view.box_corners)).camera;
-            let is_before = view.box_corners.iter().all(|c| moved.depth(*c) > 0.0);
+            let moved = seen(&spec(&inside, &view.world.corners)).camera;
+            let is_before = view.world.corners.iter().all(|c| moved.depth(*c) > 0.0);
             assert_eq!(is_before, projection == Projection::Parallel);
         }
     }
@@ -213,10 +213,10 @@ mod tests {
                 let view = seen(&start);
                 let near = zoom(&view.camera, DVec3::new(1.0, 1.0, 0.0), 5.0);
                 let all = seen(&frame_all(
-                    &spec(&near, &view.box_corners),
+                    &spec(&near, &view.world.corners),
                     &near,
-                    &view.subject.points,
-                    &view.box_corners,
+                    &view.world.subject.points,
+                    &view.world.corners,
                     1.5,
                 ));
                 assert!(all.camera.forward.distance(view.camera.forward) < 1e-9);
@@ -225,12 +225,12 @@ mod tests {
                     let at = all.camera.project(*c, 1.5).unwrap();
                     at.min_element() > 0.0 && at.max_element() < 1.0
                 };
-                assert!(view.box_corners.iter().all(is_in));
+                assert!(view.world.corners.iter().all(is_in));
                 let outside = |c: &DVec3| {
                     near.project(*c, 1.5)
                         .is_none_or(|at| (at - 0.5).abs().max_element() > 0.5)
                 };
-                assert!(view.box_corners.iter().any(outside));
+                assert!(view.world.corners.iter().any(outside));
             }
         }
     }
@@ -242,10 +242,10 @@ mod tests {
             standard(5, Projection::Perspective),
         ] {
             let view = seen(&start);
-            let parallel = switched(&start, &view.camera, &view.box_corners);
+            let parallel = switched(&start, &view.camera, &view.world.corners);
             assert_eq!(parallel.projection(), Projection::Parallel);
             let there = seen(&parallel);
-            let back = seen(&switched(&parallel, &there.camera, &there.box_corners)).camera;
+            let back = seen(&switched(&parallel, &there.camera, &there.world.corners)).camera;
             assert!(back.eye.distance(view.camera.eye) < 1e-9 && back.parallel.is_none());
         }
     }
@@ -259,7 +259,7 @@ mod tests {
             let drawn = [BOUNDS[0].with_x(0.0), BOUNDS[1]];
             let point = point_under(&view, Some(drawn), at);
             assert!(view.camera.project(point, 1.5).unwrap().distance(at) < 1e-9);
-            let [low, high] = drawn.map(|p| view.spaces.world_from_grid.transform_point3(p));
+            let [low, high] = drawn.map(|p| view.world.spaces.world_from_grid.transform_point3(p));
             assert!(point.cmpge(low.min(high)).all() && point.cmple(low.max(high)).all());
             // Beside it and with nothing drawn: the middles.
             let beside = point_under(&view, Some(drawn), DVec2::new(0.01, 0.01));

@@ -21,7 +21,7 @@ pub fn draw(
     let ink = ink(view);
     let [r, g, b] = CONNECTION;
     let stroke = Stroke::new(1.0, Color32::from_rgb(r, g, b));
-    for ends in view.connections.iter() {
+    for ends in view.shown.connections.iter() {
         if let Some(line) = on_screen(view, *ends, size(rect)) {
             painter.line_segment(line.map(|at| place(rect, at)), stroke);
         }
@@ -34,7 +34,7 @@ pub fn draw(
 
 /// A color that stands out from the background.
 pub fn ink(view: &View) -> Color32 {
-    let [r, g, b] = view.background;
+    let [r, g, b] = view.style.background;
     match 0.2126 * r + 0.7152 * g + 0.0722 * b < 0.45 {
         true => Color32::from_gray(235),
         false => Color32::from_gray(30),

@@ -96,7 +96,7 @@ fn widest(legends: [Option<LegendWidths>; 2]) -> Option<LegendWidths> {
 
 /// True where the legend of one of two pictures is that of the other.
 fn have_one_legend([(a, _), (b, _)]: [&ShownView; 2]) -> bool {
-    a.property == b.property && a.transfer == b.transfer
+    a.shown.property == b.shown.property && a.style.transfer == b.style.transfer
 }
 
 /// Draws what stands beside the volume of a picture: a title of its own or the given one, with what it does not
@@ -152,7 +152,7 @@ pub fn draw_shared(painter: &Painter, page: &Page, shown: [&ShownView; 2], own: 
 
 /// The background of the volume goes on around it.
 fn ground(painter: &Painter, page: &Page, view: &View) {
-    let [r, g, b] = view.background.map(|v| (255.0 * v).round() as u8);
+    let [r, g, b] = view.style.background.map(|v| (255.0 * v).round() as u8);
     painter.rect_filled(page.place, 0.0, Color32::from_rgb(r, g, b));
 }
 

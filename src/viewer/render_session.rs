@@ -140,7 +140,7 @@ impl RenderSession {
             cover: frame.image.pixels.iter().map(cover).collect(),
             rgb: Arc::new(Rgb8 {
                 size: frame.image.size,
-                pixels: frame.image.over_background_8bit(view.background),
+                pixels: frame.image.over_background_8bit(view.style.background),
             }),
             view,
             wanted: wanted.clone(),

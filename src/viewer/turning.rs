@@ -67,7 +67,7 @@ pub fn turn(case: &Arc<Case>, scene: &Scene, moves: usize) -> Result<Vec<Turned>
             }
             let shown = pictures.shown(0, case).map(|s| &s.picture);
             if let Some(picture) = shown.filter(|p| p.wanted.scene.camera == camera) {
-                let lighting = &picture.view.lighting;
+                let lighting = &picture.view.style.lighting;
                 turned.push(Turned {
                     took: start.elapsed(),
                     rays: picture.stats.wall,

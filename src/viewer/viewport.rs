@@ -80,7 +80,7 @@ impl Viewport {
         );
         let input = Input::of(ui, &response, rect, mouse);
         if let Some(camera) = self.moved(&input, &now, &case.grid) {
-            touched.camera = Some(orbit::spec(&camera, &now.box_corners));
+            touched.camera = Some(orbit::spec(&camera, &now.world.corners));
         }
         if response.clicked() {
             touched.pick = input.at;
@@ -118,9 +118,10 @@ impl Viewport {
     /// A point of world space under a place in the picture.
     fn under(&mut self, view: &View, grid: &Grid, at: DVec2) -> DVec3 {
         let known = self.drawn.take();
-        let known = known.filter(|d| std::ptr::eq(d.cells.as_ptr(), Arc::as_ptr(&view.drawn)));
+        let known =
+            known.filter(|d| std::ptr::eq(d.cells.as_ptr(), Arc::as_ptr(&view.shown.drawn)));
         let drawn = known.unwrap_or_else(|| Drawn {
-            cells: Arc::downgrade(&view.drawn),
+            cells: Arc::downgrade(&view.shown.drawn),
             bounds: view.drawn_bounds(grid),
         });
         let bounds = self.drawn.insert(drawn).bounds;

@@ -8,7 +8,7 @@ use anyhow::Context;
 use serde::Serialize;
 use strataray::render::{DeviceBytes, Executor, Frame, LightTimes, Renderer};
 use strataray::scene::Scene;
-use strataray::view::{self, View};
+use strataray::view::{self, Shown, View};
 
 use crate::cli::process::{cpu_time, forget_peak, peak_memory};
 use crate::cli::progress::Reporter;
@@ -87,7 +87,7 @@ pub fn case(
     let (_, topology) = timed(|| case.grid.fault_faces());
     let first = scenes.first().context("there is no strategy to time")?;
     let (view, read) = timed(|| view::resolve(first, &case));
-    let View { property, step, .. } = view?;
+    let Shown { property, step, .. } = view?.shown;
     let (field, property_time) = timed(|| case.field(&property, step));
     field?;
     let mut renderer = executor.renderer(&case.grid)?;
@@ -97,7 +97,7 @@ pub fn case(
     for scene in scenes {
         let view = view::resolve(scene, &case)?;
         let times = strategy(&mut *renderer, &view, frames, reporter);
-        let what = || format!("{} by {}", case.about.name, view.strategy.name());
+        let what = || format!("{} by {}", case.about.name, view.sampling.strategy.name());
         let (times, light_times) = times.with_context(what)?;
         strategies.push(times);
         // The strategies after the first one find it made.
@@ -160,7 +160,7 @@ fn strategy(
     let stats = &median.stats;
     let samples = stats.samples as f64;
     let times = StrategyTimes {
-        strategy: view.strategy.name(),
+        strategy: view.sampling.strategy.name(),
         first_frame_ms: ms(first_frame),
         prepare_ms: ms(warm_up.prepare),
         longest_wait_ms,

@@ -41,7 +41,7 @@ impl Coordinate {
     /// What the edges along each axis of the grid are labeled by: of the two horizontal ones the one that
     /// goes east more than the other by the easting.
     fn along_axes(view: &View) -> [Self; 3] {
-        let corners = &view.subject.outline;
+        let corners = &view.world.subject.outline;
         let way = |axis: usize| corners[1 << axis] - corners[0];
         let [a, b] = [way(0), way(1)];
         match (a.x * b.y).abs() >= (a.y * b.x).abs() {
@@ -67,7 +67,7 @@ impl Coordinate {
     }
 
     fn of(self, view: &View, point: DVec3) -> f64 {
-        let map = view.spaces.map_from_world(point);
+        let map = view.world.spaces.map_from_world(point);
         match self {
             Self::Easting => map.x,
             Self::Northing => map.y,
@@ -79,7 +79,7 @@ impl Coordinate {
 impl Coordinate {
     /// Its unit: that of the map where it is not the grid's.
     fn unit(self, view: &View, length_unit: &str) -> String {
-        match (self, view.spaces.map_unit) {
+        match (self, view.world.spaces.map_unit) {
             (Self::Easting | Self::Northing, Some(unit)) => short_unit(unit.name),
             _ => length_unit.to_owned(),
         }
@@ -132,12 +132,12 @@ impl Scale {
         edge: &Edge,
     ) -> Option<Self> {
         let aspect = view.aspect();
-        let ends = edge.corners.map(|c| view.subject.outline[c]);
+        let ends = edge.corners.map(|c| view.world.subject.outline[c]);
         let ends = edges::visible(&view.camera, ends, aspect)?;
         let seen = |p: DVec3| Some(view.camera.project(p, aspect)? * layout.paper.size);
         let [a, b] = [seen(ends[0])?, seen(ends[1])?];
         let along = (b - a).try_normalize()?;
-        let inside = seen(middle(&view.subject.outline))? - a;
+        let inside = seen(middle(&view.world.subject.outline))? - a;
         let outward = along.perp() * -along.perp().dot(inside).signum();
         let is_long = a.distance(b) >= SHORTEST * layout.paper.unit;
         (is_long && outward.is_finite()).then_some(Self {

@@ -19,7 +19,7 @@ pub struct Edge {
 ///
 /// The depth of the volume is not known here, so an edge in front of it could only be drawn wrong.
 pub fn far(view: &View) -> Vec<Edge> {
-    let corners = &view.subject.outline;
+    let corners = &view.world.subject.outline;
     let is_far = |axis: usize, corner: usize| {
         let here = corners[corner];
         let along = |axis: usize| corners[corner ^ 1 << axis] - here;

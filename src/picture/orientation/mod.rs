@@ -75,8 +75,8 @@ impl Orientation {
             made: Self::default(),
         };
         // Else it stands among the facts below the picture.
-        if view.facts.is_none() {
-            layout.exaggeration(view.vertical_exaggeration);
+        if view.notes.facts.is_none() {
+            layout.exaggeration(view.world.vertical_exaggeration);
         }
         triad::add(&mut layout, &view.camera);
         let room = layout.paper.size.min_element() / layout.paper.unit;
@@ -91,7 +91,7 @@ impl Orientation {
 
     /// Edges of the far sides of the box, cut at the rim of a picture of this size; they lie behind the volume.
     pub fn box_edges(view: &View, size: DVec2) -> Vec<[DVec2; 2]> {
-        let ends = |edge: edges::Edge| edge.corners.map(|c| view.subject.outline[c]);
+        let ends = |edge: edges::Edge| edge.corners.map(|c| view.world.subject.outline[c]);
         let lines = edges::far(view).into_iter();
         lines
             .filter_map(|edge| on_screen(view, ends(edge), size))
@@ -156,7 +156,7 @@ impl Arrangement<'_> {
     /// A round length at the distance of the box's middle, bottom right.
     fn scale_bar(&mut self, view: &View, length_unit: &str) {
         let Paper { size, unit, .. } = self.paper;
-        let depth = view.camera.depth(middle(&view.subject.outline));
+        let depth = view.camera.depth(middle(&view.world.subject.outline));
         let height = 2.0 * view.camera.half_height(depth);
         let Some(length) = round_length(0.2 * size.x * height / size.y).filter(|_| depth > 0.0)
         else {
@@ -218,12 +218,12 @@ mod tests {
     fn seen(azimuth: f64, elevation: f64, zoom: f64, projection: Projection) -> View {
         let mut view = view([800, 600], 1.0);
         let origin = DVec3::new(460_000.0, 5_930_000.0, -4000.0);
-        view.box_corners = view.box_corners.map(|c| origin + 100.0 * c);
-        view.subject = crate::view::Subject::of_box(view.box_corners).into();
+        view.world.corners = view.world.corners.map(|c| origin + 100.0 * c);
+        view.world.subject = crate::view::Subject::of_box(view.world.corners).into();
         let [azimuth, elevation] = [azimuth, elevation].map(f64::to_radians);
         let aspect = view.aspect();
         view.camera = Camera::framing(
-            &view.box_corners,
+            &view.world.corners,
             azimuth,
             elevation,
             zoom,
@@ -293,7 +293,7 @@ mod tests {
             .collect();
         assert!(eastings.len() >= 3, "{:?}", made.texts);
         for (easting, middle) in eastings {
-            let point = view.box_corners[0].with_x(easting);
+            let point = view.world.corners[0].with_x(easting);
             let x = 800.0 * view.camera.project(point, view.aspect()).unwrap().x;
             assert!((x - middle.x).abs() < 1e-6);
             let stroke = |[a, _]: &[DVec2; 2]| (a.x - x).abs() < 1e-6;
@@ -321,7 +321,7 @@ mod tests {
             let [a, b] = made.strokes[0];
             // Exact at the middle of the box, in parallel anywhere.
             let across = |shift: f64, length: f64| {
-                let at = middle(&view.box_corners) + shift * view.camera.forward;
+                let at = middle(&view.world.corners) + shift * view.camera.forward;
                 let ends = [0.0, 1.0].map(|part| at + part * length * view.camera.right);
                 let [a, b] = ends.map(|p| view.camera.project(p, view.aspect()).unwrap());
                 800.0 * a.distance(b)

@@ -31,7 +31,7 @@ impl Integrator<'_> {
         reach: f64,
         random: &mut fastrand::Rng,
     ) -> f64 {
-        let lighting = &self.view.lighting;
+        let lighting = &self.view.style.lighting;
         let sigma = lighting.sigma();
         let step = Lighting::REFERENCE_STEP * sigma;
         let range = [lighting.rays_gap * sigma, cone.length.min(reach)];
@@ -59,7 +59,7 @@ impl Integrator<'_> {
     /// both ends is one step in all and is given to the outermost samples, so that the mean over all
     /// shifts is exact: thin layers are missed as often as they should be.
     fn optical_depth(&self, ray: Ray, [start, end]: [f64; 2], most: f64, shift: f64) -> f64 {
-        let Some([enter, leave]) = ray.within(self.view.world_bounds) else {
+        let Some([enter, leave]) = ray.within(self.view.world.bounds) else {
             return 0.0;
         };
         let (start, end) = (start.max(enter), end.min(leave));

@@ -42,7 +42,7 @@ impl Integrator<'_> {
         color: [f64; 3],
         valued: Option<&Sample>,
     ) -> [f64; 3] {
-        let lighting = &self.view.lighting;
+        let lighting = &self.view.style.lighting;
         if lighting.is_off() || (lighting.exact_colors && valued.is_some()) {
             return color;
         }
@@ -53,7 +53,7 @@ impl Integrator<'_> {
         let mut specular = DVec3::ZERO;
         for light in &lighting.lights {
             let incident = Incident::new(light.source, point);
-            let arriving = light.blended(self.view.blending)
+            let arriving = light.blended(self.view.style.blending)
                 * self.arriving(light, &incident, point, &mut random);
             diffuse += arriving * surface.diffuse(incident.direction);
             specular += arriving * surface.specular(incident.direction, viewer);
@@ -63,7 +63,7 @@ impl Integrator<'_> {
 
     /// What the lamp beside the viewer leaves of the color of a surface, by its unit normal of either sense.
     pub(in crate::reference) fn headlight(&self, normal: DVec3, ray: DVec3) -> f64 {
-        if self.view.lighting.exact_colors {
+        if self.view.style.lighting.exact_colors {
             return 1.0;
         }
         let camera = &self.view.camera;
@@ -90,7 +90,7 @@ impl Integrator<'_> {
 
     /// Part of the ambient light that occlusion leaves.
     fn occlusion(&self, point: DVec3, random: &mut fastrand::Rng) -> f64 {
-        self.view.lighting.occlusion.map_or(1.0, |occlusion| {
+        self.view.style.lighting.occlusion.map_or(1.0, |occlusion| {
             let (axis, reach) = self.viewer(point);
             let seen = self.transmittance(point, axis, &occlusion.cone, reach, random);
             1.0 - occlusion.strength * (1.0 - seen)
@@ -110,16 +110,16 @@ impl Integrator<'_> {
             reach,
             part,
         } = *incident;
-        if part == 0.0 || self.view.lighting.shadows == LightMode::Off {
+        if part == 0.0 || self.view.style.lighting.shadows == LightMode::Off {
             return part;
         }
         part * self.transmittance(point, direction, &light.cone, reach, random)
     }
 
     fn surface(&self, valued: Option<&Sample>) -> Surface {
-        let shades = valued.filter(|_| self.view.lighting.blinn_phong);
+        let shades = valued.filter(|_| self.view.style.lighting.blinn_phong);
         let gradient = shades.and_then(|s| self.gradient(s)).unwrap_or_default();
-        let change = gradient.length() * self.view.transfer.reference_length;
+        let change = gradient.length() * self.view.style.transfer.reference_length;
         Surface {
             normal: gradient.normalize_or_zero(),
             weight: smooth_step(GRADIENT_FADE, change),
@@ -134,8 +134,8 @@ impl Integrator<'_> {
         let corners = self.vertices.as_ref()?.corners(self.grid, ijk);
         // Values vary by the same map as places do: here as a place with three equal coordinates.
         let values = Hexahedron(corners.map(DVec3::splat)).jacobian(str).row(0);
-        let [low, high] = self.view.transfer.range;
-        let world_from_grid = self.view.spaces.world_from_grid.matrix3;
+        let [low, high] = self.view.style.transfer.range;
+        let world_from_grid = self.view.world.spaces.world_from_grid.matrix3;
         let map = world_from_grid * self.grid.hexahedron(ijk).jacobian(str);
         let gradient = map.transpose().inverse() * values / (high - low);
         gradient.is_finite().then_some(gradient)

@@ -95,23 +95,23 @@ impl<'a> Integrator<'a> {
     /// `grid` is the case's; where the view shows inactive cells, it brings its own.
     pub fn new(grid: &'a Grid, view: &'a View) -> Self {
         let surfaces = SurfaceFaces::new(grid, view);
-        let grid = shown_grid(grid, view.ghosts.as_ref());
-        let by_vertex = view.interpolation == Interpolation::Vertex;
+        let grid = shown_grid(grid, view.shown.ghosts.as_ref());
+        let by_vertex = view.shown.interpolation == Interpolation::Vertex;
         Self {
             grid,
             view,
-            locator: Locator::of_drawn(grid, &view.drawn),
-            vertices: by_vertex.then(|| VertexField::new(grid, &view.field)),
+            locator: Locator::of_drawn(grid, &view.shown.drawn),
+            vertices: by_vertex.then(|| VertexField::new(grid, &view.shown.field)),
             surfaces,
         }
     }
 
     /// Red, green, blue, as they are blended, each times alpha, and alpha of what a ray passes through.
     pub fn ray(&self, ray: Ray) -> [f64; 4] {
-        let Some([enter, leave]) = ray.within(self.view.world_bounds) else {
+        let Some([enter, leave]) = ray.within(self.view.world.bounds) else {
             return [0.0; 4];
         };
-        let step = self.view.sampling_step;
+        let step = self.view.sampling.step;
         if let Some(rgb) = self.section(ray, [enter, leave]) {
             return [rgb[0], rgb[1], rgb[2], 1.0];
         }
@@ -120,13 +120,15 @@ impl<'a> Integrator<'a> {
             color: DVec3::ZERO,
             transmittance: 1.0,
         };
-        let is_solid = self.view.surfaces.solid;
+        let is_solid = self.view.style.surfaces.solid;
         let leave = match self.view.casts_rays() {
             true => leave,
             false => enter,
         };
         let mut number = (enter / step - 0.5).ceil().max(0.0);
-        while (number + 0.5) * step <= leave && sum.transmittance >= self.view.early_termination {
+        while (number + 0.5) * step <= leave
+            && sum.transmittance >= self.view.sampling.early_termination
+        {
             let distance = (number + 0.5) * step;
             while let Some(layer) = layers.next_if(|layer| layer.distance <= distance) {
                 sum.add(layer.color, layer.alpha);
@@ -149,13 +151,13 @@ impl<'a> Integrator<'a> {
 
     /// True on the kept side of every clip plane.
     pub(super) fn is_kept(&self, position: DVec3) -> bool {
-        let mut planes = self.view.clip.iter();
+        let mut planes = self.view.shown.clip.iter();
         planes.all(|plane| (position - plane.point).dot(plane.normal) >= 0.0)
     }
 
     /// Color of the opaque section at which a ray enters the kept part, where there is one.
     fn section(&self, ray: Ray, [enter, leave]: [f64; 2]) -> Option<[f64; 3]> {
-        let crossings = self.view.clip.iter().map(|plane| {
+        let crossings = self.view.shown.clip.iter().map(|plane| {
             let rate = ray.direction.dot(plane.normal);
             let t = (plane.point - ray.origin).dot(plane.normal) / rate;
             (if rate > 0.0 { t } else { f64::MIN }, plane)
@@ -166,6 +168,7 @@ impl<'a> Integrator<'a> {
         let others = |other: &&ClipPlane| *other != plane;
         let kept = self
             .view
+            .shown
             .clip
             .iter()
             .filter(others)
@@ -187,7 +190,7 @@ impl<'a> Integrator<'a> {
             return None;
         }
         let sample = self.sample(position)?;
-        let transfer = &self.view.transfer;
+        let transfer = &self.view.style.transfer;
         let extinction = match sample.value {
             Some(value) => transfer.extinction(transfer.position(value)),
             None => transfer.extinction_of(ghosts::OPACITY),
@@ -197,30 +200,35 @@ impl<'a> Integrator<'a> {
 
     /// Color of a sample without any light.
     pub(super) fn unlit(&self, sample: &Sample) -> [f64; 3] {
-        let transfer = &self.view.transfer;
+        let transfer = &self.view.style.transfer;
         match sample.value {
             Some(value) => self.view.color_at(transfer.position(value)),
-            None => self.view.blending.of_srgb(ghosts::COLOR),
+            None => self.view.style.blending.of_srgb(ghosts::COLOR),
         }
     }
 
     /// What is drawn at a point of world space, clip planes aside.
     pub(super) fn sample(&self, position: DVec3) -> Option<Sample> {
         let sample = self.sample_in(self.drawn_at(position)?);
-        let shown = sample.value.is_some() || self.view.ghosts.is_some();
+        let shown = sample.value.is_some() || self.view.shown.ghosts.is_some();
         shown.then_some(sample)
     }
 
     /// What is at a place in a cell.
     pub(super) fn sample_in(&self, located: Located) -> Sample {
-        let (field, vertices) = (&self.view.field, self.vertices.as_ref());
+        let (field, vertices) = (&self.view.shown.field, self.vertices.as_ref());
         let value = value_at(self.grid, &located, field, vertices);
         Sample { located, value }
     }
 
     /// The drawn cell at a point of world space.
     fn drawn_at(&self, position: DVec3) -> Option<Located> {
-        let point = self.view.spaces.grid_from_world.transform_point3(position);
+        let point = self
+            .view
+            .world
+            .spaces
+            .grid_from_world
+            .transform_point3(position);
         self.locator.locate(point)
     }
 }

@@ -73,7 +73,7 @@ struct Hit<'a> {
 impl SurfaceFaces {
     /// The faces that a view of the case's grid shows.
     pub fn new(grid: &Grid, view: &View) -> Self {
-        let surfaces = view.surfaces;
+        let surfaces = view.style.surfaces;
         if !surfaces.are_shown() {
             return Self::default();
         }
@@ -81,7 +81,7 @@ impl SurfaceFaces {
             true => view.fault_faces(grid),
             false => Vec::new(),
         };
-        let color = |fault| DVec3::from_array(view.blending.of_srgb(fault_color(fault)));
+        let color = |fault| DVec3::from_array(view.style.blending.of_srgb(fault_color(fault)));
         let key = |cell: Ijk, face: Face| (cell.i, cell.j, cell.k, face as usize);
         let colors: HashMap<_, _> = faults
             .iter()
@@ -135,7 +135,7 @@ fn bounds(corners: &[DVec3; 4]) -> [DVec3; 2] {
 impl SurfaceFace {
     fn new(grid: &Grid, view: &View, cell: Ijk, face: Face, fault: Option<DVec3>) -> Self {
         let hexahedron = grid.hexahedron(cell);
-        let world = |p| view.spaces.world_from_grid.transform_point3(p);
+        let world = |p| view.world.spaces.world_from_grid.transform_point3(p);
         let [mine, _] = face.corners();
         Self {
             cell,
@@ -215,7 +215,7 @@ impl Hit<'_> {
 impl Integrator<'_> {
     /// The surface points that a ray sees, nearest first.
     pub(super) fn layers(&self, ray: Ray) -> Vec<Layer> {
-        let mut layers = match self.view.surfaces.hull {
+        let mut layers = match self.view.style.surfaces.hull {
             Hull::Hidden => Vec::new(),
             Hull::Faint => self.faint_hull(ray),
             Hull::Opaque => self.opaque_hull(ray),
@@ -258,8 +258,9 @@ impl Integrator<'_> {
         };
         let color = self
             .view
+            .style
             .blending
-            .of_srgb(faint_color(self.view.background));
+            .of_srgb(faint_color(self.view.style.background));
         let layer = |hit: &Hit<'_>, [facing, edge_on]: [f64; 2]| {
             let cosine = hit.face.normal().dot(ray.direction).abs();
             Layer {
@@ -314,7 +315,7 @@ impl Integrator<'_> {
     ) -> Layer {
         let position = ray.origin + hit.distance * ray.direction;
         let lit = DVec3::from_array(self.shaded(position, color.to_array(), valued));
-        let lines = match self.view.surfaces.cell_edges {
+        let lines = match self.view.style.surfaces.cell_edges {
             true => self.lines_on(hit, ray).unwrap_or(0.0),
             false => 0.0,
         };
@@ -342,11 +343,11 @@ impl Integrator<'_> {
         plane: &ClipPlane,
         sample: &Sample,
     ) -> [f64; 3] {
-        if !self.view.surfaces.cell_edges {
+        if !self.view.style.surfaces.cell_edges {
             return color;
         }
         let Located { ijk, str } = sample.located;
-        let world_from_grid = self.view.spaces.world_from_grid.matrix3;
+        let world_from_grid = self.view.world.spaces.world_from_grid.matrix3;
         let map = world_from_grid * self.grid.hexahedron(ijk).jacobian(str);
         let at = |ray: Ray| {
             let distance = (plane.point - ray.origin).dot(plane.normal);

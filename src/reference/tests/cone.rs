@@ -29,7 +29,7 @@ fn row(faces: &[f64]) -> Grid {
 /// Of such a row, its cells drawn or not, with one extinction and rays over cones that begin at 1.
 fn row_view(grid: &Grid, drawn: &[bool], extinction: f64, rays: u32) -> View {
     let mut view = view(grid, constant(grid), extinction, 1.0);
-    view.drawn = drawn.to_vec().into();
+    view.shown.drawn = drawn.to_vec().into();
     let spec = LightingSpec {
         rays,
         ..LightingSpec::default()
@@ -78,7 +78,7 @@ fn in_a_uniform_medium_all_rays_are_as_long_as_the_cone() {
     // Rays begin at a gap of their own: a cone's counts for nothing.
     for gap in [0.0, 2.5] {
         let mut view = row_view(&grid, &[true], 0.03, 5);
-        view.lighting.rays_gap = gap;
+        view.style.lighting.rays_gap = gap;
         let integrator = Integrator::new(&grid, &view);
         let found = transmittance(&integrator, 100.0, axis, &cone(20.0, 35.0), 1);
         assert!(
@@ -98,7 +98,7 @@ fn rays_start_by_the_voxels_that_the_view_decided_on() {
     let grid = row(&[0.0, 200.0]);
     let found = [10, 160].map(|budget| {
         let mut view = row_view(&grid, &[true], 0.03, 5);
-        let extent = view.world_bounds[1] - view.world_bounds[0];
+        let extent = view.world.bounds[1] - view.world.bounds[0];
         let spec = LightingSpec {
             rays_gap: 2.0,
             volume: VolumeSpec {
@@ -108,10 +108,10 @@ fn rays_start_by_the_voxels_that_the_view_decided_on() {
             ..LightingSpec::default()
         };
         // So many cells that the budget alone decides.
-        view.lighting = crate::view::lighting::resolve(&spec, extent, 10_000_000).unwrap();
+        view.style.lighting = crate::view::lighting::resolve(&spec, extent, 10_000_000).unwrap();
         let integrator = Integrator::new(&grid, &view);
         let found = transmittance(&integrator, 100.0, DVec3::X, &cone(20.0, 35.0), 1);
-        let start = 2.0 * view.lighting.sigma();
+        let start = 2.0 * view.style.lighting.sigma();
         assert!((found - (-0.03 * (35.0 - start)).exp()).abs() < 1e-12);
         found
     });
@@ -226,7 +226,7 @@ fn what_is_cut_away_hides_nothing() {
     let wide = cone(20.0, 60.0);
     let seen = |view: &View| transmittance(&Integrator::new(&grid, view), 90.0, DVec3::X, &wide, 1);
     assert!(seen(&view) < 1e-3);
-    view.clip = vec![ClipPlane {
+    view.shown.clip = vec![ClipPlane {
         point: 95.0 * DVec3::X,
         normal: DVec3::NEG_X,
         opaque: true,

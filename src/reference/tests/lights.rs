@@ -22,7 +22,7 @@ fn stage(lights: Vec<LightSpec>) -> (Grid, View) {
     }
     .grid();
     let mut view = view(&grid, constant(&grid), 50.0, 2.5);
-    view.drawn = (0..9).map(|n| n == 5 || n == 6).collect::<Vec<_>>().into();
+    view.shown.drawn = (0..9).map(|n| n == 5 || n == 6).collect::<Vec<_>>().into();
     let spec = LightingSpec {
         lights,
         shadows: ShadowSpec {
@@ -127,7 +127,7 @@ fn lights_add_up_in_their_colors_over_the_ambient_part() {
         directional([1.0, -1.0, 0.0]),
     ];
     let (grid, mut view) = stage(lights);
-    view.lighting.ambient = 0.3;
+    view.style.lighting.ambient = 0.3;
     let expect = |view: &View, [red, green, blue]: [f64; 3]| {
         let [r, g, b, _] = central_ray(&grid, view);
         let off = (r / 0.25 - red)
@@ -138,7 +138,7 @@ fn lights_add_up_in_their_colors_over_the_ambient_part() {
     };
     expect(&view, [1.8, 1.3, 1.3]);
     // Lights cast no shadows where these are off.
-    view.lighting.shadows = LightMode::Off;
+    view.style.lighting.shadows = LightMode::Off;
     expect(&view, [2.8, 2.3, 2.3]);
 }
 
@@ -155,7 +155,7 @@ fn opaque_sections_are_shaded_as_samples_are() {
     // The plane takes half of the cell away, and the one aside; from behind the other half is dark.
     for (direction, brightness) in [([1.0, -1.0, 0.0], 1.0), ([-1.0, 0.0, 0.0], 0.0)] {
         let (grid, mut view) = stage(vec![directional(direction)]);
-        view.clip = vec![plane(25.0)];
+        view.shown.clip = vec![plane(25.0)];
         let [red, green, blue, alpha] = central_ray(&grid, &view);
         assert_eq!(alpha, 1.0);
         for (channel, own) in [(red, 0.25), (green, 0.5), (blue, 1.0)] {

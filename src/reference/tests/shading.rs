@@ -18,8 +18,8 @@ fn gradients_are_those_of_the_interpolated_value() {
     let mut random = fastrand::Rng::with_seed(12);
     let field = CellField::new((0..60).map(|_| random.f32()).collect());
     let mut view = view(&grid, field, 0.01, 3.0);
-    view.interpolation = Interpolation::Vertex;
-    view.transfer.range = [-1.0, 3.0];
+    view.shown.interpolation = Interpolation::Vertex;
+    view.style.transfer.range = [-1.0, 3.0];
     let integrator = Integrator::new(&grid, &view);
     let value = |p: DVec3| integrator.sample(p).and_then(|s: Sample| s.value);
     for _ in 0..500 {
@@ -28,7 +28,7 @@ fn gradients_are_those_of_the_interpolated_value() {
         let in_grid = grid
             .hexahedron(grid.dims().ijk(cell))
             .at(DVec3::new(one(), one(), one()));
-        let p = view.spaces.world_from_grid.transform_point3(in_grid);
+        let p = view.world.spaces.world_from_grid.transform_point3(in_grid);
         let gradient = integrator.gradient(&integrator.sample(p).unwrap()).unwrap();
         let along = |axis: DVec3| {
             let [before, after] = [-1e-4, 1e-4].map(|d| value(p + d * axis).unwrap());
@@ -42,9 +42,9 @@ fn gradients_are_those_of_the_interpolated_value() {
         );
         assert!(gradient.length() > 1e-5);
     }
-    view.interpolation = Interpolation::Cell;
+    view.shown.interpolation = Interpolation::Cell;
     let constant = Integrator::new(&grid, &view);
-    let middle = view.spaces.world_from_grid.transform_point3(
+    let middle = view.world.spaces.world_from_grid.transform_point3(
         grid.hexahedron(grid.dims().ijk(grid.active_cells()[0]))
             .center(),
     );
@@ -62,8 +62,8 @@ fn rising(rate: f64, direction: [f64; 3]) -> (Grid, View) {
         .map(|n| (5.0 * rate) as f32 * (n % 4) as f32)
         .collect();
     let mut view = view(&grid, CellField::new(values), 0.01, 1.0);
-    view.interpolation = Interpolation::Vertex;
-    view.transfer.reference_length = 2.0;
+    view.shown.interpolation = Interpolation::Vertex;
+    view.style.transfer.reference_length = 2.0;
     let spec = LightingSpec {
         lights: vec![directional(direction)],
         shadows: ShadowSpec {
@@ -115,10 +115,10 @@ fn blinn_phong_follows_its_formula() {
             );
         }
         // By the cell's own value, or without the model, there is no surface.
-        view.interpolation = Interpolation::Cell;
+        view.shown.interpolation = Interpolation::Cell;
         assert!((inner_color(&grid, &view)[2] - 1.2).abs() < 1e-12);
-        view.interpolation = Interpolation::Vertex;
-        view.lighting.blinn_phong = false;
+        view.shown.interpolation = Interpolation::Vertex;
+        view.style.lighting.blinn_phong = false;
         assert!((inner_color(&grid, &view)[2] - 1.2).abs() < 1e-12);
     }
 }
@@ -131,10 +131,10 @@ fn dark_ghosts(exact_colors: bool) -> [f64; 4] {
     }
     .grid();
     let mut view = view(&grid, constant(&grid), 0.07, 0.3);
-    let (ghosts, field, drawn) = Ghosts::new(&grid, &view.field, &[true; 4]);
-    (view.field, view.drawn) = (field.into(), drawn.into());
-    view.ghosts = Some(ghosts.into());
-    view.world_bounds[0].x -= 10.0;
+    let (ghosts, field, drawn) = Ghosts::new(&grid, &view.shown.field, &[true; 4]);
+    (view.shown.field, view.shown.drawn) = (field.into(), drawn.into());
+    view.shown.ghosts = Some(ghosts.into());
+    view.world.bounds[0].x -= 10.0;
     let spec = LightingSpec {
         lights: vec![directional([-1.0, 0.0, 0.0])],
         ambient: Some(0.0),
@@ -142,7 +142,7 @@ fn dark_ghosts(exact_colors: bool) -> [f64; 4] {
         ..LightingSpec::default()
     };
     light(&mut view, spec, DVec3::ONE);
-    view.lighting.lights[0].intensity = 0.0;
+    view.style.lighting.lights[0].intensity = 0.0;
     central_ray(&grid, &view)
 }
 
@@ -166,18 +166,22 @@ fn a_ghost_between_values_has_no_gradient() {
     }
     .grid();
     let mut view = view(&grid, CellField::new(vec![0.0, 1.0]), 0.07, 0.3);
-    view.interpolation = Interpolation::Vertex;
+    view.shown.interpolation = Interpolation::Vertex;
     let gradient = |view: &View, values: [f32; 3]| {
-        let all = view.ghosts.as_ref().map_or(&grid, |ghosts| &ghosts.grid);
+        let all = view
+            .shown
+            .ghosts
+            .as_ref()
+            .map_or(&grid, |ghosts| &ghosts.grid);
         let mut view = view.clone();
-        view.field = CellField::new(values.to_vec()).into();
+        view.shown.field = CellField::new(values.to_vec()).into();
         let integrator = Integrator::new(all, &view);
         let middle = integrator.sample(DVec3::new(15.0, 10.0, -203.0)).unwrap();
         integrator.gradient(&middle)
     };
-    let (ghosts, field, drawn) = Ghosts::new(&grid, &view.field, &[true; 2]);
-    (view.field, view.drawn) = (field.into(), drawn.into());
-    view.ghosts = Some(ghosts.into());
+    let (ghosts, field, drawn) = Ghosts::new(&grid, &view.shown.field, &[true; 2]);
+    (view.shown.field, view.shown.drawn) = (field.into(), drawn.into());
+    view.shown.ghosts = Some(ghosts.into());
     // All of its vertices have values, of the cells beside it.
     assert_eq!(gradient(&view, [0.0, f32::NAN, 1.0]), None);
     let with_value = gradient(&view, [0.0, 0.5, 1.0]).unwrap();
@@ -189,7 +193,7 @@ fn light_that_shades_nothing_changes_no_bit() {
     let grid = skewed();
     let field = CellField::new((0..60).map(|n| n as f32 / 60.0).collect());
     let mut view = view(&grid, field, 0.02, 3.0);
-    view.interpolation = Interpolation::Vertex;
+    view.shown.interpolation = Interpolation::Vertex;
     view.camera.eye.x -= 500.0;
     let picture = |view: &View| render(&grid, view, &|_| true).unwrap().pixels;
     let off = picture(&view);

@@ -149,7 +149,7 @@ impl FrameRenderer {
         stats.wall = start.elapsed();
         let image = Image {
             size: view.size,
-            blending: view.blending,
+            blending: view.style.blending,
             pixels,
         };
         Ok((image, stats))
@@ -375,34 +375,39 @@ fn frame_uniform(grid: &GpuGrid, view: &View) -> Frame {
     let camera = &view.camera;
     let aspect = view.aspect();
     let f32s = |v: DVec3| v.as_vec3().to_array();
-    let linear = view.spaces.grid_from_world.matrix3;
-    let eye = view.spaces.grid_from_world.transform_point3(camera.eye) - grid.origin;
+    let linear = view.world.spaces.grid_from_world.matrix3;
+    let eye = view
+        .world
+        .spaces
+        .grid_from_world
+        .transform_point3(camera.eye)
+        - grid.origin;
     // Half the picture at a depth of one.
     let half_height = camera.half_height(1.0);
     let [half_right, half_up] = [aspect * camera.right, camera.up].map(|v| half_height * v);
     let is_parallel = f64::from(u8::from(camera.parallel.is_some()));
     let aside = HEADLIGHT_ASIDE[0] * camera.right + HEADLIGHT_ASIDE[1] * camera.up;
-    let to_camera = view.spaces.world_from_grid.matrix3.transpose();
+    let to_camera = view.world.spaces.world_from_grid.matrix3.transpose();
     Frame {
         eye: f32s(eye),
-        step: view.sampling_step as f32,
+        step: view.sampling.step as f32,
         forward: f32s(camera.forward),
-        early_termination: view.early_termination as f32,
+        early_termination: view.sampling.early_termination as f32,
         right: f32s((1.0 - is_parallel) * half_right),
-        value_low: view.transfer.range[0] as f32,
+        value_low: view.style.transfer.range[0] as f32,
         up: f32s((1.0 - is_parallel) * half_up),
-        value_scale: layout::per_unit(view.transfer.range),
+        value_scale: layout::per_unit(view.style.transfer.range),
         grid_from_world_x: f32s(linear.x_axis),
         width: view.size[0],
         grid_from_world_y: f32s(linear.y_axis),
         height: view.size[1],
         grid_from_world_z: f32s(linear.z_axis),
-        interpolation: layout::interpolation(view.interpolation),
+        interpolation: layout::interpolation(view.shown.interpolation),
         box_low: f32s(grid.bounds[0]),
-        clip_count: view.clip.len() as u32,
+        clip_count: view.shown.clip.len() as u32,
         box_high: f32s(grid.bounds[1]),
         opaque_cuts: (0..)
-            .zip(&view.clip)
+            .zip(&view.shown.clip)
             .map(|(n, plane)| u32::from(plane.opaque) << n)
             .sum(),
         view_x: f32s(to_camera * (camera.right / (half_height * aspect))),
@@ -424,7 +429,7 @@ fn frame_uniform(grid: &GpuGrid, view: &View) -> Frame {
 
 /// Distance of the farthest corner of the model's box.
 fn farthest(view: &View) -> f64 {
-    let distances = view.box_corners.iter();
+    let distances = view.world.corners.iter();
     let distances = distances.map(|c| view.camera.to_viewer(*c).1);
     distances.fold(0.0, f64::max)
 }

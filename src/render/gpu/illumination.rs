@@ -226,7 +226,7 @@ impl Illumination {
         progress: &Progress,
     ) -> Result<(), RenderError> {
         self.times = LightTimes::default();
-        if !Shading::of(&view.lighting).is_on() {
+        if !Shading::of(&view.style.lighting).is_on() {
             self.work = 0;
             self.forget();
             return Ok(());
@@ -257,7 +257,7 @@ impl Illumination {
     ) -> Result<(), RenderError> {
         let shape = Shape {
             voxel: Voxel::Packed,
-            ..Shape::single(view.lighting.size(), 1)
+            ..Shape::single(view.style.lighting.size(), 1)
         };
         let before = self.field.take();
         let before = before.filter(|f| f.volume.shape == shape);
@@ -268,12 +268,13 @@ impl Illumination {
         check_size(gpu, shape.size)?;
         let volume = before.map_or_else(|| Volume::new(gpu, shape), |f| f.volume);
         let range = view
+            .shown
             .field
             .statistics()
             .map_or([0.0, 1.0], |s| [s.min, s.max]);
         let mut slabs = Slabs::new(gpu, &mut self.pace, progress);
         self.resampler
-            .fill(&mut slabs, grid, &volume, range, view.interpolation)
+            .fill(&mut slabs, grid, &volume, range, view.shown.interpolation)
             .await?;
         self.made.fields += 1;
         self.field = Some(Field {
@@ -300,18 +301,18 @@ impl Illumination {
             values: &field.volume,
             number: self.made.fields,
             position: position(view, field.range),
-            sigma: view.lighting.sigma(),
+            sigma: view.style.lighting.sigma(),
             ghost: ghost(view)[3],
             clip_planes: clip_planes(grid, view),
-            clip_count: view.clip.len() as u32,
+            clip_count: view.shown.clip.len() as u32,
             bounds: grid.bounds,
-            extent: view.lighting.extent,
+            extent: view.style.lighting.extent,
         };
-        let shading = Shading::of(&view.lighting);
+        let shading = Shading::of(&view.style.lighting);
         let is_stale = |made: &Option<Pyramid>| {
             !made
                 .as_ref()
-                .is_some_and(|p| p.is_of(&source, &view.transfer))
+                .is_some_and(|p| p.is_of(&source, &view.style.transfer))
         };
         let group = self.bind(gpu, tables);
         let mut slabs = Slabs::new(gpu, &mut self.pace, progress);
@@ -319,9 +320,9 @@ impl Illumination {
             self.opacities = None;
         } else if is_stale(&self.opacities) {
             let before = self.opacities.take();
-            let made = self
-                .blurs
-                .make_sharp(&mut slabs, &source, &view.transfer, &group, before);
+            let made =
+                self.blurs
+                    .make_sharp(&mut slabs, &source, &view.style.transfer, &group, before);
             self.opacities = Some(made.await?);
         }
         if !shading.traces_cones() {
@@ -330,7 +331,7 @@ impl Illumination {
             let before = self.pyramid.take();
             let made = self
                 .blurs
-                .make(&mut slabs, &source, &view.transfer, &group, before);
+                .make(&mut slabs, &source, &view.style.transfer, &group, before);
             self.pyramid = Some(made.await?);
             self.made.pyramids += 1;
         }
@@ -345,7 +346,7 @@ impl Illumination {
         view: &View,
         emitters: &Emitters,
     ) -> Result<(), RenderError> {
-        let lighting = &view.lighting;
+        let lighting = &view.style.lighting;
         let space = LightSpace::new(grid, view);
         let range = self.field.as_ref().map_or([0.0, 1.0], |f| f.range);
         let [position_low, position_scale] = position(view, range);
@@ -365,7 +366,7 @@ impl Illumination {
             rays: lighting.rays,
             seed: lighting.seed,
             step: Lighting::REFERENCE_STEP as f32,
-            gradient_scale: (view.transfer.reference_length / space.sigma) as f32,
+            gradient_scale: (view.style.transfer.reference_length / space.sigma) as f32,
             work: emitters.work,
             rays_gap: lighting.rays_gap as f32,
             reserved0: 0,
@@ -387,7 +388,7 @@ impl Illumination {
         emitters: &Emitters,
         progress: &Progress,
     ) -> Result<(), RenderError> {
-        let size = view.lighting.light_size();
+        let size = view.style.lighting.light_size();
         let count = emitters.volumes.len() as u32;
         if count == 0 {
             self.lights = None;
@@ -444,20 +445,20 @@ impl Illumination {
         tables: &TransferTables,
         progress: &Progress,
     ) -> Result<(), RenderError> {
-        let (Some(field), true) = (&self.field, view.lighting.blinn_phong) else {
+        let (Some(field), true) = (&self.field, view.style.lighting.blinn_phong) else {
             self.gradients = None;
             return Ok(());
         };
         // Values that are constant in a cell have no gradient.
-        if view.interpolation == crate::scene::Interpolation::Cell {
+        if view.shown.interpolation == crate::scene::Interpolation::Cell {
             self.gradients = None;
             return Ok(());
         }
         let shape = Shape {
             voxel: Voxel::Quad,
-            ..Shape::single(view.lighting.light_size(), 1)
+            ..Shape::single(view.style.lighting.light_size(), 1)
         };
-        let scale = view.lighting.extent.as_vec3().to_array();
+        let scale = view.style.lighting.extent.as_vec3().to_array();
         let [_, position_scale] = position(view, field.range);
         let is_known = self.gradients.as_ref().is_some_and(|g| {
             g.volume.shape == shape
@@ -594,7 +595,7 @@ fn check_size(gpu: &Gpu, size: [u32; 3]) -> Result<(), RenderError> {
 
 /// Transfer-function position of a value that is stored as a part of `range`: offset and factor.
 fn position(view: &View, range: [f64; 2]) -> [f32; 2] {
-    view.transfer.positions(range).map(|v| v as f32)
+    view.style.transfer.positions(range).map(|v| v as f32)
 }
 
 /// Lighting space: the grid's axes from the low corner of the box, in units of the finest level's standard
@@ -608,28 +609,28 @@ struct LightSpace {
 impl LightSpace {
     fn new(grid: &GpuGrid, view: &View) -> Self {
         let [low, high] = grid.bounds;
-        let sigma = view.lighting.sigma();
+        let sigma = view.style.lighting.sigma();
         let edges = (high - low).max(DVec3::splat(1e-6));
         Self {
             low,
-            scale: view.lighting.extent / edges / sigma,
+            scale: view.style.lighting.extent / edges / sigma,
             sigma,
         }
     }
 
     fn point(&self, grid: &GpuGrid, view: &View, world: DVec3) -> Vec3 {
-        let point = view.spaces.grid_from_world.transform_point3(world) - grid.origin;
+        let point = view.world.spaces.grid_from_world.transform_point3(world) - grid.origin;
         ((point - self.low) * self.scale).as_vec3()
     }
 
     fn direction(&self, view: &View, world: DVec3) -> Vec3 {
-        let direction = view.spaces.grid_from_world.matrix3 * world * self.scale;
+        let direction = view.world.spaces.grid_from_world.matrix3 * world * self.scale;
         direction.normalize_or(DVec3::Z).as_vec3()
     }
 }
 
 fn emitters(grid: &GpuGrid, view: &View, software: bool) -> Result<Emitters, RenderError> {
-    let lighting = &view.lighting;
+    let lighting = &view.style.lighting;
     let space = LightSpace::new(grid, view);
     let mut all = Emitters {
         emitters: Vec::new(),
@@ -650,7 +651,7 @@ fn emitters(grid: &GpuGrid, view: &View, software: bool) -> Result<Emitters, Ren
     for light in &lighting.lights {
         let emitter = Emitter::at(
             &light.source,
-            light.blended(view.blending),
+            light.blended(view.style.blending),
             grid,
             view,
             &space,
@@ -753,7 +754,7 @@ impl Emitter {
             view,
             space,
         );
-        let cuts = view.box_corners.iter().any(|c| camera.depth(*c) < 0.0);
+        let cuts = view.world.corners.iter().any(|c| camera.depth(*c) < 0.0);
         let plane = cuts.then(|| space.point(grid, view, camera.eye).to_array());
         Self {
             axis: plane.unwrap_or(viewer.axis),

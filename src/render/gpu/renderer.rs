@@ -104,7 +104,7 @@ impl GpuRenderer {
             surfaces,
             ..
         } = self;
-        let (of_case, grid) = (&**model, shown_grid(model, view.ghosts.as_ref()));
+        let (of_case, grid) = (&**model, shown_grid(model, view.shown.ghosts.as_ref()));
         let tables = match tables.take().filter(|t| t.are_of(view)) {
             Some(known) => tables.insert(known),
             None => tables.insert(TransferTables::new(gpu, view)?),
@@ -113,11 +113,11 @@ impl GpuRenderer {
             .update(gpu, on_device, view, tables, &progress)
             .await?;
         let strategy = match view.casts_rays() {
-            true => strategy(gpu, &mut self.strategies, view.strategy)?,
+            true => strategy(gpu, &mut self.strategies, view.sampling.strategy)?,
             false => solid(gpu, &mut self.solid)?,
         };
         let faces = match strategy.draws_faces() || SurfacePainter::shares_faces(view) {
-            true => Some(faces.update(gpu, grid, on_device, &view.drawn)?),
+            true => Some(faces.update(gpu, grid, on_device, &view.shown.drawn)?),
             false => None,
         };
         let mut surfaces = surfaces_of(gpu, surfaces, view)?;
@@ -171,12 +171,12 @@ impl Renderer for GpuRenderer {
     }
 
     fn prepare(&mut self, view: &View) -> Result<(), RenderError> {
-        let grid = shown_grid(&self.model, view.ghosts.as_ref());
+        let grid = shown_grid(&self.model, view.shown.ghosts.as_ref());
         let wanted = OnDevice {
-            field: view.field.clone(),
-            drawn: view.drawn.clone(),
-            interpolation: view.interpolation,
-            ghosts: view.ghosts.clone(),
+            field: view.shown.field.clone(),
+            drawn: view.shown.drawn.clone(),
+            interpolation: view.shown.interpolation,
+            ghosts: view.shown.ghosts.clone(),
         };
         let ghosts_now = self.shown.as_ref().and_then(|s| s.ghosts.as_ref());
         if ghosts_now != wanted.ghosts.as_ref() {
@@ -207,14 +207,20 @@ impl Renderer for GpuRenderer {
         points: &[DVec3],
     ) -> Result<Vec<Option<Located>>, RenderError> {
         self.prepare(view)?;
-        let grid = shown_grid(&self.model, view.ghosts.as_ref());
+        let grid = shown_grid(&self.model, view.shown.ghosts.as_ref());
         let probe = match self.probe.take().filter(|p| p.fits(&self.grid)) {
             Some(known) => self.probe.insert(known),
             None => self.probe.insert(Probe::new(&self.gpu, &self.grid)?),
         };
-        let to_grid = |p: &DVec3| view.spaces.grid_from_world.transform_point3(*p);
+        let to_grid = |p: &DVec3| view.world.spaces.grid_from_world.transform_point3(*p);
         let points: Vec<DVec3> = points.iter().map(to_grid).collect();
-        probe.locate(&self.gpu, &self.grid, grid, &points, view.interpolation)
+        probe.locate(
+            &self.gpu,
+            &self.grid,
+            grid,
+            &points,
+            view.shown.interpolation,
+        )
     }
 }
 
@@ -224,7 +230,7 @@ fn surfaces_of<'a>(
     compiled: &'a mut Option<SurfacePainter>,
     view: &View,
 ) -> Result<Option<&'a mut SurfacePainter>, RenderError> {
-    if !view.surfaces.are_shown() {
+    if !view.style.surfaces.are_shown() {
         return Ok(None);
     }
     let painter = match compiled.take() {
@@ -309,9 +315,10 @@ mod tests {
             ..Scene::default()
         };
         let view = view::resolve(&scene, &case).unwrap();
-        let view = View {
-            sampling_step: 3.0,
-            ..view
+        let view = {
+            let mut changed = view;
+            changed.sampling.step = 3.0;
+            changed
         };
         let mut renderer = GpuRenderer::new(gpu, &case.grid).unwrap();
         let stats = |renderer: &mut GpuRenderer| renderer.render(&view, &|_| true).unwrap().stats;

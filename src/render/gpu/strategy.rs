@@ -37,8 +37,8 @@ impl Common {
     pub fn of(what: &Preparation<'_>) -> Self {
         Self {
             grid: what.grid.constants(),
-            shading: Shading::of(&what.view.lighting),
-            surfaces: what.view.surfaces,
+            shading: Shading::of(&what.view.style.lighting),
+            surfaces: what.view.style.surfaces,
         }
     }
 

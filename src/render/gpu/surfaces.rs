@@ -117,7 +117,7 @@ impl SurfacePainter {
 
     /// True where the boundary faces of all drawn cells are the hull.
     pub fn shares_faces(view: &View) -> bool {
-        view.surfaces.has_hull() && view.ghosts.is_none()
+        view.style.surfaces.has_hull() && view.shown.ghosts.is_none()
     }
 
     /// Brings up to date what is shown of `model` (the case's grid). `boundary` are the boundary faces of all
@@ -135,7 +135,7 @@ impl SurfacePainter {
         boundary: Option<&FaceList>,
         work: u32,
     ) -> Result<(), RenderError> {
-        let look = (view.surfaces, Shading::of(&view.lighting));
+        let look = (view.style.surfaces, Shading::of(&view.style.lighting));
         if look != self.look {
             let surfaces = constants(look.0).into_iter();
             let constants: Vec<_> = surfaces.chain(look.1.pairs()).collect();
@@ -145,8 +145,8 @@ impl SurfacePainter {
         let is_known = |s: &ShownSurfaces| {
             let kinds = |s: Surfaces| (s.hull, s.faults);
             s.drawn == grid.versions.drawn
-                && kinds(s.surfaces) == kinds(view.surfaces)
-                && s.chosen == view.chosen_faults
+                && kinds(s.surfaces) == kinds(view.style.surfaces)
+                && s.chosen == view.shown.chosen_faults
         };
         let shown = match self.shown.take().filter(is_known) {
             Some(known) => known,
@@ -154,8 +154,11 @@ impl SurfacePainter {
         };
         self.shown = Some(shown);
         self.gap = view.fault_gap() as f32;
-        self.blending = view.blending;
-        let [r, g, b] = view.blending.of_srgb(faint_color(view.background));
+        self.blending = view.style.blending;
+        let [r, g, b] = view
+            .style
+            .blending
+            .of_srgb(faint_color(view.style.background));
         self.faint = [r, g, b, 1.0].map(|v| v as f32);
         self.work = u64::from(layout::PAINT_WORK + work);
         Ok(())
@@ -268,7 +271,7 @@ impl ShownSurfaces {
         view: &View,
         boundary: Option<&FaceList>,
     ) -> Result<Self, RenderError> {
-        let surfaces = view.surfaces;
+        let surfaces = view.style.surfaces;
         let faults = match surfaces.faults {
             true => faults(model, view)?,
             false => Vec::new(),
@@ -288,7 +291,7 @@ impl ShownSurfaces {
         };
         Ok(Self {
             surfaces,
-            chosen: view.chosen_faults.clone(),
+            chosen: view.shown.chosen_faults.clone(),
             drawn: grid.versions.drawn,
             hull,
             sheets,

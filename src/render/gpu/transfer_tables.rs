@@ -27,21 +27,21 @@ impl TransferTables {
         Ok(Self {
             integrals: gpu.storage("transfer integrals", &transfer_integrals(&table))?,
             table: gpu.storage("transfer table", &table)?,
-            transfer: view.transfer.clone(),
-            blending: view.blending,
+            transfer: view.style.transfer.clone(),
+            blending: view.style.blending,
         })
     }
 
     /// True where they are those of a view.
     pub fn are_of(&self, view: &View) -> bool {
-        self.transfer == view.transfer && self.blending == view.blending
+        self.transfer == view.style.transfer && self.blending == view.style.blending
     }
 }
 
 /// Red, green, blue, as they are blended, and extinction at equal distances over the range.
 fn transfer_table(view: &View) -> Vec<[f32; 4]> {
     let color = |position| view.color_at(position).map(|v| v as f32);
-    let extinctions = extinctions(&view.transfer).into_iter();
+    let extinctions = extinctions(&view.style.transfer).into_iter();
     positions()
         .zip(extinctions)
         .map(|(position, extinction)| {

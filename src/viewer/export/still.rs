@@ -167,7 +167,7 @@ fn wiped(case: &Case, [a, b]: [Finished; 2], texts: &[String; 2], at: f64, plain
     let column = (at.clamp(0.0, 1.0) * f64::from(size[0])).round() as u32;
     let mut left = cropped(&a.rgb, column);
     let annotations = Annotations::of(case, &a.view);
-    if !plain && annotations.show_legend && a.view.property != b.view.property {
+    if !plain && annotations.show_legend && a.view.shown.property != b.view.shown.property {
         draw_legend(&mut left, &a.view, &annotations, size);
     }
     own(&mut left, &a.view, size, 0, &texts[0]);

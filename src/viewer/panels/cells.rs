@@ -173,7 +173,7 @@ fn slices(ui: &mut Ui, about: &PanelContext<'_>, filter: &mut Filter, actions: &
 fn exaggeration(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action>) {
     let Some(picture) = about.picture else { return };
     let wanted = about.scene.vertical_exaggeration;
-    let mut factor = wanted.unwrap_or(picture.view.vertical_exaggeration);
+    let mut factor = wanted.unwrap_or(picture.view.world.vertical_exaggeration);
     ui.label("Vertical exaggeration");
     ui.horizontal(|ui| {
         ui.spacing_mut().slider_width = 130.0;

@@ -64,7 +64,7 @@ fn lean(ui: &mut Ui, view: &View, plane: &mut ClipSpec) {
     // Without a negative zero.
     let mut dip = normal.z.clamp(-1.0, 1.0).asin().to_degrees() + 0.0;
     let middle = middle(view);
-    let reach = 0.5 * view.world_bounds[0].distance(view.world_bounds[1]);
+    let reach = 0.5 * view.world.bounds[0].distance(view.world.bounds[1]);
     let mut offset = (DVec3::from_array(plane.point) - middle).dot(normal);
     ui.horizontal(|ui| {
         let before = (azimuth, dip, offset);
@@ -102,7 +102,7 @@ fn lean(ui: &mut Ui, view: &View, plane: &mut ClipSpec) {
 }
 
 fn middle(view: &View) -> DVec3 {
-    0.5 * (view.world_bounds[0] + view.world_bounds[1])
+    0.5 * (view.world.bounds[0] + view.world.bounds[1])
 }
 
 /// Buttons for new planes.
@@ -133,7 +133,7 @@ fn add(ui: &mut Ui, view: &View, planes: &mut Vec<ClipSpec>) {
         let button = ui.add_enabled(room >= 6, egui::Button::new("Box"));
         let what = "Six planes around the inner half of the model";
         if button.on_hover_text(what).clicked() {
-            let [low, high] = view.world_bounds;
+            let [low, high] = view.world.bounds;
             let inner = [low + 0.2 * (high - low), high - 0.2 * (high - low)];
             for axis in [DVec3::X, DVec3::Y, DVec3::Z] {
                 planes.push(new(inner[0], axis));

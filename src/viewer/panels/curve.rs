@@ -34,7 +34,9 @@ pub fn show(ui: &mut Ui, view: &View, unit: &str, points: &mut Vec<[f64; 2]>) ->
     let painter = ui.painter_at(whole);
     painter.rect_filled(rect, 2.0, ui.visuals().extreme_bg_color);
     let (strip, _) = ui.allocate_exact_size(strip, Sense::hover());
-    overlay::color_bar(ui.painter(), strip.shrink2(ENDS), |p| view.transfer.srgb(p));
+    overlay::color_bar(ui.painter(), strip.shrink2(ENDS), |p| {
+        view.style.transfer.srgb(p)
+    });
     histogram(&painter, rect, &bins(ui, response.id, view), view);
     let chosen_id = response.id.with("chosen");
     let mut chosen: usize = ui.data(|d| d.get_temp(chosen_id)).unwrap_or(0);
@@ -84,7 +86,7 @@ fn draw(ui: &Ui, rect: Rect, points: &[[f64; 2]], chosen: Option<usize>) {
 
 /// Tells the value and the opacity of a point.
 fn tip(ui: &Ui, rect: Rect, view: &View, unit: &str, point: [f64; 2]) {
-    let [low, high] = view.transfer.range;
+    let [low, high] = view.style.transfer.range;
     let value = view.true_value(low + (high - low) * point[0]);
     let text = format!("{} {unit}", significant(value));
     let text = format!("{}: opacity {:.2}", text.trim_end(), point[1]);
@@ -108,21 +110,21 @@ struct Counted {
 /// The histogram, counted anew only where field, selection or range changed.
 fn bins(ui: &Ui, id: Id, view: &View) -> Arc<[u32]> {
     let id = id.with("histogram");
-    let range = view.transfer.range;
+    let range = view.style.transfer.range;
     let known: Option<Counted> = ui.data(|d| d.get_temp(id));
     let is_same = |c: &Counted| {
-        std::ptr::eq(c.field.as_ptr(), Arc::as_ptr(&view.field))
-            && std::ptr::eq(c.drawn.as_ptr(), Arc::as_ptr(&view.drawn))
+        std::ptr::eq(c.field.as_ptr(), Arc::as_ptr(&view.shown.field))
+            && std::ptr::eq(c.drawn.as_ptr(), Arc::as_ptr(&view.shown.drawn))
             && c.range == range
     };
     if let Some(known) = known.filter(is_same) {
         return known.bins;
     }
     let counted = Counted {
-        field: Arc::downgrade(&view.field),
-        drawn: Arc::downgrade(&view.drawn),
+        field: Arc::downgrade(&view.shown.field),
+        drawn: Arc::downgrade(&view.shown.drawn),
         range,
-        bins: count(view.field.values(), &view.drawn, range).into(),
+        bins: count(view.shown.field.values(), &view.shown.drawn, range).into(),
     };
     let bins = counted.bins.clone();
     ui.data_mut(|d| d.insert_temp(id, counted));
@@ -152,7 +154,7 @@ fn histogram(painter: &egui::Painter, rect: Rect, bins: &[u32], view: &View) {
             rect.lerp_inside(vec2(part(n), 1.0 - height)),
             rect.lerp_inside(vec2(part(n + 1), 1.0)),
         );
-        let color = view.transfer.srgb((n as f64 + 0.5) / BINS as f64);
+        let color = view.style.transfer.srgb((n as f64 + 0.5) / BINS as f64);
         let [r, g, b] = color.map(|v| (255.0 * v) as u8);
         painter.rect_filled(bar, 0.0, Color32::from_rgb(r, g, b));
     }

@@ -25,7 +25,7 @@ const MONTH: f64 = 30.44;
 pub fn show(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action>) {
     ui.horizontal_wrapped(|ui| {
         properties(ui, about, actions);
-        let step = pointed_before(ui).or(about.picture.map(|p| p.view.step));
+        let step = pointed_before(ui).or(about.picture.map(|p| p.view.shown.step));
         if let Some(step) = step.and_then(|n| about.case.steps.get(n)) {
             ui.label(format!("{}   day {}", step.date, significant(step.days)));
         }
@@ -115,7 +115,7 @@ fn curve(
     let pointed = pointed_before(ui);
     let ink = ui.visuals().weak_text_color();
     let days = |step: usize| case.steps.get(step).map_or(0.0, |s| s.days);
-    let shown = about.picture.map(|p| p.view.step);
+    let shown = about.picture.map(|p| p.view.shown.step);
     let response = plot(&curve.property, Calendar::of(&case.steps), height).show(ui, |plot| {
         for (n, points) in curve.points.iter().enumerate() {
             let points: Vec<_> = points

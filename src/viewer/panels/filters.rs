@@ -217,9 +217,9 @@ fn categories(ui: &mut Ui, about: &PanelContext<'_>, row: &mut PropertyFilter, a
 
 /// The colors that categories have in the picture, where it shows them; else those that they would have.
 fn colors(about: &PanelContext<'_>, property: &str, all: &[(f64, u32)]) -> Vec<Color32> {
-    let shown = about.picture.filter(|p| p.view.property == property);
+    let shown = about.picture.filter(|p| p.view.shown.property == property);
     let of_view = |value: f64| {
-        let transfer = &shown?.view.transfer;
+        let transfer = &shown?.view.style.transfer;
         let shown = transfer.scale.shown(value, transfer.range[0]);
         shown
             .is_finite()

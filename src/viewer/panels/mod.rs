@@ -79,7 +79,7 @@ impl PanelContext<'_> {
 
     /// The property shown.
     pub fn property(&self) -> Option<&str> {
-        let shown = self.picture.map(|p| p.view.property.as_str());
+        let shown = self.picture.map(|p| p.view.shown.property.as_str());
         self.scene.property.as_deref().or(shown)
     }
 }

@@ -16,7 +16,7 @@ const GROUPS: [(Kind, &str); 3] = [
 ];
 
 pub fn show(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action>) {
-    let shown = about.picture.map(|p| p.view.property.as_str());
+    let shown = about.picture.map(|p| p.view.shown.property.as_str());
     let current = about.scene.property.as_deref().or(shown).unwrap_or("");
     properties(ui, about, current, actions);
     differences(ui, about, current, actions);
@@ -145,7 +145,7 @@ fn range(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action>) {
     let Some(picture) = about.picture else { return };
     let [mut low, mut high] = match about.scene.range {
         RangeSpec::Fixed(range) => range,
-        RangeSpec::Own(_) => picture.view.transfer.true_range(),
+        RangeSpec::Own(_) => picture.view.style.transfer.true_range(),
     };
     let current = match about.scene.range {
         RangeSpec::Own(of) => Of::Own(of),
@@ -169,7 +169,7 @@ fn range(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action>) {
         Some(Of::Fixed) if low < high => actions.push(Action::Range(RangeSpec::Fixed([low, high]))),
         _ => {}
     }
-    let unit = about.case.unit(&picture.view.property);
+    let unit = about.case.unit(&picture.view.shown.property);
     let is_log = about.scene.transfer.scale == ScaleSpec::Log;
     let span = (high - low).abs().max(1e-9);
     ui.horizontal(|ui| {

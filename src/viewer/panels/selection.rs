@@ -31,7 +31,8 @@ pub fn show(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action>) {
         let hit = pick.hit.as_ref();
         // What was seen there holds for the step and property of the click.
         let view = about.picture.map(|p| &p.view);
-        let is_shown = view.is_some_and(|v| v.step == pick.step && v.property == pick.property);
+        let is_shown =
+            view.is_some_and(|v| v.shown.step == pick.step && v.shown.property == pick.property);
         if let Some(hit) = hit.filter(|h| is_shown && h.ijk.one_based() == *last) {
             ui.label(place(hit));
             ui.label(seen(pick, hit, about.case));
@@ -238,10 +239,10 @@ fn buttons(ui: &mut Ui, about: &PanelContext<'_>, table: &Table, actions: &mut V
 /// within a part of the color range.
 fn like(about: &PanelContext<'_>) -> Option<Filter> {
     let picture = about.picture?;
-    let name = &picture.view.property;
+    let name = &picture.view.shown.property;
     let grid = &about.case.grid;
     let cell = grid.dims().one_based(*about.state.selected.last()?)?;
-    let field = about.case.field(name, picture.view.step).ok()?;
+    let field = about.case.field(name, picture.view.shown.step).ok()?;
     let value = f64::from(field.value(grid, grid.dims().cell(cell))?);
     let are_whole = field
         .values()

@@ -47,7 +47,10 @@ type Counted = (Weak<CellField>, Weak<Vec<bool>>);
 fn values(ui: &mut Ui, about: &PanelContext<'_>, picture: &Picture) {
     let view = &picture.view;
     // Counted again only where values or cells are others.
-    let of = (Arc::downgrade(&view.field), Arc::downgrade(&view.drawn));
+    let of = (
+        Arc::downgrade(&view.shown.field),
+        Arc::downgrade(&view.shown.drawn),
+    );
     let id = ui.scope_id().with("summary");
     let known: Option<(Counted, Option<Summary>)> = ui.data(|d| d.get_temp(id));
     let is_same = |known: &Counted| known.0.ptr_eq(&of.0) && known.1.ptr_eq(&of.1);
@@ -65,9 +68,9 @@ fn values(ui: &mut Ui, about: &PanelContext<'_>, picture: &Picture) {
     };
     ui.label(format!(
         "{} of {} drawn cells, {}",
-        view.property,
+        view.shown.property,
         summary.count,
-        match about.case.unit(&view.property) {
+        match about.case.unit(&view.shown.property) {
             "" => "no unit",
             unit => unit,
         }
@@ -94,7 +97,10 @@ fn values(ui: &mut Ui, about: &PanelContext<'_>, picture: &Picture) {
 }
 
 fn summary(about: &PanelContext<'_>, view: &View) -> Option<Summary> {
-    let field = about.case.field(&view.property, view.step).ok()?;
+    let field = about
+        .case
+        .field(&view.shown.property, view.shown.step)
+        .ok()?;
     let weights = about.case.field("PORV", 0).ok();
     let weights = weights.as_ref().map(|w| w.values());
     Summary::of(

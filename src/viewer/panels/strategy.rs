@@ -36,7 +36,7 @@ pub fn show(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action>) {
 
 fn sampling_step(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action>) {
     if let Some(picture) = about.picture {
-        let mut step = picture.view.sampling_step;
+        let mut step = picture.view.sampling.step;
         let speed = 0.01 * step;
         ui.horizontal(|ui| {
             ui.label("Sampling step");

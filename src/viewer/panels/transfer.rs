@@ -21,15 +21,15 @@ pub fn show(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action>) {
     let mut points: Vec<[f64; 2]> = match &spec.opacity {
         Some(OpacitySpec::Points(points)) => points.clone(),
         _ => {
-            let shown = picture.view.transfer.opacity.iter();
+            let shown = picture.view.style.transfer.opacity.iter();
             shown.map(|p| [p.0, p.1]).collect()
         }
     };
-    let unit = about.case.unit(&picture.view.property);
+    let unit = about.case.unit(&picture.view.shown.property);
     if curve::show(ui, &picture.view, unit, &mut points) {
         spec.opacity = Some(OpacitySpec::Points(points));
         // Points that were found refer to the length that was found with them.
-        let length = picture.view.transfer.reference_length;
+        let length = picture.view.style.transfer.reference_length;
         spec.reference_length.get_or_insert(length);
     }
     opacities(ui, about, &mut spec);
@@ -39,7 +39,7 @@ pub fn show(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action>) {
     let reset = ui.button("Reset");
     let what = "Scale, colors and opacity that suit the kind of property shown";
     if reset.on_hover_text(what).clicked() {
-        spec = look_of(about.case, &picture.view.property).transfer;
+        spec = look_of(about.case, &picture.view.shown.property).transfer;
     }
     if spec != *before {
         actions.push(Action::Transfer(spec));
@@ -104,7 +104,7 @@ fn opacities(ui: &mut Ui, about: &PanelContext<'_>, spec: &mut TransferSpec) {
 /// Positions of the smallest and largest value of the step shown.
 fn extent(about: &PanelContext<'_>) -> [f64; 2] {
     let view = about.picture.map(|p| &p.view);
-    let found = view.and_then(|v| Some((v.field.statistics()?, &v.transfer)));
+    let found = view.and_then(|v| Some((v.shown.field.statistics()?, &v.style.transfer)));
     found.map_or([0.0, 1.0], |(values, transfer)| {
         [values.min, values.max].map(|v| transfer.position(v))
     })
@@ -126,9 +126,9 @@ fn over([low, high]: [f64; 2], curve: &[[f64; 2]]) -> Vec<[f64; 2]> {
 /// Peaks at the boundaries in what is shown.
 fn found_in(about: &PanelContext<'_>) -> Option<Vec<[f64; 2]>> {
     let view = &about.picture?.view;
-    let grid = shown_grid(&about.case.grid, view.ghosts.as_ref());
-    let found = boundaries::find(&derivatives::samples(grid, &view.field));
-    let curve = boundaries::curve(&found, view.transfer.range)?;
+    let grid = shown_grid(&about.case.grid, view.shown.ghosts.as_ref());
+    let found = boundaries::find(&derivatives::samples(grid, &view.shown.field));
+    let curve = boundaries::curve(&found, view.style.transfer.range)?;
     Some(
         curve
             .into_iter()

@@ -149,7 +149,7 @@ fn every_move_leads_to_a_draft_within_bounds_and_the_light_with_it() {
                 assert!(f64::from(n) >= least && n <= whole, "{n} of {whole}");
             }
             if light != "off" {
-                let lighting = &picture.view.lighting;
+                let lighting = &picture.view.style.lighting;
                 let whole = Lighting::light_size_of(lighting.size());
                 let voxels = |s: [u32; 3]| s.iter().product::<u32>();
                 let made = lighting.light_size();

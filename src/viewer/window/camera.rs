@@ -56,7 +56,7 @@ impl Window {
         camera.framing_zoom()?;
         let view = &self.picture(0)?.0.view;
         let now = view.seen_from(camera, view.size).ok()?;
-        Some(orbit::spec(&now.camera, &now.box_corners))
+        Some(orbit::spec(&now.camera, &now.world.corners))
     }
 }
 
@@ -68,13 +68,13 @@ fn changed(
     selected: &[[usize; 3]],
 ) -> Option<CameraSpec> {
     let (camera, aspect) = (&now.camera, now.aspect());
-    let corners = &now.box_corners;
+    let corners = &now.world.corners;
     let drawn = || now.drawn_bounds(&case.grid).map(|b| now.corners_of(b));
     let center = || orbit::point_under(now, now.drawn_bounds(&case.grid), DVec2::splat(0.5));
     let camera = match change {
         CameraMove::From(n) => return Some(orbit::standard(n, spec.projection())),
         CameraMove::FrameAll => {
-            let points = &now.subject.points;
+            let points = &now.world.subject.points;
             return Some(orbit::frame_all(spec, camera, points, corners, aspect));
         }
         CameraMove::Projection => return Some(orbit::switched(spec, camera, corners)),

@@ -84,9 +84,9 @@ impl Window {
                 let now = view.seen_from(&scene.camera, view.size);
                 scene.camera = now.map_or_else(
                     |_| scene.camera.clone(),
-                    |v| crate::viewer::orbit::spec(&v.camera, &v.box_corners),
+                    |v| crate::viewer::orbit::spec(&v.camera, &v.world.corners),
                 );
-                scene.vertical_exaggeration = Some(view.vertical_exaggeration);
+                scene.vertical_exaggeration = Some(view.world.vertical_exaggeration);
             } else {
                 scene.camera = link.there(&scene.camera);
             }
@@ -119,7 +119,7 @@ impl Window {
         };
         let step = document.step().map_or(0, |(step, _)| step);
         let shown = self.pictures.shown(0, &case);
-        let shown = shown.map(|s| s.picture.view.property.clone());
+        let shown = shown.map(|s| s.picture.view.shown.property.clone());
         let Some(property) = shown.or(scene.property.filter(|_| awaits_difference)) else {
             return;
         };

@@ -101,8 +101,8 @@ impl RenderStrategy for Libc {
     fn prepare<'a>(&'a mut self, what: &'a Preparation<'a>) -> Work<'a, ()> {
         Box::pin(async move {
             let variant = Variant {
-                settings: what.view.libc,
-                interpolation: what.view.interpolation,
+                settings: what.view.sampling.libc,
+                interpolation: what.view.shown.interpolation,
                 common: Common::of(what),
             };
             if variant != self.variant {

@@ -37,7 +37,7 @@ impl RenderStrategy for Solid {
 
     fn prepare<'a>(&'a mut self, what: &'a Preparation<'a>) -> Work<'a, ()> {
         Box::pin(async move {
-            let sections = what.view.clip.iter().any(|plane| plane.opaque);
+            let sections = what.view.shown.clip.iter().any(|plane| plane.opaque);
             let constants = (sections, Common::of(what));
             if constants != self.constants {
                 let own = [("SECTIONS", flag(sections))];

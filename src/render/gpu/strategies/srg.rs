@@ -79,13 +79,18 @@ fn shape(dims: Dims, settings: &SrgSettings, ghosts: bool, budget: u64, limit: u
 /// shows every value and next to no cell is hidden, or ghosts fill the gaps. There asking the bricks made
 /// frames in software up to 29 % slower.
 fn useful(view: &View) -> SrgSettings {
-    let is_clear = view.transfer.opacity.iter().any(|point| point.1 == 0.0);
-    let hidden = view.drawn.iter().filter(|drawn| !**drawn).count();
+    let is_clear = view
+        .style
+        .transfer
+        .opacity
+        .iter()
+        .any(|point| point.1 == 0.0);
+    let hidden = view.shown.drawn.iter().filter(|drawn| !**drawn).count();
     SrgSettings {
-        skip_empty: view.srg.skip_empty
-            && view.ghosts.is_none()
-            && (is_clear || 10 * hidden > view.drawn.len()),
-        ..view.srg
+        skip_empty: view.sampling.srg.skip_empty
+            && view.shown.ghosts.is_none()
+            && (is_clear || 10 * hidden > view.shown.drawn.len()),
+        ..view.sampling.srg
     }
 }
 
@@ -172,11 +177,11 @@ impl Srg {
             return Ok(());
         }
         let volume = filled.map_or_else(|| Volume::new(what.gpu, shape), |f| f.volume);
-        let statistics = what.view.field.statistics();
+        let statistics = what.view.shown.field.statistics();
         let range = statistics.map_or([0.0, 1.0], |s| [s.min, s.max]);
         let bricks = Bricks::unused(what.gpu, shape.size);
         let mut slabs = slabs(what, &mut self.pace);
-        let interpolation = what.view.interpolation;
+        let interpolation = what.view.shown.interpolation;
         self.resampler
             .fill(&mut slabs, what.grid, &volume, range, interpolation)
             .await?;
@@ -202,7 +207,7 @@ impl Srg {
         let Some(filled) = &mut self.filled else {
             return Ok(());
         };
-        let limits = limits(settings, what.view.sampling_step);
+        let limits = limits(settings, what.view.sampling.step);
         if !limits.are_never() && !filled.bricks.are_used() {
             let bricks = Bricks::new(what.gpu, filled.volume.shape.size);
             let mut slabs = slabs(what, &mut self.pace);
@@ -212,7 +217,7 @@ impl Srg {
             filled.bricks = bricks;
             filled.classified = None;
         }
-        let by = (what.view.transfer.clone(), limits, settings.weighted);
+        let by = (what.view.style.transfer.clone(), limits, settings.weighted);
         if filled.classified.as_ref() != Some(&by) {
             let classifier = Classifier {
                 transfer: &by.0,
@@ -255,7 +260,7 @@ impl RenderStrategy for Srg {
         Box::pin(async move {
             let view = what.view;
             let settings = useful(view);
-            let sections = view.clip.iter().any(|plane| plane.opaque);
+            let sections = view.shown.clip.iter().any(|plane| plane.opaque);
             let variant = Variant::of(&settings, sections, Common::of(what));
             if variant != self.variant {
                 self.begin = variant.compile(what.gpu, "begin")?;
@@ -265,7 +270,7 @@ impl RenderStrategy for Srg {
             self.faces.update(what.gpu, what.faces, 0.0);
             let budget = settings.budget_bytes();
             let limit = what.gpu.device.limits().max_texture_dimension_3d;
-            let ghosts = view.ghosts.is_some();
+            let ghosts = view.shown.ghosts.is_some();
             let shape = shape(what.model.dims(), &settings, ghosts, budget, limit);
             self.fill(what, shape).await?;
             self.classify(what, &settings).await
