@@ -86,7 +86,7 @@ impl Model {
             eye: space.point(eye),
             space,
             pyramid,
-            cone: view.lighting.occlusion.unwrap().cone,
+            cone: view.style.lighting.occlusion.unwrap().cone,
         }
     }
 }

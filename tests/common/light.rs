@@ -234,8 +234,8 @@ pub struct Space {
 impl Space {
     /// That of a view whose extinction volume has `size` voxels.
     pub fn new(view: &View, size: [usize; 3]) -> Self {
-        let low = view.box_corners[0];
-        let sides = [1, 2, 4].map(|c: usize| view.box_corners[c] - low);
+        let low = view.world.corners[0];
+        let sides = [1, 2, 4].map(|c: usize| view.world.corners[c] - low);
         let edges = DVec3::from_array(sides.map(DVec3::length));
         let voxels = DVec3::from_array(size.map(|n| n as f64));
         Self {

@@ -46,10 +46,7 @@ fn picture(
     let Some(strategy) = by else {
         return reference::render(&case.grid, view, &|_| true).unwrap();
     };
-    let view = View {
-        strategy,
-        ..view.clone()
-    };
+    let view = view.by(strategy);
     let frame = renderer.render(&view, &|_| true).unwrap();
     frame.image
 }
@@ -69,8 +66,8 @@ type Solid = Vec<(DVec3, f64)>;
 /// Alpha of a pixel, from the number of samples on the lattice inside solids that do not overlap.
 fn alpha(view: &View, solids: &[Solid], x: u32, y: u32) -> [f64; 2] {
     let ray = reference::Ray::through_pixel(view, x, y);
-    let step = view.sampling_step;
-    let tau = view.transfer.extinction(0.5);
+    let step = view.sampling.step;
+    let tau = view.style.transfer.extinction(0.5);
     let mut samples = [0.0, 0.0];
     for solid in solids {
         let (mut enter, mut leave) = (0.0f64, f64::INFINITY);

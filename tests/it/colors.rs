@@ -37,7 +37,7 @@ fn refusal(case: &Case, fields: &Value) -> String {
 }
 
 fn psnr(a: &Image, b: &Image, view: &View) -> f64 {
-    let [a, b] = [a, b].map(|i| i.over_background_8bit(view.background));
+    let [a, b] = [a, b].map(|i| i.over_background_8bit(view.style.background));
     psnr_8bit(a.as_flattened(), b.as_flattened())
 }
 
@@ -82,10 +82,7 @@ fn every_scale_and_coloring_agrees_with_the_reference() {
         let other = reference::render(&case.grid, &plain(property), &|_| true).unwrap();
         let apart = psnr(&other, &truth, &view);
         for strategy in StrategyKind::ALL {
-            let shown = View {
-                strategy,
-                ..view.clone()
-            };
+            let shown = view.by(strategy);
             let frame = renderer.render(&shown, &|_| true).unwrap();
             let db = psnr(&frame.image, &truth, &view);
             let what = format!(
@@ -112,13 +109,13 @@ fn true_values_come_back_from_every_scale() {
     );
     let positive = permx.values().iter().filter(|v| **v > 0.0);
     let least = positive.fold(f32::INFINITY, |a, b| a.min(*b));
-    for (shown, value) in log.field.values().iter().zip(permx.values()) {
+    for (shown, value) in log.shown.field.values().iter().zip(permx.values()) {
         let wanted = f64::from(value.max(least));
         let back = log.true_value(f64::from(*shown));
         assert!((back / wanted - 1.0).abs() < 1e-5, "{back} {wanted}");
     }
     let statistics = permx.statistics().unwrap();
-    let [low, high] = log.transfer.true_range();
+    let [low, high] = log.style.transfer.true_range();
     assert!((low / f64::from(least) - 1.0).abs() < 1e-9);
     assert!((high / statistics.max - 1.0).abs() < 1e-9);
     let regions = view(
@@ -126,20 +123,23 @@ fn true_values_come_back_from_every_scale() {
         &json!({"property": "FIPNUM", "transfer": {"coloring": "categories"}}),
     );
     let fipnum = case.field("FIPNUM", 0).unwrap();
-    for (shown, value) in regions.field.values().iter().zip(fipnum.values()) {
+    for (shown, value) in regions.shown.field.values().iter().zip(fipnum.values()) {
         assert_eq!(regions.true_value(f64::from(*shown)), f64::from(*value));
     }
-    let Scale::Categories(values) = &regions.transfer.scale else {
-        panic!("{:?}", regions.transfer.scale);
+    let Scale::Categories(values) = &regions.style.transfer.scale else {
+        panic!("{:?}", regions.style.transfer.scale);
     };
-    assert!(values.len() > 1 && regions.interpolation == Interpolation::Cell);
-    assert_eq!(regions.transfer.range, [-0.5, values.len() as f64 - 0.5]);
+    assert!(values.len() > 1 && regions.shown.interpolation == Interpolation::Cell);
+    assert_eq!(
+        regions.style.transfer.range,
+        [-0.5, values.len() as f64 - 0.5]
+    );
 }
 
 #[test]
 fn the_range_is_that_of_the_step_or_of_all_steps() {
     let case = load::open(&common::sample()).unwrap();
-    let range = |fields: Value| view(&case, &fields).transfer.range;
+    let range = |fields: Value| view(&case, &fields).style.transfer.range;
     let last = case.steps.len() - 1;
     for property in ["PRESSURE", "SWAT-SWAT@0"] {
         let all = range(json!({"property": property, "step": 1, "range": "steps"}));
@@ -173,8 +173,8 @@ fn films_have_one_range_in_every_scale() {
     assert_eq!(linear.range(), log.range());
     let first = log.view(0, &case).unwrap();
     let last = log.view(all.len() - 1, &case).unwrap();
-    assert_eq!(first.transfer.range, last.transfer.range);
-    assert_eq!(first.transfer.range, linear.range().map(f64::log10));
+    assert_eq!(first.style.transfer.range, last.style.transfer.range);
+    assert_eq!(first.style.transfer.range, linear.range().map(f64::log10));
 }
 
 #[test]
@@ -225,7 +225,7 @@ fn boundaries_do_not_move_with_time() {
     let case = load::open(&common::sample()).unwrap();
     let opacity = |step: usize, range: Value| {
         let fields = json!({"property": "SWAT", "step": step, "range": range, "transfer": {"opacity": "boundaries"}});
-        view(&case, &fields).transfer.opacity
+        view(&case, &fields).style.transfer.opacity
     };
     let last = case.steps.len() - 1;
     let found = opacity(last, json!([0.0, 1.0]));
@@ -236,8 +236,8 @@ fn boundaries_do_not_move_with_time() {
     let whole = json!({"property": "FIPNUM", "transfer": {"coloring": "categories", "opacity": "boundaries"}});
     let plain = json!({"property": "FIPNUM", "transfer": {"coloring": "categories"}});
     assert_eq!(
-        view(&case, &whole).transfer.opacity,
-        view(&case, &plain).transfer.opacity
+        view(&case, &whole).style.transfer.opacity,
+        view(&case, &plain).style.transfer.opacity
     );
 }
 

@@ -204,7 +204,7 @@ fn progress_rises_and_cancels() {
 }
 
 fn middle(view: &View) -> DVec3 {
-    view.box_corners.iter().sum::<DVec3>() / 8.0
+    view.world.corners.iter().sum::<DVec3>() / 8.0
 }
 
 /// True where all of the model is in the picture.
@@ -213,7 +213,7 @@ fn frames_all(named: &NamedView) -> bool {
         let at = named.view.camera.project(*point, 96.0 / 72.0);
         at.is_some_and(|at| at.min_element() > 0.0 && at.max_element() < 1.0)
     };
-    named.view.subject.points.iter().all(inside)
+    named.view.world.subject.points.iter().all(inside)
 }
 
 #[test]

@@ -68,8 +68,8 @@ impl Found {
 
     /// Opacities of a unit of length before any blur.
     fn opacities(&self) -> Block {
-        let statistics = self.view.field.statistics().unwrap();
-        let transfer = &self.view.transfer;
+        let statistics = self.view.shown.field.statistics().unwrap();
+        let transfer = &self.view.style.transfer;
         let [low, high] = [statistics.min, statistics.max];
         let mut block = self.pyramid[0].clone();
         for (at, held) in self.pyramid[0].voxels().zip(&self.field) {
@@ -79,7 +79,7 @@ impl Found {
                 false => transfer.extinction(transfer.position(value)),
             };
             let point = self.space.world(block.middle(at));
-            let mut planes = self.view.clip.iter();
+            let mut planes = self.view.shown.clip.iter();
             let is_kept = planes.all(|c| c.normal.dot(point - c.point) >= 0.0);
             let kept = f64::from(u8::from(is_kept)) * held.coverage;
             *block.at_mut(at) = kept * -(-extinction * self.space.sigma).exp_m1();
@@ -173,7 +173,7 @@ fn values_by_chance_are_blurred_in_cubes() {
             return;
         };
         // One cell a voxel: the volume has their values.
-        let statistics = found.view.field.statistics().unwrap();
+        let statistics = found.view.shown.field.statistics().unwrap();
         let part = |v: f64| (v - statistics.min) / (statistics.max - statistics.min);
         for (at, held) in found.pyramid[0].voxels().zip(&found.field) {
             let error = (held.value - part(hash(at))).abs();

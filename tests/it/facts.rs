@@ -72,7 +72,7 @@ impl Raw {
 }
 
 fn facts(scene: &Scene, case: &Case) -> Facts {
-    Facts::clone(&view::resolve(scene, case).unwrap().facts.unwrap())
+    Facts::clone(&view::resolve(scene, case).unwrap().notes.facts.unwrap())
 }
 
 fn line(scene: &Scene, case: &Case) -> String {
@@ -148,7 +148,7 @@ fn cells_that_are_cut_away_do_not_count() {
     let whole = facts(&scene, &case);
     let view = view::resolve(&scene, &case).unwrap();
     let plane = |normal: [f64; 3]| ClipSpec {
-        point: view.subject.middle.to_array(),
+        point: view.world.subject.middle.to_array(),
         normal,
         face: CutFace::Open,
     };
@@ -238,7 +238,7 @@ fn the_line_can_be_hidden_and_its_room_is_the_models() {
     let with = Shot::of(&scene, &case, false).unwrap();
     scene.show.info = false;
     let without = Shot::of(&scene, &case, false).unwrap();
-    assert!(without.view.facts.is_none() && without.layout.info.is_none());
+    assert!(without.view.notes.facts.is_none() && without.layout.info.is_none());
     assert!(without.layout.volume_size()[1] > with.layout.volume_size()[1]);
     let text = serde_json::to_string(&scene).unwrap();
     assert!(text.contains(r#""info":false"#), "{text}");

@@ -69,11 +69,17 @@ fn all_steps_have_one_range_and_a_given_one_wins() {
     assert!(own.iter().all(|s| [s.min, s.max] != [min, max]));
     for (n, step) in chosen.into_iter().enumerate() {
         let view = sequence.view(n, &case).unwrap();
-        assert_eq!((view.step, view.transfer.range), (step, [min, max]));
+        assert_eq!(
+            (view.shown.step, view.style.transfer.range),
+            (step, [min, max])
+        );
     }
     scene.range = RangeSpec::Fixed([1.0, 2.0]);
     let sequence = over_steps(&scene, &case, &chosen);
-    assert_eq!(sequence.view(1, &case).unwrap().transfer.range, [1.0, 2.0]);
+    assert_eq!(
+        sequence.view(1, &case).unwrap().style.transfer.range,
+        [1.0, 2.0]
+    );
 }
 
 #[test]
@@ -178,7 +184,7 @@ fn only_chosen_steps_are_read_and_those_without_values_are_left_out() {
     });
     let sequence = over_steps(&scene("SWAT"), &case, &[3, 4, 5]);
     let shown: Vec<_> = (0..sequence.count())
-        .map(|n| sequence.view(n, &case).unwrap().step)
+        .map(|n| sequence.view(n, &case).unwrap().shown.step)
         .collect();
     assert_eq!(shown, [3, 5]);
     assert!(sequence.left_out()[0].contains("step 4") && sequence.left_out().len() == 1);
@@ -191,7 +197,7 @@ fn only_chosen_steps_are_read_and_those_without_values_are_left_out() {
 
 /// True where all of the model is in the picture.
 fn all_is_inside(view: &View) -> bool {
-    let mut points = view.subject.points.iter();
+    let mut points = view.world.subject.points.iter();
     points.all(|&point| {
         let at = view.camera.project(point, view.aspect()).unwrap();
         at.min_element() >= 0.0 && at.max_element() <= 1.0
@@ -206,7 +212,7 @@ fn turn(degrees: f64, views: usize) -> Turn {
 fn a_turn_keeps_its_distance_and_the_model_in_the_picture() {
     let case = load::open(&common::sample()).unwrap();
     let mut scene = scene("SOIL");
-    let middle = |view: &View| view.box_corners.iter().sum::<DVec3>() / 8.0;
+    let middle = |view: &View| view.world.corners.iter().sum::<DVec3>() / 8.0;
     let from = |azimuth_degrees: f64| {
         CameraSpec::Framing(FramingCamera {
             azimuth_degrees,
@@ -252,7 +258,7 @@ fn a_turn_begins_at_the_scenes_camera_and_goes_around_the_middle() {
     let case = load::open(&common::sample()).unwrap();
     let mut scene = scene("SOIL");
     let framed = resolve(&scene, &case).unwrap();
-    let middle = framed.box_corners.iter().sum::<DVec3>() / 8.0;
+    let middle = framed.world.corners.iter().sum::<DVec3>() / 8.0;
     // Looks past the middle, from the south.
     let eye = middle + DVec3::new(100.0, -9000.0, 4000.0);
     scene.camera = CameraSpec::Explicit(ExplicitCamera {

@@ -24,7 +24,7 @@ fn sample() -> Case {
 
 /// I, J and K from 1 of the drawn cells.
 fn drawn(case: &Case, view: &View) -> Vec<[usize; 3]> {
-    let cells = case.grid.active_cells().iter().zip(view.drawn.iter());
+    let cells = case.grid.active_cells().iter().zip(view.shown.drawn.iter());
     let drawn = cells.filter(|(_, drawn)| **drawn);
     drawn
         .map(|(cell, _)| {
@@ -64,7 +64,7 @@ fn bounds_may_be_open_and_filters_turned_around() {
     let values = soil.values();
     let count = |filter: Value| {
         let view = view(&case, json!({"filter": {"properties": [filter]}}));
-        view.drawn.iter().filter(|d| **d).count()
+        view.shown.drawn.iter().filter(|d| **d).count()
     };
     let all = count(json!({"name": "SOIL"}));
     let least = count(json!({"name": "SOIL", "min": 0.5}));
@@ -123,7 +123,7 @@ fn a_filter_goes_by_the_step_shown_whatever_property_is() {
 
 /// Opacity of a value seen through a length of world space.
 fn opacity(view: &View, position: f64, length: f64) -> f64 {
-    let transfer = &view.transfer;
+    let transfer = &view.style.transfer;
     1.0 - (1.0 - transfer.opacity(position)).powf(length / transfer.reference_length)
 }
 
@@ -159,7 +159,7 @@ fn what_passes_a_filter_is_solid_unless_its_opacity_is_chosen() {
     }
     let chosen = json!({"property": "SOIL", "filter": soil, "transfer": {"opacity": [[0, 0.01], [1, 0.02]]}});
     assert_eq!(
-        view(&case, chosen).transfer.opacity,
+        view(&case, chosen).style.transfer.opacity,
         [(0.0, 0.01), (1.0, 0.02)]
     );
 }
@@ -199,7 +199,7 @@ fn only_the_faults_chosen_are_drawn() {
         let faces = view.fault_faces(&case.grid);
         let mut numbers: Vec<_> = faces.iter().map(|f| f.2).collect();
         numbers.sort_unstable();
-        (view.surfaces.faults, numbers)
+        (view.style.surfaces.faults, numbers)
     };
     // Two sides of each face: one of F1, two of F2, one more along I at J 2.
     let all = [
@@ -233,12 +233,16 @@ fn differences_are_properties_of_a_scene() {
     let last = case.steps.len() - 1;
     let [swat, soil] = ["SWAT", "SOIL"].map(|n| case.field(n, last).unwrap());
     let two = view(&case, json!({"property": "SWAT-SOIL@same", "step": "last"}));
-    assert_eq!(two.step, last);
-    for (n, v) in two.field.values().iter().enumerate() {
+    assert_eq!(two.shown.step, last);
+    for (n, v) in two.shown.field.values().iter().enumerate() {
         assert_eq!(*v, swat.values()[n] - soil.values()[n]);
     }
     // Water that came is oil that left.
-    let of_step = |name: &str| view(&case, json!({"property": name, "step": "last"})).field;
+    let of_step = |name: &str| {
+        view(&case, json!({"property": name, "step": "last"}))
+            .shown
+            .field
+    };
     let [came, left] = ["SWAT-SWAT@first", "SOIL-SOIL@2005-01-01"].map(of_step);
     for (a, b) in came.values().iter().zip(left.values()) {
         assert!((a + b).abs() < 1e-5);

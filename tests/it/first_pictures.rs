@@ -29,13 +29,14 @@ fn oil_that_shows(case: &Case, view: &View) -> f64 {
     let weights = case.weights();
     let thickness = Derived::Thickness.field(&case.grid);
     let (mut shown, mut all) = (0.0, 0.0);
-    let cells = view.field.values().iter().zip(weights.values.iter());
+    let cells = view.shown.field.values().iter().zip(weights.values.iter());
     for ((soil, volume), thickness) in cells.zip(thickness.values()) {
         let oil = f64::from(*soil).max(0.0) * f64::from(*volume);
         let extinction = view
+            .style
             .transfer
-            .extinction(view.transfer.position(f64::from(*soil)));
-        let crossed = view.vertical_exaggeration * f64::from(*thickness);
+            .extinction(view.style.transfer.position(f64::from(*soil)));
+        let crossed = view.world.vertical_exaggeration * f64::from(*thickness);
         let opacity = 1.0 - (-extinction * crossed).exp();
         all += oil;
         shown += if opacity >= 0.1 { oil } else { 0.0 };
@@ -104,8 +105,8 @@ fn nothing_inside_the_outline_is_taken_for_the_background() {
         volume["mode"] = "volume".into();
         let confused = |renderer: &mut GpuRenderer, view: &View| {
             let image = renderer.render(view, &|_| true).unwrap().image;
-            let rgb = image.over_background_8bit(view.background);
-            let ground = view.background.map(|v| (255.0 * v).round() as u8);
+            let rgb = image.over_background_8bit(view.style.background);
+            let ground = view.style.background.map(|v| (255.0 * v).round() as u8);
             let apart = ciede2000_map(&rgb, &vec![ground; rgb.len()]).unwrap();
             let inside = apart.iter().zip(&is_inside).filter(|p| *p.1);
             inside.filter(|p| *p.0 < 10.0).count()
@@ -136,8 +137,8 @@ fn sections_and_constant_properties_show_in_every_strategy() {
                 let written = json!({"size": [240, 170], "mode": mode, "strategy": strategy});
                 let (_, view) = opened(&case, &written);
                 let image = renderer.render(&view, &|_| true).unwrap().image;
-                let rgb = image.over_background_8bit(view.background);
-                let ground = view.background.map(|v| (255.0 * v).round() as i32);
+                let rgb = image.over_background_8bit(view.style.background);
+                let ground = view.style.background.map(|v| (255.0 * v).round() as i32);
                 let differs =
                     |p: &[u8; 3]| (0..3).any(|c| (i32::from(p[c]) - ground[c]).abs() >= 60);
                 let covered = image.pixels.iter().filter(|p| p[3] > 0.02).count();
@@ -191,7 +192,7 @@ fn occlusion_is_seen() {
             let (_, view) = opened(&case, &written);
             let frame = renderer.render(&view, &|_| true);
             let image = frame.unwrap().image;
-            let rgb = image.over_background_8bit(view.background);
+            let rgb = image.over_background_8bit(view.style.background);
             (rgb, image.pixels)
         };
         let (off, pixels) = picture("off");

@@ -19,10 +19,14 @@ fn scene(size: [u32; 2]) -> Scene {
 /// Smallest and largest place in the picture of the box around what is drawn.
 fn reach_of_box(view: &View) -> [DVec2; 2] {
     let start = [DVec2::INFINITY, DVec2::NEG_INFINITY];
-    view.subject.outline.iter().fold(start, |[a, b], corner| {
-        let at = view.camera.project(*corner, view.aspect()).unwrap();
-        [a.min(at), b.max(at)]
-    })
+    view.world
+        .subject
+        .outline
+        .iter()
+        .fold(start, |[a, b], corner| {
+            let at = view.camera.project(*corner, view.aspect()).unwrap();
+            [a.min(at), b.max(at)]
+        })
 }
 
 /// Smallest and largest place in the picture of the corners of the drawn cells.
@@ -36,7 +40,7 @@ fn reach(view: &View, case: &Case) -> [DVec2; 2] {
     });
     let start = [DVec2::INFINITY, DVec2::NEG_INFINITY];
     corners.fold(start, |[a, b], corner| {
-        let world = view.spaces.world_from_grid.transform_point3(corner);
+        let world = view.world.spaces.world_from_grid.transform_point3(corner);
         let at = view.camera.project(world, view.aspect()).unwrap();
         [a.min(at), b.max(at)]
     })
@@ -143,7 +147,7 @@ fn a_filter_is_framed_but_not_what_changes_with_time() {
     let corner = view::resolve(&scene, &case).unwrap();
     let [low, high] = reach(&corner, &case);
     assert!((high - low).max_element() > 0.91, "{low} {high}");
-    assert!(corner.subject.points.len() < whole.subject.points.len() / 4);
+    assert!(corner.world.subject.points.len() < whole.world.subject.points.len() / 4);
     // Oil goes away with time, and the camera stands still.
     scene.filter = Filter {
         properties: vec![PropertyFilter {
@@ -156,7 +160,7 @@ fn a_filter_is_framed_but_not_what_changes_with_time() {
     let cameras = [0, 10, 20].map(|step| {
         scene.step = StepSpec::Index(step);
         let view = view::resolve(&scene, &case).unwrap();
-        (view.camera, view.drawn.iter().filter(|d| **d).count())
+        (view.camera, view.shown.drawn.iter().filter(|d| **d).count())
     });
     assert!(cameras.iter().all(|c| c.0 == whole.camera));
     assert!(cameras[0].1 != cameras[2].1);
@@ -191,7 +195,7 @@ fn the_pictures_of_a_film_have_the_volume_at_one_place() {
     let eye = |n| steps.view(n, &case).unwrap().camera.eye;
     assert_eq!(eye(0), eye(2));
     // A turn looks at one point all the way.
-    let middle = turn.view(0, &case).unwrap().subject.middle;
+    let middle = turn.view(0, &case).unwrap().world.subject.middle;
     for n in 0..8 {
         let view = turn.view(n, &case).unwrap();
         let at = view.camera.project(middle, view.aspect()).unwrap();

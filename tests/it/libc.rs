@@ -29,9 +29,10 @@ fn scene(azimuth: f64, elevation: f64) -> Scene {
 }
 
 fn with(view: &View, libc: LibcSettings) -> View {
-    View {
-        libc,
-        ..view.clone()
+    {
+        let mut changed = view.clone();
+        changed.sampling.libc = libc;
+        changed
     }
 }
 
@@ -43,7 +44,7 @@ fn render(renderer: &mut GpuRenderer, view: &View) -> (Image, FrameStats) {
 }
 
 fn psnr(a: &Image, b: &Image, view: &View) -> f64 {
-    let [a, b] = [a, b].map(|i| i.over_background_8bit(view.background));
+    let [a, b] = [a, b].map(|i| i.over_background_8bit(view.style.background));
     psnr_8bit(a.as_flattened(), b.as_flattened())
 }
 
@@ -58,7 +59,7 @@ fn walking_across_faults_changes_the_cost_and_not_the_picture() {
             let (across, walked) = render(&mut renderer, &view);
             let plain = LibcSettings {
                 cross_faults: false,
-                ..view.libc
+                ..view.sampling.libc
             };
             let (plain, peeled) = render(&mut renderer, &with(&view, plain));
             let db = psnr(&across, &plain, &view);
@@ -92,20 +93,22 @@ fn segments_are_the_limit_of_fine_steps() {
             scene.early_termination = 0.0;
             scene.interpolation = interpolation;
             let view = view::resolve(&scene, &case).unwrap();
-            let fine = View {
-                sampling_step: 0.25 * view.sampling_step,
-                ..view.clone()
+            let fine = {
+                let mut changed = view.clone();
+                changed.sampling.step = 0.25 * view.sampling.step;
+                changed
             };
             let truth = reference::render(&case.grid, &fine, &|_| true).unwrap();
             let segments = LibcSettings {
                 integration: Integration::Segments,
-                ..view.libc
+                ..view.sampling.libc
             };
             let (by_segment, segments) = render(&mut renderer, &with(&view, segments));
             // Samples so coarse that they are a sixteenth of as many as by default.
-            let coarse = View {
-                sampling_step: 16.0 * view.sampling_step,
-                ..view.clone()
+            let coarse = {
+                let mut changed = view.clone();
+                changed.sampling.step = 16.0 * view.sampling.step;
+                changed
             };
             let (by_coarse, coarse) = render(&mut renderer, &coarse);
             let (limit, _) = render(&mut renderer, &fine);
@@ -133,6 +136,7 @@ fn an_eye_inside_the_model_sees_what_is_ahead() {
         let cells = case.grid.active_cells();
         let cell = case.grid.dims().ijk(cells[cells.len() / 2]);
         let eye = outside
+            .world
             .spaces
             .world_from_grid
             .transform_point3(case.grid.hexahedron(cell).center());

@@ -18,7 +18,7 @@ fn resolved(case: &Case, lighting: &Value) -> Result<Lighting, String> {
     let scene = json!({"property": "VALUE", "lighting": lighting});
     let scene: Scene = serde_json::from_value(scene).map_err(|e| e.to_string())?;
     let view = view::resolve(&scene, case).map_err(|e| e.to_string())?;
-    Ok(view.lighting)
+    Ok(view.style.lighting)
 }
 
 /// Lighting with one field of its own.
@@ -245,7 +245,7 @@ fn volumes_have_cubes_and_fit_their_budget() {
             ..Scene::default()
         };
         scene.lighting.volume.budget_mb = Some(budget_mb);
-        let lighting = view::resolve(&scene, &case).unwrap().lighting;
+        let lighting = view::resolve(&scene, &case).unwrap().style.lighting;
         let size = lighting.size();
         let voxels: f64 = size.iter().map(|n| f64::from(*n)).product();
         // Values, extinction and pyramid in half floats.
@@ -283,7 +283,7 @@ fn with_volume(case: &Case, volume: &Value) -> View {
 #[test]
 fn the_budget_decides_the_volume_where_the_scene_names_no_size() {
     let case = load::open(&common::sample()).unwrap();
-    let lighting = |volume: Value| with_volume(&case, &volume).lighting;
+    let lighting = |volume: Value| with_volume(&case, &volume).style.lighting;
     let usual = lighting(json!({}));
     assert_eq!(
         usual.size(),
@@ -305,9 +305,12 @@ fn a_device_takes_the_volume_of_the_view() {
     renderer.render(&view, &|_| true).unwrap();
     let light = renderer.light();
     let size = |volume: Option<&Volume>| volume.unwrap().shape.size;
-    assert_eq!(size(light.field()), view.lighting.size());
-    assert_eq!(size(light.pyramid()), view.lighting.size());
-    assert_eq!(size(light.light_volumes()), view.lighting.light_size());
-    let usual = with_volume(&case, &json!({})).lighting;
+    assert_eq!(size(light.field()), view.style.lighting.size());
+    assert_eq!(size(light.pyramid()), view.style.lighting.size());
+    assert_eq!(
+        size(light.light_volumes()),
+        view.style.lighting.light_size()
+    );
+    let usual = with_volume(&case, &json!({})).style.lighting;
     assert_ne!(size(light.field()), usual.size());
 }

@@ -55,10 +55,7 @@ fn mean_alpha(image: &Image) -> f64 {
 fn mean_alphas(renderer: &mut GpuRenderer, case: &Case, view: &View) -> (f64, Vec<f64>) {
     let truth = reference::render(&case.grid, view, &|_| true).unwrap();
     let by = |strategy| {
-        let view = View {
-            strategy,
-            ..view.clone()
-        };
+        let view = view.by(strategy);
         let frame = renderer.render(&view, &|_| true).unwrap();
         mean_alpha(&frame.image)
     };

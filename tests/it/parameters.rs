@@ -13,7 +13,7 @@ use strataray::render::gpu::bind_groups::Parameters;
 use strataray::render::gpu::device::PARAMETERS;
 use strataray::render::gpu::{Gpu, GpuRenderer};
 use strataray::scene::{LightingSpec, Scene, StrategyKind};
-use strataray::view::{self, View};
+use strataray::view;
 
 /// As small as shows all: where they are uniforms, llvmpipe compiles a compute shader anew at each dispatch.
 const SIZE: [u32; 2] = [64, 48];
@@ -50,19 +50,13 @@ fn both_ways_make_the_same_pictures() {
         assert_eq!(gpu.layouts.parameters(), parameters);
         let mut renderer = GpuRenderer::new(gpu, &case.grid).unwrap();
         StrategyKind::ALL.map(|strategy| {
-            let view = View {
-                strategy,
-                ..lit.clone()
-            };
+            let view = lit.by(strategy);
             renderer.render(&view, &|_| true).unwrap().image
         })
     });
     let mut renderer = GpuRenderer::new(common::gpu().unwrap(), &case.grid).unwrap();
     for (n, strategy) in StrategyKind::ALL.into_iter().enumerate() {
-        let view = View {
-            strategy,
-            ..dark.clone()
-        };
+        let view = dark.by(strategy);
         let [uniform, storage] = pictures.each_ref().map(|all| &all[n]);
         let unlit = renderer.render(&view, &|_| true).unwrap().image;
         let found = [storage, &unlit].map(|other| apart(uniform, other));

@@ -47,7 +47,7 @@ fn seen_color(image: &Image, pixel: usize) -> [f64; 3] {
 
 /// The color of a value in L*a*b*.
 fn value_color(view: &View, value: f64) -> [f64; 3] {
-    let transfer = &view.transfer;
+    let transfer = &view.style.transfer;
     let shown = transfer.scale.shown(value, transfer.range[0]);
     lab(transfer.srgb(transfer.position(shown)))
 }
@@ -125,7 +125,7 @@ fn what_is_picked_has_the_color_that_is_seen() {
             let opacity = f64::from(image.pixels[pixel][3]);
             assert!((sum - opacity).abs() < 1e-2, "{sum} {opacity}");
             // A value of the file, and one between it and those around it.
-            let field = case.field(&view.property, view.step).unwrap();
+            let field = case.field(&view.shown.property, view.shown.step).unwrap();
             let cell = case.grid.dims().cell(hit.ijk);
             assert_eq!(
                 field.value(&case.grid, cell).map(f64::from),
@@ -136,7 +136,7 @@ fn what_is_picked_has_the_color_that_is_seen() {
         let all = PLACES;
         println!(
             "{name} {}: {shown} of {all}, by the cell's own value {own}; the first met {first}",
-            view.property
+            view.shown.property
         );
         assert!(100 * shown >= 95 * all, "{name}: {shown} of {all}");
         // The twin: the first cell that is opaque enough. Where all is solid that is the one seen.
@@ -563,7 +563,7 @@ fn the_command_gives_the_same_answer() {
     let [before, behind] = pick.around(hit.ijk).unwrap();
     assert_eq!(told["pixel"], serde_json::json!([230, 190]));
     assert_eq!(told["property"], "SOIL");
-    assert_eq!(told["step"], view.step);
+    assert_eq!(told["step"], view.shown.step);
     assert_eq!(told["unit"], "");
     assert_eq!([&told["before"], &told["behind"]], [before, behind]);
     let [i, j, k] = hit.ijk.one_based();

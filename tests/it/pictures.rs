@@ -31,10 +31,7 @@ fn scene(azimuth: f64, elevation: f64, interpolation: Interpolation) -> Scene {
 }
 
 fn on_gpu(renderer: &mut GpuRenderer, view: &View, strategy: StrategyKind) -> Image {
-    let view = View {
-        strategy,
-        ..view.clone()
-    };
+    let view = view.by(strategy);
     let frame = renderer.render(&view, &|_| true).unwrap();
     let (image, stats) = (frame.image, frame.stats);
     assert!(image.pixels.iter().flatten().all(|v| v.is_finite()));
@@ -48,7 +45,7 @@ fn on_gpu(renderer: &mut GpuRenderer, view: &View, strategy: StrategyKind) -> Im
 }
 
 fn psnr(a: &Image, b: &Image, view: &View) -> f64 {
-    let [a, b] = [a, b].map(|i| i.over_background_8bit(view.background));
+    let [a, b] = [a, b].map(|i| i.over_background_8bit(view.style.background));
     psnr_8bit(a.as_flattened(), b.as_flattened())
 }
 
@@ -87,7 +84,7 @@ fn strategies_agree_with_the_reference() {
             );
             for strategy in StrategyKind::ALL {
                 let image = on_gpu(&mut renderer, &view, strategy);
-                let bytes = [&image, &truth].map(|i| i.over_background_8bit(view.background));
+                let bytes = [&image, &truth].map(|i| i.over_background_8bit(view.style.background));
                 let found = [
                     psnr(&image, &truth, &view),
                     ssim_8bit(view.size, &bytes[0], &bytes[1]),
@@ -122,7 +119,7 @@ fn a_shifted_camera_is_noticed() {
         * (shifted
             .camera
             .eye
-            .distance(0.5 * (shifted.world_bounds[0] + shifted.world_bounds[1])));
+            .distance(0.5 * (shifted.world.bounds[0] + shifted.world.bounds[1])));
     let image = on_gpu(&mut renderer, &shifted, StrategyKind::Plts);
     let (db, within) = (
         psnr(&image, &truth, &view),
@@ -177,13 +174,13 @@ fn parallel_pictures_agree_with_the_reference() {
             let perspective = view::resolve(&scene, &case).unwrap();
             parallel(&mut scene);
             let mut view = view::resolve(&scene, &case).unwrap();
-            let middle = 0.5 * (view.world_bounds[0] + view.world_bounds[1]);
+            let middle = 0.5 * (view.world.bounds[0] + view.world.bounds[1]);
             let ahead = |c: &DVec3| view.camera.depth(*c) > 0.0;
-            assert!(view.box_corners.iter().all(ahead));
+            assert!(view.world.corners.iter().all(ahead));
             if inside {
                 // The plane of the eye cuts the model.
                 view.camera.eye = middle;
-                view.clip = view::resolve(
+                view.shown.clip = view::resolve(
                     &Scene {
                         clip: vec![clip(&view, [1.0, 0.3, 0.2], CutFace::Opaque)],
                         ..scene.clone()
@@ -191,6 +188,7 @@ fn parallel_pictures_agree_with_the_reference() {
                     &case,
                 )
                 .unwrap()
+                .shown
                 .clip;
             }
             let truth = reference::render(&case.grid, &view, &|_| true).unwrap();
@@ -283,11 +281,12 @@ fn occlusion_in_parallel_agrees_with_the_reference() {
         parallel(&mut scene);
         let mut view = view::resolve(&scene, &case).unwrap();
         if inside {
-            view.camera.eye = 0.5 * (view.world_bounds[0] + view.world_bounds[1]);
+            view.camera.eye = 0.5 * (view.world.bounds[0] + view.world.bounds[1]);
         }
         let truth = reference::render(&case.grid, &view, &|_| true).unwrap();
-        let dark = View {
-            lighting: view::resolve(
+        let dark = {
+            let mut changed = view.clone();
+            changed.style.lighting = view::resolve(
                 &Scene {
                     lighting: LightingSpec::default(),
                     ..scene
@@ -295,8 +294,9 @@ fn occlusion_in_parallel_agrees_with_the_reference() {
                 &case,
             )
             .unwrap()
-            .lighting,
-            ..view.clone()
+            .style
+            .lighting;
+            changed
         };
         for strategy in StrategyKind::ALL {
             let found = psnr(&on_gpu(&mut renderer, &view, strategy), &truth, &view);
@@ -318,7 +318,7 @@ fn occlusion_in_parallel_agrees_with_the_reference() {
 
 /// A plane through the middle of the model that keeps its northern or its eastern half.
 fn clip(view: &View, normal: [f64; 3], face: CutFace) -> ClipSpec {
-    let middle = 0.5 * (view.world_bounds[0] + view.world_bounds[1]);
+    let middle = 0.5 * (view.world.bounds[0] + view.world.bounds[1]);
     ClipSpec {
         point: middle.to_array(),
         normal,

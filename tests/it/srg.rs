@@ -68,9 +68,10 @@ fn scene(size: [u32; 2], srg: SrgSettings) -> Scene {
 }
 
 fn with(view: &View, srg: SrgSettings) -> View {
-    View {
-        srg,
-        ..view.clone()
+    {
+        let mut changed = view.clone();
+        changed.sampling.srg = srg;
+        changed
     }
 }
 
@@ -83,13 +84,13 @@ fn render(renderer: &mut GpuRenderer, view: &View) -> Frame {
 fn compare(a: &Image, b: &Image, view: &View) -> Comparison {
     let [a, b] = [a, b].map(|image| Rgb8 {
         size: image.size,
-        pixels: image.over_background_8bit(view.background),
+        pixels: image.over_background_8bit(view.style.background),
     });
     Comparison::of(&a, &b).unwrap()
 }
 
 fn psnr(a: &Image, b: &Image, view: &View) -> f64 {
-    let [a, b] = [a, b].map(|i| i.over_background_8bit(view.background));
+    let [a, b] = [a, b].map(|i| i.over_background_8bit(view.style.background));
     psnr_8bit(a.as_flattened(), b.as_flattened())
 }
 
@@ -240,7 +241,13 @@ impl<'a> Bench<'a> {
     fn show(&mut self, view: &View) {
         let (gpu, model) = (self.gpu, &self.case.grid);
         self.grid
-            .show(gpu, model, &view.field, &view.drawn, view.interpolation)
+            .show(
+                gpu,
+                model,
+                &view.shown.field,
+                &view.shown.drawn,
+                view.shown.interpolation,
+            )
             .unwrap();
     }
 
@@ -566,9 +573,10 @@ fn roulette_is_unbiased() {
     );
     let (pixels, errors) = bias(&by_chance);
     // The twin ends all those rays.
-    let always = View {
-        early_termination: 0.3,
-        ..view.clone()
+    let always = {
+        let mut changed = view.clone();
+        changed.sampling.early_termination = 0.3;
+        changed
     };
     let (_, twin) = bias(&always);
     println!(
@@ -686,7 +694,7 @@ fn clip_planes_cut_and_show_exact_sections() {
     let mut scene = scene([120, 90], SrgSettings::default());
     scene.vertical_exaggeration = Some(8.0);
     let whole = view::resolve(&scene, &case).unwrap();
-    let middle = 0.5 * (whole.world_bounds[0] + whole.world_bounds[1]);
+    let middle = 0.5 * (whole.world.bounds[0] + whole.world.bounds[1]);
     let uncut = render(&mut renderer, &whole).image;
     for face in [CutFace::Open, CutFace::Opaque] {
         scene.clip = vec![ClipSpec {
@@ -722,7 +730,7 @@ fn an_eye_inside_the_model_sees_what_is_ahead() {
     let mut renderer = GpuRenderer::new(gpu, &case.grid).unwrap();
     let mut scene = scene([120, 90], SrgSettings::default());
     let outside = view::resolve(&scene, &case).unwrap();
-    let [low, high] = outside.world_bounds;
+    let [low, high] = outside.world.bounds;
     let middle = 0.5 * (low + high);
     let mut look_at = |target: DVec3| {
         scene.camera = CameraSpec::Explicit(ExplicitCamera {
@@ -816,7 +824,10 @@ fn err_settings_out_of_range_are_named() {
         assert!(error.contains(word), "{text}: {error}");
     }
     let fine = with(r#"{"budget_mb": 512, "factor": 2.5, "even": 0.02}"#).unwrap();
-    assert_eq!((fine.srg.factor, fine.srg.even), (Some(2.5), 0.02));
+    assert_eq!(
+        (fine.sampling.srg.factor, fine.sampling.srg.even),
+        (Some(2.5), 0.02)
+    );
 }
 
 /// CPU time of a frame in milliseconds, the mean of several.

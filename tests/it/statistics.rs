@@ -35,10 +35,10 @@ struct Counts {
 }
 
 fn by_reference(case: &Case, view: &View) -> Counts {
-    let locator = Locator::of_drawn(&case.grid, &view.drawn);
-    let to_corners = view.box_corners.iter();
+    let locator = Locator::of_drawn(&case.grid, &view.shown.drawn);
+    let to_corners = view.world.corners.iter();
     let to_corners = to_corners.map(|corner| corner.distance(view.camera.eye));
-    let steps = (to_corners.fold(0.0, f64::max) / view.sampling_step).ceil() as u32;
+    let steps = (to_corners.fold(0.0, f64::max) / view.sampling.step).ceil() as u32;
     let mut counts = Counts::default();
     for y in 0..view.size[1] {
         for x in 0..view.size[0] {
@@ -46,8 +46,8 @@ fn by_reference(case: &Case, view: &View) -> Counts {
             let before = counts.samples;
             let mut last = None;
             for n in 0..steps {
-                let at = ray.origin + (f64::from(n) + 0.5) * view.sampling_step * ray.direction;
-                let found = locator.locate(view.spaces.grid_from_world.transform_point3(at));
+                let at = ray.origin + (f64::from(n) + 0.5) * view.sampling.step * ray.direction;
+                let found = locator.locate(view.world.spaces.grid_from_world.transform_point3(at));
                 let cell = found.map(|f| f.ijk);
                 counts.samples += u64::from(cell.is_some());
                 counts.entries += u64::from(cell.is_some() && last.is_none());
@@ -61,10 +61,7 @@ fn by_reference(case: &Case, view: &View) -> Counts {
 }
 
 fn stats(renderer: &mut GpuRenderer, view: &View, strategy: StrategyKind) -> FrameStats {
-    let view = View {
-        strategy,
-        ..view.clone()
-    };
+    let view = view.by(strategy);
     let frame = renderer.render(&view, &|_| true).unwrap();
     frame.stats
 }
@@ -126,9 +123,10 @@ fn frames_count_what_the_reference_counts() {
             assert!(libc.cell_crossings > plts.cell_crossings);
         }
         // The twin: another sampling step has other samples.
-        let coarse = View {
-            sampling_step: 1.1 * view.sampling_step,
-            ..view.clone()
+        let coarse = {
+            let mut changed = view.clone();
+            changed.sampling.step = 1.1 * view.sampling.step;
+            changed
         };
         let coarse = stats(&mut renderer, &coarse, StrategyKind::Plts);
         assert!(!is_close(coarse.samples, truth.samples, 0.05), "{name}");

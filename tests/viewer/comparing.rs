@@ -29,8 +29,8 @@ fn this_step_stands_beside_the_first_one() {
     driven.press(Modifiers::NONE, Key::C);
     driven.wait_final();
     let views = [0, 1].map(|n| view(&driven, n));
-    assert_eq!(views.each_ref().map(|v| v.step), [20, 0]);
-    assert_eq!(views[0].strategy, views[1].strategy);
+    assert_eq!(views.each_ref().map(|v| v.shown.step), [20, 0]);
+    assert_eq!(views[0].sampling.strategy, views[1].sampling.strategy);
     assert_eq!(views[0].camera, views[1].camera);
     assert!(2 * views[0].size[0] <= alone.size[0]);
     // A drag on the second one turns both.
@@ -51,7 +51,10 @@ fn this_step_stands_beside_the_first_one() {
     driven.wait_final();
     driven.press(Modifiers::NONE, Key::C);
     driven.wait_final();
-    assert_ne!(view(&driven, 0).strategy, view(&driven, 1).strategy);
+    assert_ne!(
+        view(&driven, 0).sampling.strategy,
+        view(&driven, 1).sampling.strategy
+    );
 }
 
 #[test]
@@ -124,32 +127,36 @@ fn a_difference_of_steps_is_one_of_values() {
     driven.wait_final();
     let shown = view(&driven, 0);
     assert!(driven.harness.state().picture(1).is_none());
-    assert_eq!((shown.property.as_str(), shown.step), ("SOIL-SOIL@0", 20));
+    assert_eq!(
+        (shown.shown.property.as_str(), shown.shown.step),
+        ("SOIL-SOIL@0", 20)
+    );
     let case = driven.document().case.clone().unwrap();
     let [now, then] = [20, 0].map(|step| case.field("SOIL", step).unwrap());
-    for (n, v) in shown.field.values().iter().enumerate() {
+    for (n, v) in shown.shown.field.values().iter().enumerate() {
         assert_eq!(*v, now.values()[n] - then.values()[n]);
     }
     // Around 0, where neither color is.
-    let [low, high] = shown.transfer.true_range();
+    let [low, high] = shown.style.transfer.true_range();
     assert!(low == -high && high > 0.3, "{low} {high}");
-    let middle = shown.transfer.srgb(0.5);
+    let middle = shown.style.transfer.srgb(0.5);
     assert!(middle.iter().all(|v| *v > 0.8), "{middle:?}");
     // Its colors are its own, and the property keeps what it had.
     let before = driven.scene().clone();
     let range = RangeSpec::Fixed([-0.2, 0.2]);
     driven.harness.state_mut().apply(Action::Range(range));
     driven.wait_final();
-    assert_eq!(view(&driven, 0).transfer.true_range(), [-0.2, 0.2]);
+    assert_eq!(view(&driven, 0).style.transfer.true_range(), [-0.2, 0.2]);
     assert_eq!(driven.scene(), &before);
     driven.press(Modifiers::COMMAND, Key::Z);
     driven.wait_final();
-    assert_eq!(view(&driven, 0).transfer.true_range(), [low, high]);
+    assert_eq!(view(&driven, 0).style.transfer.true_range(), [low, high]);
     // Time goes on in the difference; a property that stays the same has none.
     driven.press(Modifiers::NONE, Key::Home);
     driven.wait_final();
     assert!(
         view(&driven, 0)
+            .shown
             .field
             .values()
             .iter()
@@ -180,12 +187,19 @@ fn a_difference_of_cases_is_made_cell_by_cell() {
     compare(&mut driven, of(&copy, None));
     driven.wait_final();
     let shown = view(&driven, 0);
-    assert_eq!(shown.property, "SOIL-SOIL@SCISSOR");
-    assert!(shown.field.values().iter().all(|v| *v == 0.0 || v.is_nan()));
+    assert_eq!(shown.shown.property, "SOIL-SOIL@SCISSOR");
+    assert!(
+        shown
+            .shown
+            .field
+            .values()
+            .iter()
+            .all(|v| *v == 0.0 || v.is_nan())
+    );
     // Against the first step of the other one.
     compare(&mut driven, of(&copy, Some(0)));
     driven.wait("the first step", |w| {
-        let oil = |p: &Picture| p.view.field.values().iter().any(|v| v.abs() > 0.3);
+        let oil = |p: &Picture| p.view.shown.field.values().iter().any(|v| v.abs() > 0.3);
         w.picture(0).is_some_and(|(p, is_final)| is_final && oil(p))
     });
     // Cells are picked in it, with the value that is seen.

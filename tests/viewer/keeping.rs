@@ -193,7 +193,8 @@ fn the_mouse_is_as_in_the_program_that_was_chosen() {
         .unwrap()
         .0
         .view
-        .world_bounds;
+        .world
+        .bounds;
     let center = (bounds[0] + bounds[1]) / 2.0;
     assert!(after.distance(center) < 0.95 * before.distance(center));
 }

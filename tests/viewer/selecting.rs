@@ -69,7 +69,7 @@ fn a_picked_cell_tells_its_values() {
     let view = driven.harness.state().picture(0).unwrap().0.view.clone();
     let corners = grid.hexahedron(cell).0;
     let top = (corners[0] + corners[1] + corners[2] + corners[3]) / 4.0;
-    let world = view.spaces.world_from_grid.transform_point3(top);
+    let world = view.world.spaces.world_from_grid.transform_point3(top);
     let at = view.camera.project(world, view.aspect()).unwrap();
     let place = driven.place("volume");
     let at = pos2(at.x as f32, at.y as f32).to_vec2() * place.size() + place.min.to_vec2();
@@ -264,6 +264,7 @@ fn a_pointer_that_rests_on_a_fault_reads_its_throw() {
     let corners = grid.hexahedron(cell).0;
     let face = [1, 3, 5, 7].map(|n: usize| corners[n]);
     let world = view
+        .world
         .spaces
         .world_from_grid
         .transform_point3(face.iter().sum::<glam::DVec3>() / 4.0);

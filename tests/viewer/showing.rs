@@ -89,6 +89,7 @@ fn the_transfer_function_is_edited_and_undone() {
             .unwrap()
             .0
             .view
+            .style
             .transfer
             .opacity
             .clone()

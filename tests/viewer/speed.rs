@@ -56,7 +56,11 @@ fn pictures_follow_the_pointer() {
         driven.click(light);
         driven.wait_final();
         let whole = driven.harness.state().picture(0).unwrap().0;
-        let (size, cost, strategy) = (whole.rgb.size, whole.stats.work, whole.view.strategy);
+        let (size, cost, strategy) = (
+            whole.rgb.size,
+            whole.stats.work,
+            whole.view.sampling.strategy,
+        );
         let middle = driven.place("volume").center();
         let before = driven.harness.state().drafts().asked;
         let most = turned(&mut driven, middle, 20);
@@ -72,7 +76,7 @@ fn pictures_follow_the_pointer() {
         assert!((0.01..=1.0).contains(&part), "{part}");
         // A draft is cheaper by about as much as it is smaller.
         let work = picture.stats.work as f64 / cost.max(1) as f64;
-        let is_other = picture.view.strategy != strategy;
+        let is_other = picture.view.sampling.strategy != strategy;
         assert!(
             is_other || work <= 2.0 * part + 0.05,
             "{work} of the work, {part}"
@@ -101,8 +105,8 @@ fn every_step_that_plays_is_seen() {
     driven.wait("the end", |w| {
         let (picture, _) = w.picture(0).unwrap();
         let mut seen = seen.borrow_mut();
-        if seen.last() != Some(&picture.view.step) {
-            seen.push(picture.view.step);
+        if seen.last() != Some(&picture.view.shown.step) {
+            seen.push(picture.view.shown.step);
         }
         w.document().is_some_and(|d| d.playing.is_none())
     });

@@ -40,7 +40,7 @@ fn face_on_screen(driven: &Driven, cell: Ijk, face: Face) -> Pos2 {
         .map(|n| corners[*n])
         .sum::<glam::DVec3>()
         / 4.0;
-    let world = view.spaces.world_from_grid.transform_point3(middle);
+    let world = view.world.spaces.world_from_grid.transform_point3(middle);
     let at = view.camera.project(world, view.aspect()).unwrap();
     let place = driven.place("volume");
     place.min + vec2(at.x as f32, at.y as f32) * place.size()

@@ -40,7 +40,7 @@ fn the_hull_of_a_box_has_the_color_of_its_values_in_the_headlight() {
                     continue;
                 }
                 let ray = reference::Ray::through_pixel(&view, n % 80, n / 80);
-                let normal = DVec3::AXES[entered(view.world_bounds, &ray)];
+                let normal = DVec3::AXES[entered(view.world.bounds, &ray)];
                 let lamp = if exact_colors {
                     1.0
                 } else {
@@ -81,11 +81,14 @@ fn values_are_read_off_faces_and_shapes_off_their_light() {
             scene.camera = camera.clone();
             let view = view::resolve(&scene, &case).unwrap();
             let image = picture(&mut renderer, &case, &view, Some(StrategyKind::Plts));
-            (view.clone(), image.over_background_8bit(view.background))
+            (
+                view.clone(),
+                image.over_background_8bit(view.style.background),
+            )
         };
         // Straight from above, the legend's color.
         let (view, pixels) = colors(&up);
-        let legend = srgb(view.transfer.srgb(value));
+        let legend = srgb(view.style.transfer.srgb(value));
         let middle = pixels[30 * 80 + 40];
         let off = ciede2000_map(&[middle], &[legend]).unwrap()[0];
         println!("{value}: {off:.2} from the legend");
@@ -96,7 +99,7 @@ fn values_are_read_off_faces_and_shapes_off_their_light() {
         for (n, pixel) in (0..).zip(&pixels) {
             let ray = reference::Ray::through_pixel(&view, n % 80, n / 80);
             if *pixel != [255; 3] {
-                faces[entered(view.world_bounds, &ray)].push(*pixel);
+                faces[entered(view.world.bounds, &ray)].push(*pixel);
             }
         }
         // The first and last pixels of a face may lie on its edges.
@@ -137,10 +140,10 @@ fn cells_agree_with_the_reference() {
             let truth = picture(&mut renderer, &case, &view, None);
             // The twins: without the headlight, and without edges.
             let mut dark = view.clone();
-            dark.lighting.exact_colors = true;
+            dark.style.lighting.exact_colors = true;
             let plain = Surfaces {
                 cell_edges: false,
-                ..view.surfaces
+                ..view.style.surfaces
             };
             let others = [dark, with(&view, plain)]
                 .map(|other| psnr(&picture(&mut renderer, &case, &other, None), &truth, &view));
@@ -184,10 +187,7 @@ fn cells_are_solid_whatever_the_opacity_and_cast_no_ray() {
     };
     for strategy in StrategyKind::ALL {
         let mut made = |scene: &Scene| {
-            let view = View {
-                strategy,
-                ..view::resolve(scene, &case).unwrap()
-            };
+            let view = view::resolve(scene, &case).unwrap().by(strategy);
             renderer.render(&view, &|_| true).unwrap()
         };
         let [faint, solid] = [0.0, 0.9].map(|opacity| made(&scene(opacity, Mode::Cells)));

@@ -24,7 +24,7 @@ fn a_faint_hull_has_a_front_and_a_ground() {
     let mut renderer = GpuRenderer::new(gpu, &case.grid).unwrap();
     let scene = plain(camera(205.0, 35.0, 1.0), 0.0);
     let view = with(&view::resolve(&scene, &case).unwrap(), FAINT);
-    let gray = blended(&view, faint_color(view.background)).x;
+    let gray = blended(&view, faint_color(view.style.background)).x;
     for by in all() {
         let image = picture(&mut renderer, &case, &view, by);
         let (mut covered, mut wrong, mut worst, mut constant) = (0, 0, 0.0f64, 0.0f64);
@@ -34,7 +34,7 @@ fn a_faint_hull_has_a_front_and_a_ground() {
             if alpha == 0.0 {
                 continue;
             }
-            let expected = 1.0 - behind_faint(view.world_bounds, &ray);
+            let expected = 1.0 - behind_faint(view.world.bounds, &ray);
             let error = (alpha - expected).abs().max((red - gray * expected).abs());
             covered += 1;
             // At an edge a pixel may see the other face.
@@ -84,8 +84,8 @@ fn what_is_drawn_is_never_taken_for_the_background() {
             let mut least = |hull: Surfaces| {
                 let view = with(&view, hull);
                 let image = picture(&mut renderer, &case, &view, Some(StrategyKind::Libc));
-                let pixels = image.over_background_8bit(view.background);
-                let empty = vec![srgb(view.background); pixels.len()];
+                let pixels = image.over_background_8bit(view.style.background);
+                let empty = vec![srgb(view.style.background); pixels.len()];
                 ciede2000_map(&pixels, &empty).unwrap()
             };
             let [solid, faint, hidden] = [HULL, FAINT, NONE].map(&mut least);

@@ -69,10 +69,7 @@ fn picture(
     let Some(strategy) = by else {
         return reference::render(&case.grid, view, &|_| true).unwrap();
     };
-    let view = View {
-        strategy,
-        ..view.clone()
-    };
+    let view = view.by(strategy);
     let frame = renderer.render(&view, &|_| true).unwrap();
     assert_eq!(frame.stats.lost_rays, 0);
     frame.image
@@ -83,16 +80,17 @@ fn all() -> impl Iterator<Item = Option<StrategyKind>> {
 }
 
 fn with(view: &View, surfaces: Surfaces) -> View {
-    View {
-        surfaces,
-        ..view.clone()
+    {
+        let mut changed = view.clone();
+        changed.style.surfaces = surfaces;
+        changed
     }
 }
 
 /// PSNR in dB without the worst of a thousand pixels: at an outline a pixel may see another face, and one
 /// pixel makes as much of it as all others.
 fn psnr(a: &Image, b: &Image, view: &View) -> f64 {
-    let [a, b] = [a, b].map(|i| i.over_background_8bit(view.background));
+    let [a, b] = [a, b].map(|i| i.over_background_8bit(view.style.background));
     let mut pairs: Vec<_> = a.into_iter().zip(b).collect();
     let error = |(a, b): &([u8; 3], [u8; 3])| (0..3).map(|c| a[c].abs_diff(b[c])).max();
     pairs.sort_by_key(error);
@@ -106,7 +104,7 @@ fn pixel(image: &Image, x: u32, y: u32) -> [f64; 4] {
 }
 
 fn blended(view: &View, srgb: [f64; 3]) -> DVec3 {
-    DVec3::from_array(view.blending.of_srgb(srgb))
+    DVec3::from_array(view.style.blending.of_srgb(srgb))
 }
 
 /// A scene of test grids: nothing ends a ray early.
@@ -128,7 +126,7 @@ fn plain(camera: CameraSpec, opacity: f64) -> Scene {
 
 /// A plane through the middle of the model, seen from the side that is cut away.
 fn cut(view: &View, face: CutFace) -> ClipSpec {
-    let [low, high] = view.world_bounds;
+    let [low, high] = view.world.bounds;
     let away = view.camera.forward.with_z(0.0) + DVec3::new(0.3, 0.1, 0.0);
     ClipSpec {
         point: (0.5 * (low + high)).to_array(),
@@ -280,7 +278,7 @@ fn scenes_say_what_is_shown() {
     let case = blocks(30.0, "");
     let resolved = |show: &str| {
         let scene: Scene = serde_json::from_str(&format!("{{\"show\": {show}}}")).ok()?;
-        Some(view::resolve(&scene, &case).unwrap().surfaces)
+        Some(view::resolve(&scene, &case).unwrap().style.surfaces)
     };
     let cells = |rest: &str| {
         let text = format!(
@@ -289,15 +287,15 @@ fn scenes_say_what_is_shown() {
         view::resolve(&serde_json::from_str(&text).unwrap(), &case).unwrap()
     };
     let view = cells("");
-    assert_eq!(view.surfaces, CELLS);
-    assert_eq!(view.interpolation, Interpolation::Cell);
-    assert!(view.clip[0].opaque);
+    assert_eq!(view.style.surfaces, CELLS);
+    assert_eq!(view.shown.interpolation, Interpolation::Cell);
+    assert!(view.shown.clip[0].opaque);
     let without_edges = Surfaces {
         cell_edges: false,
         ..CELLS
     };
     let view = cells(r#", "show": {"cell_edges": false, "hull": "hidden"}"#);
-    assert_eq!(view.surfaces, without_edges);
+    assert_eq!(view.style.surfaces, without_edges);
     assert!(serde_json::from_str::<Scene>(r#"{"mode": "solid"}"#).is_err());
     assert_eq!(resolved("{}"), Some(NONE));
     assert_eq!(resolved(r#"{"hull": "opaque"}"#), Some(HULL));

@@ -5,12 +5,12 @@ use super::*;
 /// What a ray sees of a sheet in the middle of matter from x = 0 to 200; `None` where a sample lies so near
 /// to an end that it may count or not.
 fn behind_half(view: &View, ray: reference::Ray, sheet: DVec3) -> Option<[f64; 4]> {
-    let step = view.sampling_step;
+    let step = view.sampling.step;
     let at = [0.0, 100.0, 200.0].map(|x| (x - ray.origin.x) / ray.direction.x / step - 0.5);
     if at.iter().any(|n| (n - n.round()).abs() < 0.05) {
         return None;
     }
-    let tau = view.transfer.extinction(0.5);
+    let tau = view.style.transfer.extinction(0.5);
     let color = DVec3::from_array(view.color_at(0.5));
     let [front, back] = [0, 1].map(|n| (-tau * step * (at[n + 1].ceil() - at[n].ceil())).exp());
     let behind = SHEET_OPACITY * sheet + (1.0 - SHEET_OPACITY) * (1.0 - back) * color;
