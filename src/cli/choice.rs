@@ -1,7 +1,7 @@
 //! Choices by name, as scene files have them, with a sentence for each.
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use strataray::scene::{Interpolation, LightMode, Mode};
+use strataray::scene::{Interpolation, LightMode, Mode, StrategyKind};
 use strataray::view::TurnAxis;
 
 /// A name, what it stands for, and what that is in one sentence.
@@ -52,6 +52,24 @@ pub const LIGHT_MODES: [NamedChoice<LightMode>; 4] = [
     ),
 ];
 
+pub const STRATEGIES: [NamedChoice<StrategyKind>; 3] = [
+    (
+        "libc",
+        StrategyKind::Libc,
+        "Walks from cell to cell: close to exact, fast",
+    ),
+    (
+        "plts",
+        StrategyKind::Plts,
+        "Locates every sample in its cell: exact, slow",
+    ),
+    (
+        "srg",
+        StrategyKind::Srg,
+        "Samples a resampled volume: fastest, blurs faults and thin layers",
+    ),
+];
+
 pub const TURN_AXES: [NamedChoice<TurnAxis>; 4] = [
     ("x", TurnAxis::X, "The axis to the east"),
     ("y", TurnAxis::Y, "The axis to the north"),
@@ -84,6 +102,7 @@ mod tests {
     #[test]
     fn names_are_those_of_scene_files() {
         assert!(named(&MODES) && named(&INTERPOLATIONS) && named(&LIGHT_MODES));
+        assert!(named(&STRATEGIES));
         assert!(!named(&[("cells", Mode::Volume, "")]));
     }
 }

@@ -2,14 +2,14 @@
 
 use std::path::PathBuf;
 
-use anyhow::{Context, ensure};
+use anyhow::ensure;
 use strataray::case::Case;
 use strataray::compare::{Comparer, Plan, Reference, Report, Setting, summary};
 use strataray::scene::{Scene, StrategyKind};
 use strataray::view::{self, NamedView, TurnAxis, half_turns};
 
 use super::Verbosity;
-use super::choice::{TURN_AXES, one_of};
+use super::choice::{STRATEGIES, TURN_AXES, one_of};
 use super::progress::Reporter;
 use super::scene_options::SceneOptions;
 
@@ -39,9 +39,11 @@ pub struct Arguments {
         long,
         value_name = "NAMES",
         value_delimiter = ',',
+        value_parser = one_of(&STRATEGIES),
+        hide_possible_values = true,
         conflicts_with = "strategy"
     )]
-    strategies: Vec<String>,
+    strategies: Vec<StrategyKind>,
     /// Measure against the f64 reference on the CPU, which is slow.
     #[arg(long)]
     reference: bool,
@@ -71,7 +73,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
         "--difference-scale must be above 0"
     );
     arguments.options.set_threads()?;
-    let strategies = strategies(arguments)?;
+    let strategies = strategies(arguments);
     let case = arguments.options.open_case(&arguments.case, &reporter)?;
     let scene = arguments.options.scene(&case, &reporter)?;
     let executor = arguments.options.open_executor(&reporter)?;
@@ -118,21 +120,21 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
 }
 
 /// The strategies asked for, each once; all where none is.
-fn strategies(arguments: &Arguments) -> anyhow::Result<Vec<StrategyKind>> {
-    let mut asked: Vec<&str> = arguments.strategies.iter().map(String::as_str).collect();
-    asked.extend(arguments.options.strategy.as_deref());
-    if asked.is_empty() {
-        return Ok(StrategyKind::ALL.to_vec());
-    }
+fn strategies(arguments: &Arguments) -> Vec<StrategyKind> {
+    let asked = arguments
+        .strategies
+        .iter()
+        .chain(&arguments.options.strategy);
     let mut found = Vec::new();
-    for name in asked {
-        let kind = StrategyKind::from_name(name)
-            .with_context(|| format!("--strategies: {}", StrategyKind::refusal(name)))?;
-        if !found.contains(&kind) {
-            found.push(kind);
+    for kind in asked {
+        if !found.contains(kind) {
+            found.push(*kind);
         }
     }
-    Ok(found)
+    match found.is_empty() {
+        true => StrategyKind::ALL.to_vec(),
+        false => found,
+    }
 }
 
 fn views(arguments: &Arguments, scene: &Scene, case: &Case) -> anyhow::Result<Vec<NamedView>> {

@@ -9,11 +9,11 @@ use strataray::render::{self, Executor};
 use strataray::scene::lighting::PRESETS;
 use strataray::scene::{
     CameraSpec, FramingCamera, Interpolation, LightMode, LightingSpec, Mode, Projection, Scene,
-    StepSpec,
+    StepSpec, StrategyKind,
 };
 use strataray::view::look;
 
-use super::choice::{INTERPOLATIONS, LIGHT_MODES, MODES, one_of};
+use super::choice::{INTERPOLATIONS, LIGHT_MODES, MODES, STRATEGIES, one_of};
 use super::progress::Reporter;
 
 #[derive(clap::Args)]
@@ -27,9 +27,9 @@ pub struct SceneOptions {
     /// Time step: number from 0, date, first or last.
     #[arg(long)]
     step: Option<String>,
-    /// Ray-casting strategy: plts, libc or srg.
-    #[arg(long)]
-    pub strategy: Option<String>,
+    /// Ray-casting strategy.
+    #[arg(long, value_parser = one_of(&STRATEGIES))]
+    pub strategy: Option<StrategyKind>,
     /// Values within a cell.
     #[arg(long, value_parser = one_of(&INTERPOLATIONS))]
     interpolation: Option<Interpolation>,
@@ -107,7 +107,7 @@ impl SceneOptions {
             scene.step = StepSpec::Name(step.clone());
         }
         if let Some(strategy) = &self.strategy {
-            scene.strategy.clone_from(strategy);
+            scene.strategy = *strategy;
         }
         if let Some(interpolation) = self.interpolation {
             scene.interpolation = interpolation;

@@ -51,8 +51,8 @@ pub struct Scene {
     pub transfer: TransferSpec,
     /// How colors are blended.
     pub blending: Blending,
-    /// Ray-casting strategy by name.
-    pub strategy: String,
+    /// Ray-casting strategy.
+    pub strategy: StrategyKind,
     /// Distance of samples in world space; an eighth of the smallest mean cell edge where absent.
     pub sampling_step: Option<f64>,
     /// Transmittance at which a ray ends; 0 turns early termination off.
@@ -86,7 +86,7 @@ impl Default for Scene {
             range: RangeSpec::STEP,
             transfer: TransferSpec::default(),
             blending: Blending::default(),
-            strategy: "plts".into(),
+            strategy: StrategyKind::Plts,
             sampling_step: None,
             early_termination: 0.01,
             srg: SrgSettings::default(),

@@ -1,11 +1,15 @@
 //! The ray-casting strategies by name.
 
+use serde::{Deserialize, Serialize};
+
 /// Every strategy; the one list that command line, viewer and tests read.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum StrategyKind {
     /// Linear interpolation with barycentric coordinates.
     Libc,
     /// Point location with topological search.
+    #[default]
     Plts,
     /// Structured resampled grid.
     Srg,
@@ -36,16 +40,5 @@ impl StrategyKind {
             Self::Plts => "Locates every sample in its cell: exact, slow",
             Self::Srg => "Samples a resampled volume: fastest, blurs faults and thin layers",
         }
-    }
-
-    /// The strategy called `name`.
-    pub fn from_name(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|s| s.name() == name)
-    }
-
-    /// One sentence for a name that is no strategy of this version.
-    pub fn refusal(name: &str) -> String {
-        let known: Vec<_> = Self::ALL.iter().map(|s| s.name()).collect();
-        format!("{name} is not known; use {}", known.join(", "))
     }
 }

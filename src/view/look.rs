@@ -233,7 +233,7 @@ pub fn opening(case: &Case, written: &Value) -> Result<Scene, SceneError> {
     let property = given("property").map_or_else(|| default_property(case), str::to_owned);
     let mut scene = Scene {
         // Whole segments show no steps, and take less time than samples.
-        strategy: StrategyKind::Libc.name().into(),
+        strategy: StrategyKind::Libc,
         libc: LibcSettings {
             integration: Integration::Segments,
             ..LibcSettings::default()

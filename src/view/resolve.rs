@@ -19,7 +19,7 @@ use super::{
 };
 use crate::case::Case;
 use crate::model::{CellField, CellIndex, Dims, Ijk, Spaces};
-use crate::scene::{CameraSpec, Inactive, Mode, Scene, SrgSettings, StrategyKind};
+use crate::scene::{CameraSpec, Inactive, Mode, Scene, SrgSettings};
 use crate::transfer::presets;
 
 /// Fills in every default of `scene` for `case` and checks every value.
@@ -124,7 +124,7 @@ fn sampling(
     bounds: [DVec3; 2],
 ) -> Result<Sampling, SceneError> {
     Ok(Sampling {
-        strategy: strategy(scene)?,
+        strategy: scene.strategy,
         step: sampling_step(scene, edges, bounds)?,
         early_termination: early_termination(scene)?,
         libc: scene.libc,
@@ -165,11 +165,6 @@ fn check_version(scene: &Scene) -> Result<(), SceneError> {
         return Err(wrong("version", problem));
     }
     Ok(())
-}
-
-fn strategy(scene: &Scene) -> Result<StrategyKind, SceneError> {
-    let kind = StrategyKind::from_name(&scene.strategy);
-    kind.ok_or_else(|| wrong("strategy", StrategyKind::refusal(&scene.strategy)))
 }
 
 fn early_termination(scene: &Scene) -> Result<f64, SceneError> {

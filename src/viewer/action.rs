@@ -6,7 +6,7 @@ use super::slices::Slicing;
 use super::state::{Comparison, CurvePlots, Playback, State};
 use crate::scene::{
     CameraSpec, ClipSpec, Filter, Interpolation, LibcSettings, LightingSpec, Mode, RangeSpec,
-    Scene, Show, SrgSettings, StepSpec, TransferSpec,
+    Scene, Show, SrgSettings, StepSpec, StrategyKind, TransferSpec,
 };
 
 /// A change of a tab's state.
@@ -25,7 +25,7 @@ pub enum Action {
     /// Colors and opacities.
     Transfer(TransferSpec),
     /// Ray-casting strategy by name.
-    Strategy(String),
+    Strategy(StrategyKind),
     /// Settings of SRG.
     Srg(SrgSettings),
     /// Settings of LIBC.

@@ -68,7 +68,7 @@ impl ShownSide {
         let [width, height] = wanted.scene.size.map(f64::from);
         let pixels = width * height;
         let voxels = self.voxels(&wanted.scene);
-        let asked = strategy_of(&wanted.scene);
+        let asked = wanted.scene.strategy;
         let of_draft = self.draft_strategy(wanted, is_software);
         if of_draft == asked && budget.affords_whole(asked, goal_ms, pixels, voxels) {
             Due::Quick(None)
@@ -81,7 +81,7 @@ impl ShownSide {
 
     /// Makes a draft of what is wanted.
     pub fn make_draft(&self, wanted: &mut RenderRequest, draft: DraftSize, is_software: bool) {
-        wanted.scene.strategy = self.draft_strategy(wanted, is_software).name().into();
+        wanted.scene.strategy = self.draft_strategy(wanted, is_software);
         let scene = &mut wanted.scene;
         let smaller = |n: u32| ((f64::from(n) * draft.part).round() as u32).max(16);
         scene.size = scene.size.map(smaller);
@@ -106,7 +106,7 @@ impl ShownSide {
     /// PLTS for a draft where LIBC would draw so many faces that no draft is quick: the picture is the same
     /// but for what samples leave out.
     fn draft_strategy(&self, wanted: &RenderRequest, is_software: bool) -> StrategyKind {
-        let asked = strategy_of(&wanted.scene);
+        let asked = wanted.scene.strategy;
         let [width, height] = wanted.scene.size.map(f64::from);
         let fewest = COARSEST * COARSEST * width * height;
         let ms = |strategy| self.budget.rays_ms(strategy, fewest);
@@ -156,13 +156,6 @@ impl ShownSide {
     pub fn is_finished(&self, wanted: &RenderRequest) -> bool {
         self.finished.as_ref() == Some(wanted)
     }
-}
-
-fn strategy_of(scene: &Scene) -> StrategyKind {
-    let all = StrategyKind::ALL.into_iter();
-    // One of another name is refused where the scene is resolved.
-    let mut named = all.filter(|k| k.name() == scene.strategy);
-    named.next().unwrap_or(StrategyKind::Libc)
 }
 
 /// A light volume with `part` times fewer voxels along each axis, on average: less so along the depth, where light

@@ -83,13 +83,14 @@ impl History {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::StrategyKind;
     use crate::viewer::action::Beside;
 
     #[test]
     fn undo_and_redo_go_through_changes() {
         let (mut history, mut state) = (History::default(), State::default());
         let start = state.clone();
-        history.apply(&mut state, Action::Strategy("srg".into()));
+        history.apply(&mut state, Action::Strategy(StrategyKind::Srg));
         history.end_gesture();
         for v in [2.0, 3.0, 4.0] {
             history.apply(&mut state, Action::Exaggeration(Some(v)));
@@ -118,7 +119,7 @@ mod tests {
     #[test]
     fn a_selection_outlives_undo() {
         let (mut history, mut state) = (History::default(), State::default());
-        history.apply(&mut state, Action::Strategy("srg".into()));
+        history.apply(&mut state, Action::Strategy(StrategyKind::Srg));
         let cell = [3, 4, 5];
         history.apply(&mut state, Action::Select(cell, Beside::Nothing));
         history.undo(&mut state);

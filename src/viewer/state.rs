@@ -81,7 +81,7 @@ impl Setup {
         let comparison = self.comparison.as_ref()?;
         let mut other = scene.clone();
         if let Some(strategy) = &comparison.strategy {
-            other.strategy.clone_from(strategy);
+            other.strategy = *strategy;
         }
         if let Some(step) = &comparison.step {
             other.step = step.clone();
@@ -133,7 +133,7 @@ pub struct Comparison {
     /// How both are shown.
     pub layout: CompareLayout,
     /// Another strategy.
-    pub strategy: Option<String>,
+    pub strategy: Option<StrategyKind>,
     /// Another property, over its own range.
     pub property: Option<String>,
     /// Another step.
@@ -143,9 +143,9 @@ pub struct Comparison {
 }
 
 /// The strategy that comes after another in the list.
-pub fn next_strategy(name: &str) -> StrategyKind {
+pub fn next_strategy(strategy: StrategyKind) -> StrategyKind {
     let all = StrategyKind::ALL;
-    let at = all.iter().position(|k| k.name() == name);
+    let at = all.iter().position(|k| *k == strategy);
     all[at.map_or(0, |n| (n + 1) % all.len())]
 }
 
@@ -185,7 +185,7 @@ impl Comparison {
     /// With the strategy that comes after the scene's.
     pub fn of_strategies(scene: &Scene) -> Self {
         Self {
-            strategy: Some(next_strategy(&scene.strategy).name().into()),
+            strategy: Some(next_strategy(scene.strategy)),
             ..Self::default()
         }
     }

@@ -4,7 +4,7 @@ use crate::common;
 use crate::common::shape::Shape;
 use strataray::case::{Case, Weighting, load};
 use strataray::picture::{Annotations, Shot};
-use strataray::scene::{self, ClipSpec, CutFace, Filter, PropertyFilter, Scene};
+use strataray::scene::{self, ClipSpec, CutFace, Filter, PropertyFilter, Scene, StrategyKind};
 use strataray::view::{self, Facts};
 use strataray_parsers::records::RecordFile;
 
@@ -249,11 +249,9 @@ fn the_line_can_be_hidden_and_its_room_is_the_models() {
 #[test]
 fn the_strategy_is_named_where_it_is_approximate() {
     let case = load::open(&common::sample()).unwrap();
-    for (strategy, is_said) in [("plts", false), ("libc", false), ("srg", true)] {
-        let scene = Scene {
-            strategy: strategy.into(),
-            ..oil()
-        };
+    for strategy in StrategyKind::ALL {
+        let is_said = strategy == StrategyKind::Srg;
+        let scene = Scene { strategy, ..oil() };
         let text = line(&scene, &case);
         assert_eq!(text.contains("SRG: resampled"), is_said, "{text}");
         assert!(text.contains("Z x 3"), "{text}");

@@ -17,7 +17,7 @@ use strataray::view::{self, View};
 fn scene(azimuth: f64, elevation: f64) -> Scene {
     Scene {
         size: [120, 90],
-        strategy: StrategyKind::Libc.name().into(),
+        strategy: StrategyKind::Libc,
         camera: CameraSpec::Framing(FramingCamera {
             azimuth_degrees: azimuth,
             elevation_degrees: elevation,

@@ -17,7 +17,7 @@ use strataray::render::Renderer;
 use strataray::render::gpu::GpuRenderer;
 use strataray::scene::{
     CameraSpec, ClipSpec, ColorSpec, CutFace, ExplicitCamera, Filter, Hull, Inactive,
-    Interpolation, LightingSpec, OpacitySpec, Projection, RangeSpec, Scene,
+    Interpolation, LightingSpec, OpacitySpec, Projection, RangeSpec, Scene, StrategyKind,
 };
 use strataray::view::{self, View, look};
 
@@ -32,7 +32,7 @@ fn opening(case: &Case) -> Scene {
         size: [480, 360],
         lighting: LightingSpec::default(),
         // Samples, as a pick takes them, instead of whole segments.
-        strategy: "plts".into(),
+        strategy: StrategyKind::Plts,
         ..look::opening(case, &without_hull).unwrap()
     }
 }

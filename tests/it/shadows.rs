@@ -53,7 +53,7 @@ fn picture(
     );
     scene.size = [100, 80];
     scene.transfer.color = ColorSpec::Points(vec![(0.0, "#ffffff".into())]);
-    scene.strategy = strategy.name().into();
+    scene.strategy = strategy;
     scene.sampling_step = Some(1.0);
     scene.camera = CameraSpec::Framing(FramingCamera {
         azimuth_degrees: 205.0,

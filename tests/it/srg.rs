@@ -61,7 +61,7 @@ fn scene(size: [u32; 2], srg: SrgSettings) -> Scene {
             zoom: 1.2,
             projection: Projection::Perspective,
         }),
-        strategy: StrategyKind::Srg.name().into(),
+        strategy: StrategyKind::Srg,
         srg,
         ..Scene::default()
     }

@@ -1,7 +1,7 @@
 //! Comparing: two pictures from one camera.
 
 use eframe::egui::{Key, Modifiers, vec2};
-use strataray::scene::{RangeSpec, StepSpec};
+use strataray::scene::{RangeSpec, StepSpec, StrategyKind};
 use strataray::view::View;
 use strataray::viewer::{Action, CompareLayout, Comparison, Picture};
 
@@ -63,7 +63,7 @@ fn colors_are_compared_of_strategies_and_a_wipe_is_dragged() {
     let mut driven = Driven::showing(sample());
     let comparison = Comparison {
         layout: CompareLayout::ColorDifference,
-        strategy: Some("srg".into()),
+        strategy: Some(StrategyKind::Srg),
         ..Comparison::default()
     };
     let mean = |d: &Driven| {

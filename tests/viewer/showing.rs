@@ -17,7 +17,7 @@ fn each_strategy_shows_the_same_in_its_own_way() {
     let mut pictures = Vec::new();
     for (label, name) in [("LIBC", "libc"), ("PLTS", "plts"), ("SRG", "srg")] {
         driven.click(label);
-        assert_eq!(driven.scene().strategy, name);
+        assert_eq!(driven.scene().strategy.name(), name);
         driven.wait_final();
         pictures.push(driven.picture(0));
     }

@@ -122,7 +122,7 @@ fn scenes(scene: &Scene, as_named: bool) -> Vec<Scene> {
         return vec![scene.clone()];
     }
     let with = |strategy: StrategyKind| Scene {
-        strategy: strategy.name().into(),
+        strategy,
         ..scene.clone()
     };
     StrategyKind::ALL.into_iter().map(with).collect()

@@ -13,7 +13,7 @@ use strataray::compare::markdown::{Row, row};
 pub struct Turning {
     pub case: String,
     pub light: &'static str,
-    pub strategy: String,
+    pub strategy: &'static str,
     pub moves: usize,
     /// From a move of the pointer to the picture from there.
     pub median_ms: f64,

@@ -302,7 +302,7 @@ mod tests {
         // Parallel and along x: all rays come in where nothing will be found, and leave where all is.
         let scene = Scene {
             size: [60, 60],
-            strategy: StrategyKind::Plts.name().into(),
+            strategy: StrategyKind::Plts,
             camera: CameraSpec::Explicit(ExplicitCamera {
                 eye: [-300.0, 50.0, -1050.0],
                 target: [50.0, 50.0, -1050.0],

@@ -92,7 +92,7 @@ fn other(ui: &mut Ui, about: &PanelContext<'_>, comparison: &mut Comparison) {
         values(ui, about, comparison);
     }
     if comparison.layout != CompareLayout::Difference {
-        let strategies = StrategyKind::ALL.map(|k| (k.name().to_owned(), k.name().to_uppercase()));
+        let strategies = StrategyKind::ALL.map(|k| (k, k.name().to_uppercase()));
         let value = &mut comparison.strategy;
         choice(
             ui,

@@ -10,23 +10,21 @@ use crate::viewer::action::Action;
 pub fn show(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action>) {
     ui.horizontal(|ui| {
         for kind in StrategyKind::ALL {
-            let is_on = about.scene.strategy == kind.name();
+            let is_on = about.scene.strategy == kind;
             let label = ui.selectable_label(is_on, kind.name().to_uppercase());
             if label.on_hover_text(kind.describe()).clicked() {
-                actions.push(Action::Strategy(kind.name().into()));
+                actions.push(Action::Strategy(kind));
             }
         }
     });
-    let kind = StrategyKind::from_name(&about.scene.strategy);
-    if let Some(kind) = kind {
-        ui.weak(kind.describe());
-    }
+    let kind = about.scene.strategy;
+    ui.weak(kind.describe());
     egui::CollapsingHeader::new("Sampling settings")
         .show(ui, |ui| {
             match kind {
-                Some(StrategyKind::Libc) => libc(ui, about, actions),
-                Some(StrategyKind::Srg) => srg(ui, about, actions),
-                _ => {}
+                StrategyKind::Libc => libc(ui, about, actions),
+                StrategyKind::Srg => srg(ui, about, actions),
+                StrategyKind::Plts => {}
             }
             sampling_step(ui, about, actions);
         })

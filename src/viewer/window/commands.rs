@@ -217,8 +217,8 @@ fn change(document: &mut Document, command: Command) -> Option<String> {
             document.apply(Action::Mode(mode.other()));
         }
         Command::NextStrategy => {
-            let next = next_strategy(&document.state.setup.scene.strategy);
-            document.apply(Action::Strategy(next.name().into()));
+            let next = next_strategy(document.state.setup.scene.strategy);
+            document.apply(Action::Strategy(next));
             return Some(next.describe().to_owned());
         }
         Command::Light => {

@@ -51,7 +51,7 @@ fn summary(case: &str, light: &'static str, scene: &Scene, turned: &[Turned]) ->
     Turning {
         case: case.to_owned(),
         light,
-        strategy: scene.strategy.clone(),
+        strategy: scene.strategy.name(),
         moves: turned.len(),
         median_ms: ms(median, |t| t.took),
         longest_ms: ms(sorted.last(), |t| t.took),
