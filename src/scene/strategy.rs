@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 /// Every strategy; the one list that command line, viewer and tests read.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
+#[serde(rename_all = "lowercase", try_from = "String")]
 pub enum StrategyKind {
     /// Linear interpolation with barycentric coordinates.
     Libc,
@@ -40,5 +40,38 @@ impl StrategyKind {
             Self::Plts => "Locates every sample in its cell: exact, slow",
             Self::Srg => "Samples a resampled volume: fastest, blurs faults and thin layers",
         }
+    }
+}
+
+impl TryFrom<String> for StrategyKind {
+    type Error = String;
+
+    /// The strategy called so, or a sentence that says which ones there are.
+    fn try_from(name: String) -> Result<Self, String> {
+        let known = Self::ALL.into_iter().find(|s| s.name() == name);
+        known.ok_or_else(|| {
+            let names: Vec<_> = Self::ALL.iter().map(|s| s.name()).collect();
+            format!("strategy: {name} is not known; use {}", names.join(", "))
+        })
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "tests")]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn strategies_go_by_their_names() {
+        for kind in StrategyKind::ALL {
+            let text = serde_json::to_string(&kind).unwrap();
+            assert_eq!(text, format!("\"{}\"", kind.name()));
+            assert_eq!(serde_json::from_str::<StrategyKind>(&text).unwrap(), kind);
+        }
+        let said = serde_json::from_str::<StrategyKind>("\"fast\"").unwrap_err();
+        assert!(
+            said.to_string()
+                .contains("fast is not known; use libc, plts")
+        );
     }
 }
