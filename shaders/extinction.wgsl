@@ -10,9 +10,6 @@
 
 // What is done.
 override WORK: u32 = 1u;
-const WORK_VALUES: u32 = 0u;
-const WORK_GAUSSIAN: u32 = 1u;
-const WORK_MEAN: u32 = 2u;
 // Depths are written.
 override WRITES_DEPTHS: bool = false;
 // Clip planes cut values away.

@@ -28,7 +28,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     }
     let pixel = tile.origin + id.xy;
     let whole = ray_of(pixel);
-    let state = 2u * (id.y * tile.size.x + id.x);
+    let state = RAY_STATE * (id.y * tile.size.x + id.x);
     var sum = Accumulated(vec3f(0.0), 1.0);
     var n = 0.0;
     var passed = 0u;

@@ -39,8 +39,6 @@ struct Stretch {
     level: f32,
 }
 
-// A ray's state: its sums; then next sample or DONE, end, and layers of surfaces that are blended.
-const SRG_STATE: u32 = 2u;
 
 @compute @workgroup_size(8, 8)
 fn begin(@builtin(global_invocation_id) id: vec3u) {
@@ -60,7 +58,7 @@ fn begin(@builtin(global_invocation_id) id: vec3u) {
     if SECTIONS {
         color = section_color(whole);
     }
-    let state = SRG_STATE * (id.y * tile.size.x + id.x);
+    let state = RAY_STATE * (id.y * tile.size.x + id.x);
     ray_states[state] = bitcast<vec4u>(vec4f(color.rgb, 1.0 - color.a));
     ray_states[state + 1u] = vec4u(bitcast<vec2u>(vec2f(first, select(0.0, last + 1.0, is_met))), 0u, 0u);
     count(COUNT_ENTRIES, select(0u, 1u, is_met));
@@ -72,7 +70,7 @@ fn march(@builtin(global_invocation_id) id: vec3u) {
         return;
     }
     let pixel = tile.origin + id.xy;
-    let state = SRG_STATE * (id.y * tile.size.x + id.x);
+    let state = RAY_STATE * (id.y * tile.size.x + id.x);
     let span = bitcast<vec2f>(ray_states[state + 1u].xy);
     var n = span.x;
     if n == DONE {

@@ -2,9 +2,6 @@
 // index along axis a (i, j, k).
 #import grid
 
-// Vectors of a ray's state in LIBC, which peeling reads too.
-const LIBC_STATE: u32 = 4u;
-
 // Corner (di + 2 dj + 4 dk) of a face: bit 0 of `number` counts along the first other axis, bit 1 along
 // the second. Two triangles, 0 1 3 and 0 3 2: both cells of a face cut it along the same diagonal.
 fn face_corner(face: u32, number: u32) -> u32 {

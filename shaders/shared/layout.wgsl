@@ -299,6 +299,13 @@ const EDGE_WIDTH: f32 = 1.0;
 const EDGE_DARKNESS: f32 = 0.4;
 const EDGE_FADE_LOW: f32 = 3.0;
 const EDGE_FADE_HIGH: f32 = 12.0;
+// Vectors of a ray's state between rounds: in PLTS and SRG, and in LIBC, whose state peeling reads too.
+const RAY_STATE: u32 = 2u;
+const LIBC_STATE: u32 = 4u;
+// What a pass of the blur does.
+const WORK_VALUES: u32 = 0u;
+const WORK_GAUSSIAN: u32 = 1u;
+const WORK_MEAN: u32 = 2u;
 // Counters, each of a low and a high word.
 const COUNTERS: u32 = 14u;
 const COUNT_SAMPLES: u32 = 0u;

@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::mem::{offset_of, size_of};
 
 use strataray::model::topology;
+use strataray::render::gpu::columns::COLUMN_MARGINS;
 use strataray::render::gpu::layout::{
     self, BlurInfo, BricksInfo, Emitter, Found, Frame, GridInfo, LightingInfo, PaintInfo, Slab,
     Tile, VolumeInfo,
@@ -255,6 +256,11 @@ fn twins() -> BTreeMap<String, Number> {
         ("SHEET_LAYERS", layout::SHEET_LAYERS),
         ("PAINT_WORK", layout::PAINT_WORK),
         ("FAULT_COLORS", layout::FAULT_COLORS as u32),
+        ("RAY_STATE", layout::RAY_STATE),
+        ("LIBC_STATE", layout::LIBC_STATE),
+        ("WORK_VALUES", layout::WORK_VALUES),
+        ("WORK_GAUSSIAN", layout::WORK_GAUSSIAN),
+        ("WORK_MEAN", layout::WORK_MEAN),
         ("COUNTERS", layout::COUNTERS),
         ("COUNT_SAMPLES", layout::COUNT_SAMPLES),
         ("COUNT_ITERATIONS", layout::COUNT_ITERATIONS),
@@ -351,6 +357,21 @@ fn constants_agree_and_none_is_missing() {
     }
     host.insert("GONE".into(), Number::U32(1));
     assert!(apart(&shaders, &host).contains("GONE"));
+}
+
+#[test]
+fn margins_of_columns_agree() {
+    let text = shader::compose("grid").unwrap();
+    let has = |margins: &[f64]| {
+        let list: Vec<String> = margins.iter().map(|m| format!("{m:?}")).collect();
+        let count = margins.len();
+        text.contains(&format!(
+            "const COLUMN_MARGINS = array<f32, {count}>({});",
+            list.join(", ")
+        ))
+    };
+    assert!(has(&COLUMN_MARGINS));
+    assert!(!has(&COLUMN_MARGINS[1..]));
 }
 
 #[test]

@@ -44,7 +44,7 @@ fn layers_cross(grid: &Grid, column: usize) -> bool {
 }
 
 /// Margins that a column can have; the shader has the same list.
-const COLUMN_MARGINS: [f64; 8] = [0.002, 0.01, 0.03, 0.08, 0.2, 0.5, 1.0, 2.0];
+pub const COLUMN_MARGINS: [f64; 8] = [0.002, 0.01, 0.03, 0.08, 0.2, 0.5, 1.0, 2.0];
 
 /// The smallest level that covers a margin with half as much again to spare, if there is one.
 fn margin_level(margin: f64) -> Option<usize> {

@@ -7,7 +7,7 @@
 use glam::DVec3;
 
 use super::device::Gpu;
-use super::layout::{BlurInfo, MAX_CLIP_PLANES};
+use super::layout::{BlurInfo, MAX_CLIP_PLANES, WORK_GAUSSIAN, WORK_MEAN, WORK_VALUES};
 use super::pipeline::{Pipeline, flag};
 use super::slabs::Slabs;
 use super::volume::Volume;
@@ -119,6 +119,17 @@ enum PassWork {
     Gaussian,
     /// Means of opacities.
     Mean,
+}
+
+impl PassWork {
+    /// Its number in the shader.
+    fn number(self) -> u32 {
+        match self {
+            Self::Values => WORK_VALUES,
+            Self::Gaussian => WORK_GAUSSIAN,
+            Self::Mean => WORK_MEAN,
+        }
+    }
 }
 
 /// How opacities are filtered along all axes.
@@ -308,7 +319,7 @@ impl Blurs {
             Some(at) => at,
             None => {
                 let constants = [
-                    ("WORK", f64::from(pass.work as u32)),
+                    ("WORK", f64::from(pass.work.number())),
                     ("WRITES_DEPTHS", flag(pass.writes_depths)),
                     ("CLIPS", flag(pass.clips)),
                 ];

@@ -281,6 +281,16 @@ pub const LOOK_FAINT: u32 = 1;
 pub use crate::view::surfaces::SHEET_LAYERS;
 /// Loop iterations that a point of a surface costs beside its light, about.
 pub const PAINT_WORK: u32 = 2;
+/// Vectors of 16 bytes of a ray's state in PLTS and SRG.
+pub const RAY_STATE: u32 = 2;
+/// Vectors of 16 bytes of a ray's state in LIBC.
+pub const LIBC_STATE: u32 = 4;
+/// A pass that makes opacities of values.
+pub const WORK_VALUES: u32 = 0;
+/// A pass of the Gaussian.
+pub const WORK_GAUSSIAN: u32 = 1;
+/// A pass of means.
+pub const WORK_MEAN: u32 = 2;
 /// Counters, each of a low and a high word.
 pub const COUNTERS: u32 = 14;
 /// Counter of the samples inside drawn cells.

@@ -7,6 +7,7 @@
 
 use crate::render::RenderError;
 use crate::render::gpu::faces::{FaceMode, FaceRaster, FaceTarget};
+use crate::render::gpu::layout::LIBC_STATE;
 use crate::render::gpu::strategy::{Common, Preparation, RenderStrategy};
 use crate::render::gpu::{Gpu, Pipeline, Place, Round, flag, tiles};
 use crate::render::job::Work;
@@ -86,7 +87,7 @@ enum Stage {
 
 impl RenderStrategy for Libc {
     fn ray_state_bytes(&self) -> u64 {
-        64
+        16 * u64::from(LIBC_STATE)
     }
 
     /// Drawing the faces costs the same for small tiles and large ones.

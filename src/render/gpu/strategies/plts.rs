@@ -6,6 +6,7 @@
 //! a sample inside a cell, a point location at each entry into the model.
 
 use crate::render::RenderError;
+use crate::render::gpu::layout::RAY_STATE;
 use crate::render::gpu::strategy::{Common, Preparation, RenderStrategy};
 use crate::render::gpu::{Gpu, Pipeline, Place, Round};
 use crate::render::job::Work;
@@ -32,7 +33,7 @@ impl Plts {
 
 impl RenderStrategy for Plts {
     fn ray_state_bytes(&self) -> u64 {
-        32
+        16 * u64::from(RAY_STATE)
     }
 
     fn prepare<'a>(&'a mut self, what: &'a Preparation<'a>) -> Work<'a, ()> {

@@ -8,6 +8,7 @@
 
 use crate::model::Dims;
 use crate::render::gpu::faces::{FaceMode, FaceRaster, FaceTarget};
+use crate::render::gpu::layout::RAY_STATE;
 use crate::render::gpu::pyramids::{Bricks, Classifier, Limits, PyramidMaker};
 use crate::render::gpu::resample::Resampler;
 use crate::render::gpu::slabs::Slabs;
@@ -244,7 +245,7 @@ fn slabs<'a>(what: &Preparation<'a>, pace: &'a mut Pace) -> Slabs<'a> {
 
 impl RenderStrategy for Srg {
     fn ray_state_bytes(&self) -> u64 {
-        32
+        16 * u64::from(RAY_STATE)
     }
 
     /// Samples are cheap beside the drawing of the faces.
