@@ -81,7 +81,7 @@ pub struct FramingCamera {
     pub projection: Projection,
 }
 
-/// A camera that frames what is drawn from the direction that suits its shape; see [`Extents::direction`].
+/// A camera that frames what is drawn from the direction that suits its shape.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct AutomaticCamera {
