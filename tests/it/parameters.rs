@@ -71,8 +71,8 @@ fn both_ways_make_the_same_pictures() {
         let unlit = renderer.render(&view, &|_| true).unwrap().image;
         let found = [storage, &unlit].map(|other| apart(uniform, other));
         println!("{}: {found:?}", strategy.name());
-        // 1e-5 of 1 is 100 dB in the worst pixel. The twin: no light.
-        assert!(found[0] <= 1e-5 && found[1] > 0.02, "{found:?}");
+        // 1e-5 of 1 is 100 dB in the worst pixel. The twin, no light, is a hundred times farther.
+        assert!(found[0] <= 1e-5 && found[1] > 1e-3, "{found:?}");
     }
 }
 
