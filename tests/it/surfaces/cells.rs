@@ -123,7 +123,7 @@ fn cells_agree_with_the_reference() {
             (Inactive::Ghost, true, false),
         ] {
             let mut scene = Scene {
-                size: [80, 60],
+                size: [100, 75],
                 camera: camera(150.0, 30.0, 1.5),
                 mode: Mode::Cells,
                 ..Scene::default()
