@@ -16,7 +16,9 @@ use strataray::scene::lighting::OcclusionSpec;
 use strataray::scene::{CameraSpec, ColorSpec, ExplicitCamera, Projection, Scene};
 use strataray::{reference, view};
 
+/// Of the tables in the documents, and of the test, which needs no more.
 const SIZE: [u32; 2] = [48, 36];
+const SMALL: [u32; 2] = [32, 24];
 /// Factors on the extinction, one for all models and transfer functions.
 const ATTENUATIONS: [f64; 4] = [0.4, 0.7, 1.0, 1.3];
 /// Where the rays of the truth start, in voxels: as in the paper, and where cones do.
@@ -64,23 +66,25 @@ struct Subject {
     case: Case,
     renderer: GpuRenderer,
     camera: [f64; 4],
+    size: [u32; 2],
 }
 
 impl Subject {
-    fn new(gpu: &Arc<Gpu>, path: &Path, camera: [f64; 4]) -> Self {
+    fn new(gpu: &Arc<Gpu>, path: &Path, camera: [f64; 4], size: [u32; 2]) -> Self {
         let case = load::open(path).unwrap();
         Self {
             name: case.about.name.clone(),
             renderer: GpuRenderer::new(gpu.clone(), &case.grid).unwrap(),
             case,
             camera,
+            size,
         }
     }
 
     fn picture(&mut self, opacity: &Value, occlusion: &Value, rays_gap: f64) -> Image {
         let [azimuth, elevation, zoom, exaggeration] = self.camera;
         let scene: Scene = serde_json::from_value(json!({
-            "size": SIZE, "property": "PORO", "strategy": "libc",
+            "size": self.size, "property": "PORO", "strategy": "libc",
             "vertical_exaggeration": exaggeration, "transfer": {"opacity": opacity},
             "camera": {"azimuth_degrees": azimuth, "elevation_degrees": elevation, "zoom": zoom},
             "lighting": {
@@ -166,9 +170,9 @@ fn measured(subject: &mut Subject, opacity: &Value, angle: f64) -> (Row, f64) {
 }
 
 /// Measures all models and opacities at an angle, and prints all and gives means over the models by opacity.
-fn table(gpu: &Arc<Gpu>, angle: f64) -> Vec<Row> {
+fn table(gpu: &Arc<Gpu>, angle: f64, size: [u32; 2]) -> Vec<Row> {
     let models = models();
-    let subject = |(path, camera): &(PathBuf, _)| Subject::new(gpu, path, *camera);
+    let subject = |(path, camera): &(PathBuf, _)| Subject::new(gpu, path, *camera, size);
     let mut subjects: Vec<_> = models.iter().map(subject).collect();
     let mut means = Vec::new();
     for (name, opacity, most) in opacities() {
@@ -219,7 +223,7 @@ const HEAD: &str =
 fn cones_are_close_to_many_rays() {
     let Some(gpu) = common::gpu() else { return };
     println!("{HEAD}");
-    let by_opacity = table(&gpu, 20.0);
+    let by_opacity = table(&gpu, 20.0, SMALL);
     let mean = mean_of(&by_opacity);
     let near = |what: usize| mean[what][0].color;
     // The default attenuation is the one of those tried whose worst opacity is best.
@@ -240,12 +244,12 @@ fn cones_are_close_to_many_rays() {
 }
 
 #[test]
-#[ignore = "minutes; prints more tables"]
+#[ignore = "minutes; prints the tables of docs/occlusion.md"]
 fn table_of_angles() {
     let Some(gpu) = common::gpu() else { return };
     println!("{HEAD}");
-    for angle in [10.0, 30.0] {
-        table(&gpu, angle);
+    for angle in [10.0, 20.0, 30.0] {
+        table(&gpu, angle, SIZE);
     }
 }
 

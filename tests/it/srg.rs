@@ -9,12 +9,12 @@ use std::time::Duration;
 
 use crate::common;
 use crate::common::light::Block;
-use crate::common::shape::{Shape, parallelepipeds};
+use crate::common::shape::{Shape, boxes, parallelepipeds};
 use glam::DVec3;
 use half::f16;
 use rayon::prelude::*;
 use strataray::case::{Case, load};
-use strataray::image::metrics::{Comparison, psnr_8bit};
+use strataray::image::metrics::{Comparison, fraction_within, psnr_8bit};
 use strataray::image::{Image, Rgb8};
 use strataray::model::{CellField, Grid, VertexField};
 use strataray::reference::{self, Locator};
@@ -608,6 +608,84 @@ fn quality_grows_with_the_factor() {
         before = found.psnr_db;
     }
     assert!(before > 45.0);
+}
+
+/// Boxes whose inner part a plane of clipping on each side leaves, two cells from the model's sides.
+fn inner_boxes(value: &dyn Fn([usize; 3]) -> f64) -> (Case, Vec<ClipSpec>) {
+    const COUNTS: [u32; 3] = [9, 8, 7];
+    const EDGES: [f64; 3] = [100.0, 90.0, 40.0];
+    let planes: [Vec<f64>; 3] = std::array::from_fn(|a| {
+        let planes = 0..=COUNTS[a];
+        planes.map(|n| EDGES[a] * f64::from(n)).collect()
+    });
+    let [x, y, depth] = &planes;
+    let sides = (0..6).map(|side| {
+        let (axis, is_high) = (side / 2, side % 2 == 1);
+        let from_side = 2.0 * EDGES[axis];
+        let whole = EDGES[axis] * f64::from(COUNTS[axis]);
+        let at = if is_high {
+            whole - from_side
+        } else {
+            from_side
+        };
+        // Depth is down.
+        let up = if axis == 2 { -1.0 } else { 1.0 };
+        let inward = if is_high { -up } else { up };
+        let on = |v: f64| std::array::from_fn(|a| if a == axis { v } else { 0.0 });
+        ClipSpec {
+            point: on(up * at),
+            normal: on(inward),
+            face: CutFace::Open,
+        }
+    });
+    (boxes(x, y, depth, value), sides.collect())
+}
+
+#[test]
+fn a_field_that_resampling_keeps_is_seen_as_the_reference_sees_it() {
+    let Some(gpu) = common::gpu() else { return };
+    // A linear field is the same between vertices and between the middles of voxels, but beside the model's sides.
+    // The twin is a field of zeros and ones.
+    let linear = |[i, j, k]: [usize; 3]| (i + 2 * j + 3 * k) as f64 / 40.0;
+    let uneven = |[i, j, k]: [usize; 3]| {
+        f64::from(u8::from(
+            fastrand::Rng::with_seed((i + 101 * j + 10_007 * k) as u64).bool(),
+        ))
+    };
+    for factor in [1.0, 2.0] {
+        for projection in [Projection::Perspective, Projection::Parallel] {
+            let found = [&linear as &dyn Fn([usize; 3]) -> f64, &uneven].map(|value| {
+                let (case, clip) = inner_boxes(value);
+                let settings = SrgSettings {
+                    factor: Some(factor),
+                    ..SrgSettings::default()
+                };
+                let mut scene = scene([80, 60], settings);
+                scene.property = Some("VALUE".into());
+                scene.range = RangeSpec::Fixed([0.0, 1.0]);
+                scene.vertical_exaggeration = Some(1.0);
+                scene.transfer.opacity = Some(OpacitySpec::Points(vec![[0.0, 0.05], [1.0, 0.6]]));
+                scene.transfer.reference_length = Some(100.0);
+                scene.clip = clip;
+                if let CameraSpec::Framing(camera) = &mut scene.camera {
+                    camera.projection = projection;
+                }
+                let view = view::resolve(&scene, &case).unwrap();
+                assert_eq!(view.shown.interpolation, Interpolation::Vertex);
+                let truth = reference::render(&case.grid, &view, &|_| true).unwrap();
+                assert!(truth.pixels.iter().filter(|p| p[3] > 0.3).count() > 300);
+                let mut renderer = GpuRenderer::new(gpu.clone(), &case.grid).unwrap();
+                let image = render(&mut renderer, &view).image;
+                let within = fraction_within(&image.pixels, &truth.pixels, 2e-3);
+                (psnr(&image, &truth, &view), within)
+            });
+            println!("{factor} {projection:?}: {found:?}");
+            let [kept, twin] = found;
+            // Nearer than PLTS must be, for one model alone.
+            assert!(kept.0 >= 65.0 && kept.1 >= 0.999, "{kept:?}");
+            assert!(twin.0 < 55.0 && twin.1 < 0.95, "{twin:?}");
+        }
+    }
 }
 
 /// Both numbers of each voxel of a level.
