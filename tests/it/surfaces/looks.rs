@@ -133,7 +133,7 @@ impl Look {
     fn view(&self, case: &Case) -> View {
         let [azimuth, elevation, zoom] = self.camera;
         let mut scene = Scene {
-            size: [80, 60],
+            size: [100, 75],
             camera: camera(azimuth, elevation, zoom),
             interpolation: self.interpolation,
             ..Scene::default()
