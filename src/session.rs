@@ -6,15 +6,14 @@ use std::path::Path;
 use std::sync::Arc;
 
 use glam::DVec3;
-use rayon::prelude::*;
 
 use crate::case::{Case, CaseError, load};
 #[cfg(feature = "gpu")]
 use crate::image::{Image, Rgb8};
-use crate::model::{CellField, Spaces, VertexField};
+use crate::model::{CellField, Spaces};
 #[cfg(feature = "gpu")]
 use crate::picture::Shot;
-use crate::reference::{self, Locator};
+use crate::reference::{self, Located};
 #[cfg(feature = "gpu")]
 use crate::render::{self, RenderError, Renderer};
 use crate::scene::{Interpolation, Scene};
@@ -173,20 +172,18 @@ impl Session {
         let field = self.field(property, step)?;
         let grid = &*self.case.grid;
         let spaces = Spaces::new(grid.map_axes(), 1.0);
-        let locator = Locator::new(grid);
-        let vertices =
-            (interpolation == Interpolation::Vertex).then(|| VertexField::new(grid, &field));
-        let locate = |point: &[f64; 3]| {
+        let in_grid = |point: &[f64; 3]| {
             let world = spaces.world_from_map(DVec3::from_array(*point));
-            let located = locator.locate(spaces.grid_from_world.transform_point3(world))?;
-            let value = reference::value_at(grid, &located, &field, vertices.as_ref())?;
-            Some(Location {
-                cell: located.ijk.one_based(),
-                parameters: located.str.to_array(),
-                value,
-            })
+            spaces.grid_from_world.transform_point3(world)
         };
-        Ok(points.par_iter().map(locate).collect())
+        let points: Vec<DVec3> = points.iter().map(in_grid).collect();
+        let found = reference::values_at(grid, &field, interpolation, &points);
+        let location = |(located, value): (Located, f64)| Location {
+            cell: located.ijk.one_based(),
+            parameters: located.str.to_array(),
+            value,
+        };
+        Ok(found.into_iter().map(|f| f.map(location)).collect())
     }
 
     /// The scene in which the case opens, with the keys of a scene file in JSON over it; `{}` changes nothing.

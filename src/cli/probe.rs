@@ -6,8 +6,8 @@ use std::path::PathBuf;
 use anyhow::Context;
 use glam::DVec3;
 use strataray::case::Case;
-use strataray::model::{CellField, Ijk, Spaces, VertexField};
-use strataray::reference::{self, Locator};
+use strataray::model::{Ijk, Spaces};
+use strataray::reference::{self, Located};
 use strataray::scene::{Interpolation, Scene, StepSpec};
 use strataray::{render, view};
 
@@ -81,7 +81,11 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
         })
         .collect();
     let answers = match arguments.on {
-        On::Cpu => on_cpu(&case, &field, &in_grid, arguments.interpolation),
+        On::Cpu => {
+            let found = reference::values_at(&case.grid, &field, arguments.interpolation, &in_grid);
+            let answer = |(located, value): (Located, f64)| (located.ijk, located.str, value);
+            found.into_iter().map(|f| f.map(answer)).collect()
+        }
         On::Gpu => on_gpu(arguments, &case, step, &in_grid)?,
     };
     match &arguments.output {
@@ -92,24 +96,6 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
         }
         None => write_answers(std::io::stdout().lock(), &given, &answers),
     }
-}
-
-fn on_cpu(
-    case: &Case,
-    field: &CellField,
-    points: &[DVec3],
-    interpolation: Interpolation,
-) -> Vec<Probed> {
-    use rayon::prelude::*;
-    let locator = Locator::new(&case.grid);
-    let vertices =
-        (interpolation == Interpolation::Vertex).then(|| VertexField::new(&case.grid, field));
-    let answer = |&point: &DVec3| {
-        let located = locator.locate(point)?;
-        let value = reference::value_at(&case.grid, &located, field, vertices.as_ref())?;
-        Some((located.ijk, located.str, value))
-    };
-    points.par_iter().map(answer).collect()
 }
 
 fn on_gpu(

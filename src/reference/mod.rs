@@ -13,6 +13,6 @@ mod render;
 mod tests;
 mod tree;
 
-pub use integrate::{Integrator, Ray, value_at};
+pub use integrate::{Integrator, Ray, value_at, values_at};
 pub use locate::{Located, Locator};
 pub use render::render;

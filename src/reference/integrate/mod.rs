@@ -5,6 +5,7 @@ mod lighting;
 mod surfaces;
 
 use glam::DVec3;
+use rayon::prelude::*;
 
 use super::integrate::surfaces::SurfaceFaces;
 use super::locate::{Located, Locator};
@@ -248,4 +249,22 @@ pub fn value_at(
         corners.iter().zip(weights).map(|(v, w)| v * w).sum()
     });
     value.is_finite().then_some(value)
+}
+
+/// Locates points of grid space, and gives the value of a field there; `None` where a point lies in no active cell,
+/// or where there is no value.
+pub fn values_at(
+    grid: &Grid,
+    field: &CellField,
+    interpolation: Interpolation,
+    points: &[DVec3],
+) -> Vec<Option<(Located, f64)>> {
+    let locator = Locator::new(grid);
+    let vertices = (interpolation == Interpolation::Vertex).then(|| VertexField::new(grid, field));
+    let answer = |&point: &DVec3| {
+        let located = locator.locate(point)?;
+        let value = value_at(grid, &located, field, vertices.as_ref())?;
+        Some((located, value))
+    };
+    points.par_iter().map(answer).collect()
 }
