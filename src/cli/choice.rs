@@ -52,23 +52,14 @@ pub const LIGHT_MODES: [NamedChoice<LightMode>; 4] = [
     ),
 ];
 
-pub const STRATEGIES: [NamedChoice<StrategyKind>; 3] = [
-    (
-        "libc",
-        StrategyKind::Libc,
-        "Walks from cell to cell: close to exact, fast",
-    ),
-    (
-        "plts",
-        StrategyKind::Plts,
-        "Locates every sample in its cell: exact, slow",
-    ),
-    (
-        "srg",
-        StrategyKind::Srg,
-        "Samples a resampled volume: fastest, blurs faults and thin layers",
-    ),
-];
+pub const STRATEGIES: [NamedChoice<StrategyKind>; 3] = {
+    let [a, b, c] = StrategyKind::ALL;
+    [strategy(a), strategy(b), strategy(c)]
+};
+
+const fn strategy(kind: StrategyKind) -> NamedChoice<StrategyKind> {
+    (kind.name(), kind, kind.describe())
+}
 
 pub const TURN_AXES: [NamedChoice<TurnAxis>; 4] = [
     ("x", TurnAxis::X, "The axis to the east"),

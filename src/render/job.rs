@@ -25,7 +25,6 @@ impl<'a, T> Job<'a, T> {
         let done = Rc::default();
         let progress = Progress {
             done: Rc::clone(&done),
-            part: [0.0, 1.0],
         };
         Self {
             work: Some(begin(progress)),
@@ -87,31 +86,18 @@ impl<'a, T> Job<'a, T> {
 #[derive(Debug, Clone)]
 pub struct Progress {
     done: Rc<Cell<f64>>,
-    part: [f64; 2],
 }
 
 impl Progress {
     /// So much of it is done, 0 to 1.
     pub async fn reached(&self, fraction: f64) {
-        let [from, to] = self.part;
-        self.done.set(from + (to - from) * fraction);
+        self.done.set(fraction);
         Rest(false).await;
     }
 
     /// Rests without a word.
     pub async fn rest(&self) {
         Rest(false).await;
-    }
-
-    /// Of work that takes this one from a fraction to another.
-    #[must_use]
-    pub fn part(&self, from: f64, to: f64) -> Self {
-        let [low, high] = self.part;
-        let at = |fraction| low + (high - low) * fraction;
-        Self {
-            done: Rc::clone(&self.done),
-            part: [at(from), at(to)],
-        }
     }
 }
 
@@ -138,13 +124,9 @@ mod tests {
     fn counting(count: &Cell<u32>) -> Job<'_, u32> {
         Job::new(|progress| {
             Box::pin(async move {
-                let second = progress.part(0.5, 1.0);
                 for n in 1..=4 {
                     count.set(n);
-                    match n {
-                        1 | 2 => progress.reached(f64::from(n) / 4.0).await,
-                        _ => second.reached(f64::from(n) / 2.0 - 1.0).await,
-                    }
+                    progress.reached(f64::from(n) / 4.0).await;
                 }
                 Ok(count.get())
             })

@@ -25,7 +25,7 @@ impl StrategyKind {
     }
 
     /// The name that users type.
-    pub fn name(self) -> &'static str {
+    pub const fn name(self) -> &'static str {
         match self {
             Self::Libc => "libc",
             Self::Plts => "plts",
@@ -34,7 +34,7 @@ impl StrategyKind {
     }
 
     /// What it is in one sentence.
-    pub fn describe(self) -> &'static str {
+    pub const fn describe(self) -> &'static str {
         match self {
             Self::Libc => "Walks from cell to cell: close to exact, fast",
             Self::Plts => "Locates every sample in its cell: exact, slow",

@@ -10,8 +10,8 @@ pub(super) const SHARED_GROUPS: usize = 3;
 ///
 /// So a bind group of the grid or the frame is made once and fits every pipeline.
 pub struct SharedLayouts {
-    pub(super) groups: Vec<wgpu::BindGroupLayout>,
-    pub(super) parameters: Parameters,
+    groups: Vec<wgpu::BindGroupLayout>,
+    parameters: Parameters,
 }
 
 /// How shaders read their parameters, which they declare as uniforms.

@@ -29,7 +29,7 @@ impl Compiled {
 }
 
 fn compile(gpu: &Gpu, name: &str) -> Result<Compiled, RenderError> {
-    let text = gpu.layouts.parameters.declared(compose(name)?);
+    let text = gpu.layouts.parameters().declared(compose(name)?);
     let module = parse(name, &text)?;
     let used = |group: usize| bindings(&module).any(|(g, _)| g as usize == group);
     let own = layout(&gpu.device, &module, SHARED_GROUPS as u32);

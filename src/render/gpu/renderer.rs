@@ -314,12 +314,8 @@ mod tests {
             early_termination: 0.0,
             ..Scene::default()
         };
-        let view = view::resolve(&scene, &case).unwrap();
-        let view = {
-            let mut changed = view;
-            changed.sampling.step = 3.0;
-            changed
-        };
+        let mut view = view::resolve(&scene, &case).unwrap();
+        view.sampling.step = 3.0;
         let mut renderer = GpuRenderer::new(gpu, &case.grid).unwrap();
         let stats = |renderer: &mut GpuRenderer| renderer.render(&view, &|_| true).unwrap().stats;
         let whole = stats(&mut renderer);
