@@ -9,6 +9,7 @@
 )]
 
 pub mod cone;
+pub mod images;
 pub mod light;
 pub mod shape;
 pub mod tiny;

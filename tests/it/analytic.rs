@@ -1,13 +1,12 @@
 //! Pictures and values whose answer is a formula, by every strategy and the reference.
 
 use crate::common;
+use crate::common::images::{all, picture};
 use crate::common::shape::{Shape, parallelepipeds};
 use glam::DVec3;
 use strataray::case::Case;
-use strataray::image::Image;
 use strataray::model::VertexField;
 use strataray::reference::{self, Locator};
-use strataray::render::Renderer;
 use strataray::render::gpu::{GpuGrid, GpuRenderer, probe};
 use strataray::scene::{
     CameraSpec, FramingCamera, Interpolation, OpacitySpec, Projection, RangeSpec, Scene,
@@ -34,25 +33,6 @@ fn scene(azimuth: f64, elevation: f64, opacity: &[[f64; 2]]) -> Scene {
     scene.transfer.opacity = Some(OpacitySpec::Points(opacity.to_vec()));
     scene.transfer.reference_length = Some(100.0);
     scene
-}
-
-/// The picture by a strategy, or by the reference where there is none.
-fn picture(
-    renderer: &mut GpuRenderer,
-    case: &Case,
-    view: &View,
-    by: Option<StrategyKind>,
-) -> Image {
-    let Some(strategy) = by else {
-        return reference::render(&case.grid, view, &|_| true).unwrap();
-    };
-    let view = view.by(strategy);
-    let frame = renderer.render(&view, &|_| true).unwrap();
-    frame.image
-}
-
-fn all() -> impl Iterator<Item = Option<StrategyKind>> {
-    StrategyKind::ALL.into_iter().map(Some).chain([None])
 }
 
 /// True for those that keep to the cells: a resampled grid blurs their sides by about a voxel.

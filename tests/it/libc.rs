@@ -29,11 +29,9 @@ fn scene(azimuth: f64, elevation: f64) -> Scene {
 }
 
 fn with(view: &View, libc: LibcSettings) -> View {
-    {
-        let mut changed = view.clone();
-        changed.sampling.libc = libc;
-        changed
-    }
+    let mut changed = view.clone();
+    changed.sampling.libc = libc;
+    changed
 }
 
 fn render(renderer: &mut GpuRenderer, view: &View) -> (Image, FrameStats) {

@@ -68,11 +68,9 @@ fn scene(size: [u32; 2], srg: SrgSettings) -> Scene {
 }
 
 fn with(view: &View, srg: SrgSettings) -> View {
-    {
-        let mut changed = view.clone();
-        changed.sampling.srg = srg;
-        changed
-    }
+    let mut changed = view.clone();
+    changed.sampling.srg = srg;
+    changed
 }
 
 fn render(renderer: &mut GpuRenderer, view: &View) -> Frame {

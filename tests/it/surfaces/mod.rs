@@ -6,6 +6,7 @@ mod looks;
 mod sheets;
 
 use crate::common;
+use crate::common::images::{all, picture};
 use crate::common::shape::{Shape, boxes};
 use glam::DVec3;
 use strataray::case::{Case, load};
@@ -59,32 +60,10 @@ fn camera(azimuth_degrees: f64, elevation_degrees: f64, zoom: f64) -> CameraSpec
     })
 }
 
-/// The picture by a strategy, or by the reference where there is none.
-fn picture(
-    renderer: &mut GpuRenderer,
-    case: &Case,
-    view: &View,
-    by: Option<StrategyKind>,
-) -> Image {
-    let Some(strategy) = by else {
-        return reference::render(&case.grid, view, &|_| true).unwrap();
-    };
-    let view = view.by(strategy);
-    let frame = renderer.render(&view, &|_| true).unwrap();
-    assert_eq!(frame.stats.lost_rays, 0);
-    frame.image
-}
-
-fn all() -> impl Iterator<Item = Option<StrategyKind>> {
-    StrategyKind::ALL.into_iter().map(Some).chain([None])
-}
-
 fn with(view: &View, surfaces: Surfaces) -> View {
-    {
-        let mut changed = view.clone();
-        changed.style.surfaces = surfaces;
-        changed
-    }
+    let mut changed = view.clone();
+    changed.style.surfaces = surfaces;
+    changed
 }
 
 /// PSNR in dB without the worst of a thousand pixels: at an outline a pixel may see another face, and one
