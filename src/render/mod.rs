@@ -5,8 +5,10 @@
 //! it any more. Whoever shows, saves, compares, times or picks uses these alone.
 
 mod error;
+#[cfg(feature = "gpu")]
 pub mod gpu;
 pub mod job;
+pub mod plan;
 mod stats;
 
 use std::sync::Arc;
