@@ -4,6 +4,7 @@
 //! that. An image is a [`Job`]: it is advanced until a deadline or run to its end, and dropped where nobody wants
 //! it any more. Whoever shows, saves, compares, times or picks uses these alone.
 
+pub mod cpu;
 mod error;
 #[cfg(feature = "gpu")]
 pub mod gpu;
@@ -25,7 +26,7 @@ use crate::view::View;
 /// Who makes images.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ExecutorInfo {
-    /// Kind of executor: `gpu`.
+    /// Kind of executor: `gpu` or `cpu`.
     pub executor: &'static str,
     /// Name and kind of the adapter in one line.
     pub adapter: String,
@@ -112,10 +113,30 @@ pub struct SetupTimes {
     pub acceleration: std::time::Duration,
 }
 
-/// Opens the best executor, or the best one whose adapter's name contains `adapter`, whatever the letter case.
+/// Opens the best executor, or the best one whose adapter's name contains `adapter`, whatever the letter case; `cpu`
+/// is the one without an adapter.
 ///
 /// # Errors
 /// When there is no (such) adapter, or it lacks a limit.
 pub fn executor(adapter: Option<&str>) -> Result<Arc<dyn Executor>, RenderError> {
+    match adapter {
+        Some(name) if name.eq_ignore_ascii_case("cpu") => Ok(Arc::new(cpu::CpuExecutor)),
+        adapter => by_adapter(adapter),
+    }
+}
+
+#[cfg(feature = "gpu")]
+fn by_adapter(adapter: Option<&str>) -> Result<Arc<dyn Executor>, RenderError> {
     Ok(Arc::new(gpu::GpuExecutor::new(adapter)?))
+}
+
+#[cfg(not(feature = "gpu"))]
+fn by_adapter(adapter: Option<&str>) -> Result<Arc<dyn Executor>, RenderError> {
+    match adapter {
+        None => Ok(Arc::new(cpu::CpuExecutor)),
+        Some(name) => Err(RenderError::NoSuchAdapter {
+            wanted: name.to_owned(),
+            known: "cpu".to_owned(),
+        }),
+    }
 }
