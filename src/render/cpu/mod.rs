@@ -8,6 +8,7 @@ mod executor;
 mod facing;
 mod frame;
 mod grid;
+mod libc;
 mod locate;
 mod picture;
 mod plts;

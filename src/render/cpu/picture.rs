@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 use rayon::prelude::*;
 
 use super::boundary::Boundary;
+use super::libc::{self, Entry, Way};
 use super::plts;
 use super::raster::{FaceBins, Met, Projector, TILE, TileRect};
 use super::scene::Scene;
@@ -22,6 +23,8 @@ use crate::view::View;
 pub enum Strategy {
     /// Point location with topological search.
     Plts,
+    /// Linear interpolation with barycentric coordinates.
+    Libc,
     /// Nothing: surfaces and sections are all there is.
     Solid,
 }
@@ -56,7 +59,15 @@ struct Bins<'a> {
 struct Scratch {
     /// Faces met by each pixel of the tile, of the boundary, the hull and the faults.
     met: [Vec<Vec<Met>>; 3],
+    /// Of the ray under way.
+    ray: OfRay,
+}
+
+/// What a ray meets.
+#[derive(Default)]
+struct OfRay {
     boundary: Boundary,
+    entries: Vec<Entry>,
     layers: Layers,
 }
 
@@ -127,7 +138,7 @@ impl Picture<'_> {
         let projector = Projector::new(self.scene.grid, &self.scene.frame);
         let boundary = match self.strategy {
             Strategy::Solid => &[],
-            Strategy::Plts => self.boundary,
+            Strategy::Plts | Strategy::Libc => self.boundary,
         };
         Bins {
             boundary: FaceBins::new(&projector, boundary),
@@ -144,11 +155,7 @@ impl Picture<'_> {
         tile: &TileRect,
         scratch: &mut Scratch,
     ) -> Made {
-        let Scratch {
-            met,
-            boundary,
-            layers,
-        } = scratch;
+        let Scratch { met, ray } = scratch;
         let faces = [&bins.boundary, &bins.hull, &bins.faults];
         for (met, faces) in met.iter_mut().zip(faces) {
             met.resize_with((TILE * TILE) as usize, Vec::new);
@@ -157,12 +164,12 @@ impl Picture<'_> {
         let mut tally = Tally::default();
         let pixels = tile.pixels().enumerate().map(|(n, pixel)| {
             let [of_boundary, hull, faults] = [0, 1, 2].map(|list| met[list][n].as_slice());
-            let rays = Rays {
-                pixel,
+            let pixel = Pixel {
+                at: pixel,
                 met: of_boundary,
                 surfaces: [hull, faults],
             };
-            self.pixel(painter, &rays, boundary, layers, &mut tally)
+            self.pixel(painter, &pixel, ray, &mut tally)
         });
         Made {
             pixels: pixels.collect(),
@@ -173,21 +180,44 @@ impl Picture<'_> {
     fn pixel(
         &self,
         painter: &Painter<'_>,
-        rays: &Rays<'_>,
-        boundary: &mut Boundary,
-        layers: &mut Layers,
+        pixel: &Pixel<'_>,
+        of_ray: &mut OfRay,
         tally: &mut Tally,
     ) -> [f32; 4] {
         let scene = self.scene;
-        let through = scene.frame.pixel_ray(rays.pixel);
-        let whole = scene.frame.ray_of(rays.pixel);
-        painter.find(scene, &through, rays.surfaces, layers, tally);
+        let OfRay {
+            boundary,
+            entries,
+            layers,
+        } = of_ray;
+        let through = scene.frame.pixel_ray(pixel.at);
+        let whole = scene.frame.ray_of(pixel.at);
+        painter.find(scene, &through, pixel.surfaces, layers, tally);
         let mut sum = Accumulated::of(section_color(scene, &whole, tally));
-        if self.strategy == Strategy::Plts && scene.transfer.is_open(&sum) {
-            let ray = layers.before_hull(scene, &whole);
-            let inside = scene.frame.is_in_box(through.origin);
-            boundary.gather(rays.met, &through, &ray, scene.frame.numbers.step, inside);
-            plts::cast(scene, &ray, boundary, layers, &mut sum, tally);
+        let ray = layers.before_hull(scene, &whole);
+        match self.strategy {
+            _ if !scene.transfer.is_open(&sum) => {}
+            Strategy::Solid => {}
+            Strategy::Plts => {
+                let inside = scene.frame.is_in_box(through.origin);
+                boundary.gather(pixel.met, &through, &ray, scene.frame.numbers.step, inside);
+                plts::cast(scene, &ray, boundary, layers, &mut sum, tally);
+            }
+            Strategy::Libc => {
+                libc::gather(pixel.met, &through, entries);
+                let way = Way {
+                    scene,
+                    ray: &ray,
+                    entries,
+                    settings: self.view.sampling.libc,
+                    // Where layers cross, cells may overlap anywhere: every entry counts.
+                    margin: match scene.grid.compact.facts.layers_cross {
+                        true => f32::MAX,
+                        false => self.view.fault_gap() as f32,
+                    },
+                };
+                libc::cast(&way, layers, &mut sum, tally);
+            }
         }
         layers.blend_rest(&mut sum);
         tally.rays += 1;
@@ -196,8 +226,8 @@ impl Picture<'_> {
 }
 
 /// A pixel and the faces that its ray meets.
-struct Rays<'a> {
-    pixel: [u32; 2],
+struct Pixel<'a> {
+    at: [u32; 2],
     /// Of the boundary.
     met: &'a [Met],
     /// Of hull and faults.

@@ -1,7 +1,7 @@
 //! Corners as a ray sees them: it is the origin, so that edges are cross products.
 //! The twin of `shaders/shared/projection.wgsl`.
 
-use glam::Vec3A;
+use glam::{Mat3A, Vec3A};
 
 use super::grid::Pillar;
 
@@ -11,7 +11,8 @@ pub struct RayFrame {
     origin: Vec3A,
     /// Across the ray.
     pub across: [Vec3A; 2],
-    along: Vec3A,
+    /// From grid space to coordinates across the ray and distance along it.
+    to_ray: Mat3A,
     t_origin: f32,
 }
 
@@ -21,10 +22,12 @@ impl RayFrame {
         let is_steep = direction.z.abs() > 0.7 * direction.length();
         let helper = if is_steep { Vec3A::X } else { Vec3A::Z };
         let across_x = helper.cross(direction).normalize();
+        let across_y = direction.cross(across_x).normalize();
+        let along = direction / direction.length_squared();
         Self {
             origin,
-            across: [across_x, direction.cross(across_x).normalize()],
-            along: direction / direction.length_squared(),
+            across: [across_x, across_y],
+            to_ray: Mat3A::from_cols(across_x, across_y, along).transpose(),
             t_origin: t,
         }
     }
@@ -42,12 +45,12 @@ impl RayFrame {
 
     /// A point relative to the frame's origin: two coordinates across the ray and the distance along it.
     pub fn projected(&self, from_origin: Vec3A) -> Vec3A {
-        let [x, y] = self.across;
-        Vec3A::new(
-            x.dot(from_origin),
-            y.dot(from_origin),
-            self.t_origin + self.along.dot(from_origin),
-        )
+        self.turned(from_origin) + self.t_origin * Vec3A::Z
+    }
+
+    /// A displacement: two coordinates across the ray and the distance along it.
+    pub fn turned(&self, displacement: Vec3A) -> Vec3A {
+        self.to_ray * displacement
     }
 }
 

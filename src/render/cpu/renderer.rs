@@ -163,9 +163,7 @@ fn supported(view: &View) -> Result<Strategy, RenderError> {
     match view.sampling.strategy {
         _ if !view.casts_rays() => Ok(Strategy::Solid),
         StrategyKind::Plts => Ok(Strategy::Plts),
-        StrategyKind::Libc => Err(RenderError::Unsupported {
-            what: "the strategy libc",
-        }),
+        StrategyKind::Libc => Ok(Strategy::Libc),
         StrategyKind::Srg => Err(RenderError::Unsupported {
             what: "the strategy srg",
         }),
