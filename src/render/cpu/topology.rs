@@ -284,5 +284,5 @@ fn overshoot(q: Vec3A) -> f32 {
 fn steps_inside(q: Vec3A, rate: Vec3A) -> f32 {
     let room = Vec3A::select(rate.cmpgt(Vec3A::ZERO), Vec3A::ONE - q, q);
     let steps = room / rate.abs().max(Vec3A::splat(1e-9));
-    steps.min_element().floor().max(0.0)
+    steps.min_element().clamp(0.0, 1e6).trunc()
 }
