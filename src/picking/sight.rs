@@ -11,7 +11,7 @@ use crate::model::Ijk;
 use crate::render::Located;
 use crate::scene::Hull;
 use crate::view::View;
-use crate::view::ghosts::{self, shown_grid};
+use crate::view::ghosts;
 use crate::view::surfaces::{SHEET_OPACITY, fault_color};
 
 /// How far beside a surface its cell is located, as a part of the sampling step.
@@ -155,7 +155,7 @@ impl<'a> Sight<'a> {
     /// Nothing is drawn before the hull where a ray comes from outside: a sample there is rounding.
     fn is_before_hull(&self, at: f64) -> bool {
         let hull = self.surfaces.iter().find(|s| matches!(s, Surface::Hull(_)));
-        let has_more = self.span.starts_inside || self.view.shown.ghosts.is_some();
+        let has_more = self.span.starts_inside || self.view.shown.cells.ghosts.is_some();
         hull.is_some_and(|hull| !has_more && at < hull.distance())
     }
 
@@ -197,12 +197,17 @@ impl<'a> Sight<'a> {
 
     /// A cell's value in the scale of the view.
     fn own_value(&self, ijk: Ijk) -> Option<f64> {
-        let grid = shown_grid(&self.case.grid, self.view.shown.ghosts.as_ref());
-        let value = self.view.shown.field.value(grid, grid.dims().cell(ijk));
+        let grid = &self.case.grid;
+        let value = self
+            .view
+            .shown
+            .cells
+            .field
+            .value(grid, grid.dims().cell(ijk));
         value.map(f64::from)
     }
 
     fn is_ghost(&self, ijk: Ijk) -> bool {
-        self.view.shown.ghosts.is_some() && !self.case.grid.is_active(ijk)
+        self.view.shown.cells.ghosts.is_some() && !self.case.grid.is_active(ijk)
     }
 }

@@ -98,7 +98,7 @@ impl SurfaceFaces {
     fn update(&mut self, case: &Case, view: &View) {
         let now = FacesKey {
             case: view.shown.named_faults.clone(),
-            drawn: view.shown.drawn.clone(),
+            drawn: view.shown.cells.drawn.clone(),
             hull: view.style.surfaces.hull,
             faults: view.style.surfaces.faults,
         };

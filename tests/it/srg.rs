@@ -33,7 +33,7 @@ use strataray::scene::{
     OpacitySpec, Projection, RangeSpec, Scene, SrgSettings, StrategyKind,
 };
 use strataray::view::voxels::{self, Voxel};
-use strataray::view::{self, View};
+use strataray::view::{self, ShownCells, View};
 
 /// No switch is on.
 const PLAIN: SrgSettings = SrgSettings {
@@ -102,9 +102,8 @@ fn volume_of(
 ) -> ([u32; 3], Vec<[f64; 2]>) {
     let mut on_device = GpuGrid::new(gpu, grid).unwrap();
     let drawn: Vec<bool> = field.values().iter().map(|v| !v.is_nan()).collect();
-    on_device
-        .show(gpu, grid, field, &drawn, interpolation)
-        .unwrap();
+    let shown = ShownCells::new(field.clone().into(), drawn, interpolation);
+    on_device.show(gpu, grid, &shown).unwrap();
     let volume = Volume::new(gpu, voxels::Shape::of(grid.dims(), factor, false));
     let range = range_of(field);
     let mut resampler = Resampler::new(gpu, false).unwrap();
@@ -238,15 +237,7 @@ impl<'a> Bench<'a> {
 
     fn show(&mut self, view: &View) {
         let (gpu, model) = (self.gpu, &self.case.grid);
-        self.grid
-            .show(
-                gpu,
-                model,
-                &view.shown.field,
-                &view.shown.drawn,
-                view.shown.interpolation,
-            )
-            .unwrap();
+        self.grid.show(gpu, model, &view.shown.cells).unwrap();
     }
 
     /// Whether it was not cancelled, how often the volume was filled, and how often progress was told.
@@ -357,9 +348,8 @@ fn a_fill_is_split_into_parts_that_the_pace_allows() {
     let field = case.field("PORO", 0).unwrap();
     let mut on_device = GpuGrid::new(&gpu, &case.grid).unwrap();
     let drawn = vec![true; field.values().len()];
-    on_device
-        .show(&gpu, &case.grid, &field, &drawn, Interpolation::Cell)
-        .unwrap();
+    let shown = ShownCells::new(field.clone(), drawn, Interpolation::Cell);
+    on_device.show(&gpu, &case.grid, &shown).unwrap();
     let volume = Volume::new(&gpu, voxels::Shape::of(case.grid.dims(), 4.0, false));
     let [width, height, depth] = volume.shape.size.map(u64::from);
     let voxels = width * height * depth;
@@ -669,7 +659,7 @@ fn a_field_that_resampling_keeps_is_seen_as_the_reference_sees_it() {
                     camera.projection = projection;
                 }
                 let view = view::resolve(&scene, &case).unwrap();
-                assert_eq!(view.shown.interpolation, Interpolation::Vertex);
+                assert_eq!(view.shown.cells.interpolation, Interpolation::Vertex);
                 let truth = reference::render(&case.grid, &view, &|_| true).unwrap();
                 assert!(truth.pixels.iter().filter(|p| p[3] > 0.3).count() > 300);
                 let mut renderer = GpuRenderer::new(gpu.clone(), &case.grid).unwrap();

@@ -8,9 +8,10 @@ use super::columns::{self, ColumnShape};
 use super::device::Gpu;
 use super::layout::{COLUMN_FLAG, GridInfo, LIST_GAPPED, LIST_OFFSET};
 use super::pipeline::flag;
-use crate::model::{CellField, Grid, Ijk, VertexField};
+use crate::model::{Grid, Ijk, VertexField};
 use crate::render::{DeviceBytes, RenderError};
 use crate::scene::Interpolation;
+use crate::view::ShownCells;
 
 /// What is constant in shaders that locate points in a grid.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -145,40 +146,37 @@ impl GpuGrid {
         })
     }
 
-    /// Uploads another form of the grid in place of this one: with inactive cells as ghosts (by active
-    /// index of `grid`), or without.
+    /// Uploads another form of the case's grid `model` in place of this one: with its inactive cells as ghosts,
+    /// then `grid` has them active too, or without.
     ///
     /// # Errors
     /// As [`Self::new`].
     pub fn remade(
         &self,
         gpu: &Gpu,
+        model: &Grid,
         grid: &Grid,
-        is_ghost: Option<&[bool]>,
+        has_ghosts: bool,
     ) -> Result<Self, RenderError> {
         let mut made = Self::new(gpu, grid)?;
         made.versions.drawn = self.versions.drawn + 1;
         made.versions.values = self.versions.values + 1;
-        if let Some(is_ghost) = is_ghost {
-            let words = drawn_words(grid, is_ghost);
+        if has_ghosts {
+            let cells = grid.active_cells().iter();
+            let is_ghost: Vec<bool> = cells.map(|c| model.active_index(*c).is_none()).collect();
+            let words = drawn_words(grid, &is_ghost);
             let bits: Vec<u32> = words.iter().map(|w| w[0]).collect();
             made.ghost_cells = Some(gpu.storage("ghost cells", &bits)?);
         }
         Ok(made)
     }
 
-    /// Puts the values of a field on the device, for the cells that `drawn` (by active index) names.
+    /// Puts the drawn cells and their values on the device; `model` is the case's grid.
     ///
     /// # Errors
     /// When the values exceed what the adapter holds.
-    pub fn show(
-        &mut self,
-        gpu: &Gpu,
-        grid: &Grid,
-        field: &CellField,
-        drawn: &[bool],
-        interpolation: Interpolation,
-    ) -> Result<(), RenderError> {
+    pub fn show(&mut self, gpu: &Gpu, model: &Grid, cells: &ShownCells) -> Result<(), RenderError> {
+        let (grid, drawn) = cells.in_grid(model);
         let words = drawn_words(grid, drawn);
         if words != self.drawn_words {
             self.drawn_cells = gpu.storage("drawn cells", &words)?;
@@ -186,19 +184,14 @@ impl GpuGrid {
             self.versions.drawn += 1;
         }
         self.versions.values += 1;
-        self.values = match interpolation {
-            Interpolation::Cell => gpu.storage("values", &column_major(grid, field, drawn))?,
+        let values = match cells.interpolation {
+            Interpolation::Cell => column_major(model, cells),
+            // Entries that no drawn cell touches are never read; NaN stays off the device.
             Interpolation::Vertex => {
-                let vertices = VertexField::new(grid, field);
-                // Entries that no drawn cell touches are never read; NaN stays off the device.
-                let values: Vec<f32> = vertices
-                    .values()
-                    .iter()
-                    .map(|v| if v.is_nan() { 0.0 } else { *v })
-                    .collect();
-                gpu.storage("values", &values)?
+                VertexField::of(model, &cells.field, cells.valued()).into_defined()
             }
         };
+        self.values = gpu.storage("values", &values)?;
         Ok(())
     }
 
@@ -304,8 +297,9 @@ fn drawn_words(grid: &Grid, drawn: &[bool]) -> Vec<[u32; 2]> {
     words
 }
 
-/// Values of the drawn cells in slot order.
-fn column_major(grid: &Grid, field: &CellField, drawn: &[bool]) -> Vec<f32> {
+/// Values of the drawn cells in slot order; ghosts have none, and NaN stays off the device.
+fn column_major(model: &Grid, cells: &ShownCells) -> Vec<f32> {
+    let (grid, drawn) = cells.in_grid(model);
     let dims = grid.dims();
     let mut values = Vec::new();
     for column in 0..dims.columns() {
@@ -315,13 +309,10 @@ fn column_major(grid: &Grid, field: &CellField, drawn: &[bool]) -> Vec<f32> {
                 j: column / dims.ni,
                 k,
             };
-            if let Some(active) = grid.active_index(dims.cell(ijk)) {
-                let active = active.0 as usize;
-                if drawn.get(active) == Some(&true) {
-                    // Ghosts have none; NaN stays off the device.
-                    let value = field.values()[active];
-                    values.push(if value.is_nan() { 0.0 } else { value });
-                }
+            let cell = dims.cell(ijk);
+            let active = grid.active_index(cell).map(|a| a.0 as usize);
+            if active.is_some_and(|a| drawn.get(a) == Some(&true)) {
+                values.push(cells.field.value(model, cell).unwrap_or(0.0));
             }
         }
     }

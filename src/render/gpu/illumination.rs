@@ -267,14 +267,16 @@ impl Illumination {
         }
         check_size(gpu, shape.size)?;
         let volume = before.map_or_else(|| Volume::new(gpu, shape), |f| f.volume);
-        let range = view
-            .shown
-            .field
-            .statistics()
-            .map_or([0.0, 1.0], |s| [s.min, s.max]);
+        let range = view.shown.cells.value_range().unwrap_or([0.0, 1.0]);
         let mut slabs = Slabs::new(gpu, &mut self.pace, progress);
         self.resampler
-            .fill(&mut slabs, grid, &volume, range, view.shown.interpolation)
+            .fill(
+                &mut slabs,
+                grid,
+                &volume,
+                range,
+                view.shown.cells.interpolation,
+            )
             .await?;
         self.made.fields += 1;
         self.field = Some(Field {
@@ -450,7 +452,7 @@ impl Illumination {
             return Ok(());
         };
         // Values that are constant in a cell have no gradient.
-        if view.shown.interpolation == crate::scene::Interpolation::Cell {
+        if view.shown.cells.interpolation == crate::scene::Interpolation::Cell {
             self.gradients = None;
             return Ok(());
         }

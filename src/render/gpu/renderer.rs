@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use glam::DVec3;
 
-use crate::model::{CellField, Grid};
+use crate::model::Grid;
 use crate::render::gpu::faces::{BoundaryFaces, FaceList};
 use crate::render::gpu::illumination::Illumination;
 use crate::render::gpu::probe::Probe;
@@ -16,9 +16,8 @@ use crate::render::gpu::transfer_tables::TransferTables;
 use crate::render::gpu::{Drawing, FrameRenderer, Gpu, GpuGrid, strategies};
 use crate::render::job::{Job, Progress};
 use crate::render::{DeviceBytes, Frame, Located, RenderError, Renderer, SetupTimes};
-use crate::scene::{Interpolation, StrategyKind};
-use crate::view::View;
-use crate::view::ghosts::{Ghosts, shown_grid};
+use crate::scene::StrategyKind;
+use crate::view::{ShownCells, View};
 
 /// Makes images of one grid.
 pub struct GpuRenderer {
@@ -37,16 +36,8 @@ pub struct GpuRenderer {
     solid: Option<Solid>,
     /// Made when points are first located.
     probe: Option<Probe>,
-    shown: Option<OnDevice>,
-}
-
-/// The field and selection that are on the device.
-#[derive(Clone, PartialEq)]
-struct OnDevice {
-    field: Arc<CellField>,
-    drawn: Arc<Vec<bool>>,
-    interpolation: Interpolation,
-    ghosts: Option<Arc<Ghosts>>,
+    /// What is on the device.
+    shown: Option<ShownCells>,
 }
 
 impl GpuRenderer {
@@ -104,7 +95,7 @@ impl GpuRenderer {
             surfaces,
             ..
         } = self;
-        let (of_case, grid) = (&**model, shown_grid(model, view.shown.ghosts.as_ref()));
+        let (of_case, (grid, drawn)) = (&**model, view.shown.cells.in_grid(model));
         let tables = match tables.take().filter(|t| t.are_of(view)) {
             Some(known) => tables.insert(known),
             None => tables.insert(TransferTables::new(gpu, view)?),
@@ -117,7 +108,7 @@ impl GpuRenderer {
             false => solid(gpu, &mut self.solid)?,
         };
         let faces = match strategy.draws_faces() || SurfacePainter::shares_faces(view) {
-            true => Some(faces.update(gpu, grid, on_device, &view.shown.drawn)?),
+            true => Some(faces.update(gpu, grid, on_device, drawn)?),
             false => None,
         };
         let mut surfaces = surfaces_of(gpu, surfaces, view)?;
@@ -171,28 +162,20 @@ impl Renderer for GpuRenderer {
     }
 
     fn prepare(&mut self, view: &View) -> Result<(), RenderError> {
-        let grid = shown_grid(&self.model, view.shown.ghosts.as_ref());
-        let wanted = OnDevice {
-            field: view.shown.field.clone(),
-            drawn: view.shown.drawn.clone(),
-            interpolation: view.shown.interpolation,
-            ghosts: view.shown.ghosts.clone(),
-        };
-        let ghosts_now = self.shown.as_ref().and_then(|s| s.ghosts.as_ref());
-        if ghosts_now != wanted.ghosts.as_ref() {
-            let is_ghost = wanted.ghosts.as_ref().map(|g| g.is_ghost.as_slice());
-            self.grid = self.grid.remade(&self.gpu, grid, is_ghost)?;
+        let (gpu, model, wanted) = (&self.gpu, &self.model, &view.shown.cells);
+        let has_ghosts = wanted.ghosts.is_some();
+        if self.shown.as_ref().is_some_and(|s| s.ghosts.is_some()) != has_ghosts {
+            let (grid, _) = wanted.in_grid(model);
+            self.grid = self.grid.remade(gpu, model, grid, has_ghosts)?;
+            self.shown = None;
         }
-        if self.shown.as_ref() != Some(&wanted) {
-            let OnDevice {
-                field,
-                drawn,
-                interpolation,
-                ..
-            } = &wanted;
-            self.grid
-                .show(&self.gpu, grid, field, drawn, *interpolation)?;
-            self.shown = Some(wanted);
+        if !self
+            .shown
+            .as_ref()
+            .is_some_and(|known| known.is_same(wanted))
+        {
+            self.grid.show(gpu, model, wanted)?;
+            self.shown = Some(wanted.clone());
         }
         Ok(())
     }
@@ -207,7 +190,7 @@ impl Renderer for GpuRenderer {
         points: &[DVec3],
     ) -> Result<Vec<Option<Located>>, RenderError> {
         self.prepare(view)?;
-        let grid = shown_grid(&self.model, view.shown.ghosts.as_ref());
+        let (grid, _) = view.shown.cells.in_grid(&self.model);
         let probe = match self.probe.take().filter(|p| p.fits(&self.grid)) {
             Some(known) => self.probe.insert(known),
             None => self.probe.insert(Probe::new(&self.gpu, &self.grid)?),
@@ -219,7 +202,7 @@ impl Renderer for GpuRenderer {
             &self.grid,
             grid,
             &points,
-            view.shown.interpolation,
+            view.shown.cells.interpolation,
         )
     }
 }

@@ -117,7 +117,7 @@ impl SurfacePainter {
 
     /// True where the boundary faces of all drawn cells are the hull.
     pub fn shares_faces(view: &View) -> bool {
-        view.style.surfaces.has_hull() && view.shown.ghosts.is_none()
+        view.style.surfaces.has_hull() && view.shown.cells.ghosts.is_none()
     }
 
     /// Brings up to date what is shown of `model` (the case's grid). `boundary` are the boundary faces of all

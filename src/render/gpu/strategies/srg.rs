@@ -86,11 +86,17 @@ fn useful(view: &View) -> SrgSettings {
         .opacity
         .iter()
         .any(|point| point.1 == 0.0);
-    let hidden = view.shown.drawn.iter().filter(|drawn| !**drawn).count();
+    let hidden = view
+        .shown
+        .cells
+        .drawn
+        .iter()
+        .filter(|drawn| !**drawn)
+        .count();
     SrgSettings {
         skip_empty: view.sampling.srg.skip_empty
-            && view.shown.ghosts.is_none()
-            && (is_clear || 10 * hidden > view.shown.drawn.len()),
+            && view.shown.cells.ghosts.is_none()
+            && (is_clear || 10 * hidden > view.shown.cells.drawn.len()),
         ..view.sampling.srg
     }
 }
@@ -178,11 +184,10 @@ impl Srg {
             return Ok(());
         }
         let volume = filled.map_or_else(|| Volume::new(what.gpu, shape), |f| f.volume);
-        let statistics = what.view.shown.field.statistics();
-        let range = statistics.map_or([0.0, 1.0], |s| [s.min, s.max]);
+        let range = what.view.shown.cells.value_range().unwrap_or([0.0, 1.0]);
         let bricks = Bricks::unused(what.gpu, shape.size);
         let mut slabs = slabs(what, &mut self.pace);
-        let interpolation = what.view.shown.interpolation;
+        let interpolation = what.view.shown.cells.interpolation;
         self.resampler
             .fill(&mut slabs, what.grid, &volume, range, interpolation)
             .await?;
@@ -271,7 +276,7 @@ impl RenderStrategy for Srg {
             self.faces.update(what.gpu, what.faces, 0.0);
             let budget = settings.budget_bytes();
             let limit = what.gpu.device.limits().max_texture_dimension_3d;
-            let ghosts = view.shown.ghosts.is_some();
+            let ghosts = view.shown.cells.ghosts.is_some();
             let shape = shape(what.model.dims(), &settings, ghosts, budget, limit);
             self.fill(what, shape).await?;
             self.classify(what, &settings).await
