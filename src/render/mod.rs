@@ -7,14 +7,16 @@
 mod error;
 pub mod gpu;
 pub mod job;
+pub mod line_of_sight;
 mod stats;
 
 use std::sync::Arc;
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 pub use error::RenderError;
 pub use job::Job;
+pub use line_of_sight::{LineOfSight, SurfacePoint};
 pub use stats::{DeviceBytes, Frame, FrameStats, LightTimes};
 
 use crate::model::{Grid, Ijk};
@@ -87,6 +89,13 @@ pub trait Renderer {
         view: &View,
         points: &[DVec3],
     ) -> Result<Vec<Option<Located>>, RenderError>;
+
+    /// What lies on the ray through a place in the image of a view (0 to 1, right and down); `None` where the ray
+    /// misses all that is kept.
+    ///
+    /// # Errors
+    /// When the device reports an error.
+    fn look(&mut self, view: &View, at: DVec2) -> Result<Option<LineOfSight>, RenderError>;
 
     /// Makes an image, and tells after each piece how much of it, or of what is prepared for it, is done.
     ///

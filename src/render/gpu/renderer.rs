@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use crate::model::Grid;
 use crate::render::gpu::faces::{BoundaryFaces, FaceList};
@@ -15,6 +15,7 @@ use crate::render::gpu::surfaces::SurfacePainter;
 use crate::render::gpu::transfer_tables::TransferTables;
 use crate::render::gpu::{Drawing, FrameRenderer, Gpu, GpuGrid, strategies};
 use crate::render::job::{Job, Progress};
+use crate::render::line_of_sight::{LineOfSight, Sighting, SurfaceTree};
 use crate::render::{DeviceBytes, Frame, Located, RenderError, Renderer, SetupTimes};
 use crate::scene::StrategyKind;
 use crate::view::{ShownCells, View};
@@ -36,6 +37,8 @@ pub struct GpuRenderer {
     solid: Option<Solid>,
     /// Made when points are first located.
     probe: Option<Probe>,
+    /// Faces of surfaces that were looked at.
+    surface_tree: SurfaceTree,
     /// What is on the device.
     shown: Option<ShownCells>,
 }
@@ -66,6 +69,7 @@ impl GpuRenderer {
             strategies: Vec::new(),
             solid: None,
             probe: None,
+            surface_tree: SurfaceTree::default(),
             shown: None,
         })
     }
@@ -204,6 +208,15 @@ impl Renderer for GpuRenderer {
             &points,
             view.shown.cells.interpolation,
         )
+    }
+
+    fn look(&mut self, view: &View, at: DVec2) -> Result<Option<LineOfSight>, RenderError> {
+        let sighting = Sighting::through(&self.model, view, at, &mut self.surface_tree);
+        let Some(sighting) = sighting else {
+            return Ok(None);
+        };
+        let located = self.locate(view, &sighting.points())?;
+        Ok(Some(sighting.located(&located)))
     }
 }
 
