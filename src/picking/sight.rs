@@ -7,9 +7,8 @@ use super::{Part, fault_of};
 use crate::case::Case;
 use crate::model::Ijk;
 use crate::render::{LineOfSight, Located, SurfacePoint};
-use crate::view::View;
-use crate::view::ghosts;
 use crate::view::surfaces::{SHEET_OPACITY, fault_color};
+use crate::view::{View, ghosts};
 
 /// Part of a legend within which two values are the same to the eye.
 const TOLD_APART: f64 = 0.01;

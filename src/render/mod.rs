@@ -8,6 +8,7 @@ mod error;
 pub mod gpu;
 pub mod job;
 pub mod line_of_sight;
+pub mod revisions;
 mod stats;
 
 use std::sync::Arc;

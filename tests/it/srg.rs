@@ -27,6 +27,7 @@ use strataray::render::gpu::strategy::{Preparation, RenderStrategy};
 use strataray::render::gpu::tiles::Pace;
 use strataray::render::gpu::volume::Volume;
 use strataray::render::gpu::{Gpu, GpuGrid, GpuRenderer};
+use strataray::render::revisions::RevisionCounter;
 use strataray::render::{Frame, Job, RenderError, Renderer};
 use strataray::scene::{
     self, CameraSpec, ClipSpec, CutFace, ExplicitCamera, FramingCamera, Inactive, Interpolation,
@@ -222,6 +223,7 @@ struct Bench<'a> {
     gpu: &'a Gpu,
     case: &'a Case,
     grid: GpuGrid,
+    revisions: RevisionCounter,
     srg: Srg,
 }
 
@@ -231,6 +233,7 @@ impl<'a> Bench<'a> {
             gpu,
             case,
             grid: GpuGrid::new(gpu, &case.grid).unwrap(),
+            revisions: RevisionCounter::default(),
             srg: Srg::new(gpu).unwrap(),
         }
     }
@@ -238,6 +241,7 @@ impl<'a> Bench<'a> {
     fn show(&mut self, view: &View) {
         let (gpu, model) = (self.gpu, &self.case.grid);
         self.grid.show(gpu, model, &view.shown.cells).unwrap();
+        self.grid.revisions = self.revisions.of(view);
     }
 
     /// Whether it was not cancelled, how often the volume was filled, and how often progress was told.

@@ -12,8 +12,7 @@ use super::locate::{Located, Locator};
 use crate::model::corner_point::weights;
 use crate::model::{CellField, Grid, VertexField};
 use crate::scene::Interpolation;
-use crate::view::ghosts;
-use crate::view::{ClipPlane, View};
+use crate::view::{ClipPlane, View, ghosts};
 
 /// A ray in world space.
 #[derive(Debug, Clone, Copy, PartialEq)]

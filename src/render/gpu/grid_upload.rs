@@ -9,6 +9,7 @@ use super::device::Gpu;
 use super::layout::{COLUMN_FLAG, GridInfo, LIST_GAPPED, LIST_OFFSET};
 use super::pipeline::flag;
 use crate::model::{Grid, Ijk, VertexField};
+use crate::render::revisions::Revisions;
 use crate::render::{DeviceBytes, RenderError};
 use crate::scene::Interpolation;
 use crate::view::ShownCells;
@@ -32,15 +33,6 @@ impl Constants {
     }
 }
 
-/// Counts up with each change, so that what is made from the grid knows when it is stale.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct Versions {
-    /// Of the drawn cells.
-    pub drawn: u64,
-    /// Of the values.
-    pub values: u64,
-}
-
 /// A grid on the device, with the field and selection that are shown now.
 pub struct GpuGrid {
     /// Origin of the device's coordinates in grid space.
@@ -55,8 +47,8 @@ pub struct GpuGrid {
     pub handedness: f32,
     /// Time that building the acceleration grid took.
     pub acceleration_time: std::time::Duration,
-    /// Which selection and which values are on the device.
-    pub versions: Versions,
+    /// Those of what is on the device.
+    pub revisions: Revisions,
     info: wgpu::Buffer,
     pillars: wgpu::Buffer,
     column_lists: wgpu::Buffer,
@@ -131,7 +123,7 @@ impl GpuGrid {
                 1.0
             },
             acceleration_time,
-            versions: Versions::default(),
+            revisions: Revisions::default(),
             drawn_words: Vec::new(),
             info: gpu.uniform("grid info", &info),
             pillars: gpu.storage("pillars", &pillars)?,
@@ -146,22 +138,15 @@ impl GpuGrid {
         })
     }
 
-    /// Uploads another form of the case's grid `model` in place of this one: with its inactive cells as ghosts,
-    /// then `grid` has them active too, or without.
+    /// Uploads the grid that rays pass in a view of the case's grid `model`: with its inactive cells as ghosts, or
+    /// without.
     ///
     /// # Errors
     /// As [`Self::new`].
-    pub fn remade(
-        &self,
-        gpu: &Gpu,
-        model: &Grid,
-        grid: &Grid,
-        has_ghosts: bool,
-    ) -> Result<Self, RenderError> {
+    pub fn of(gpu: &Gpu, model: &Grid, cells: &ShownCells) -> Result<Self, RenderError> {
+        let (grid, _) = cells.in_grid(model);
         let mut made = Self::new(gpu, grid)?;
-        made.versions.drawn = self.versions.drawn + 1;
-        made.versions.values = self.versions.values + 1;
-        if has_ghosts {
+        if cells.ghosts.is_some() {
             let cells = grid.active_cells().iter();
             let is_ghost: Vec<bool> = cells.map(|c| model.active_index(*c).is_none()).collect();
             let words = drawn_words(grid, &is_ghost);
@@ -181,9 +166,7 @@ impl GpuGrid {
         if words != self.drawn_words {
             self.drawn_cells = gpu.storage("drawn cells", &words)?;
             self.drawn_words = words;
-            self.versions.drawn += 1;
         }
-        self.versions.values += 1;
         let values = match cells.interpolation {
             Interpolation::Cell => column_major(model, cells),
             // Entries that no drawn cell touches are never read; NaN stays off the device.

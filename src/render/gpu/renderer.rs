@@ -16,9 +16,10 @@ use crate::render::gpu::transfer_tables::TransferTables;
 use crate::render::gpu::{Drawing, FrameRenderer, Gpu, GpuGrid, strategies};
 use crate::render::job::{Job, Progress};
 use crate::render::line_of_sight::{LineOfSight, Sighting, SurfaceTree};
+use crate::render::revisions::RevisionCounter;
 use crate::render::{DeviceBytes, Frame, Located, RenderError, Renderer, SetupTimes};
 use crate::scene::StrategyKind;
-use crate::view::{ShownCells, View};
+use crate::view::View;
 
 /// Makes images of one grid.
 pub struct GpuRenderer {
@@ -39,8 +40,7 @@ pub struct GpuRenderer {
     probe: Option<Probe>,
     /// Faces of surfaces that were looked at.
     surface_tree: SurfaceTree,
-    /// What is on the device.
-    shown: Option<ShownCells>,
+    revisions: RevisionCounter,
 }
 
 impl GpuRenderer {
@@ -70,7 +70,7 @@ impl GpuRenderer {
             solid: None,
             probe: None,
             surface_tree: SurfaceTree::default(),
-            shown: None,
+            revisions: RevisionCounter::default(),
         })
     }
 
@@ -100,9 +100,10 @@ impl GpuRenderer {
             ..
         } = self;
         let (of_case, (grid, drawn)) = (&**model, view.shown.cells.in_grid(model));
-        let tables = match tables.take().filter(|t| t.are_of(view)) {
+        let revisions = on_device.revisions;
+        let tables = match tables.take().filter(|t| t.revision == revisions.transfer) {
             Some(known) => tables.insert(known),
-            None => tables.insert(TransferTables::new(gpu, view)?),
+            None => tables.insert(TransferTables::new(gpu, view, revisions.transfer)?),
         };
         light
             .update(gpu, on_device, view, tables, &progress)
@@ -166,21 +167,15 @@ impl Renderer for GpuRenderer {
     }
 
     fn prepare(&mut self, view: &View) -> Result<(), RenderError> {
-        let (gpu, model, wanted) = (&self.gpu, &self.model, &view.shown.cells);
-        let has_ghosts = wanted.ghosts.is_some();
-        if self.shown.as_ref().is_some_and(|s| s.ghosts.is_some()) != has_ghosts {
-            let (grid, _) = wanted.in_grid(model);
-            self.grid = self.grid.remade(gpu, model, grid, has_ghosts)?;
-            self.shown = None;
+        let (gpu, model, cells) = (&self.gpu, &self.model, &view.shown.cells);
+        let (held, wanted) = (self.grid.revisions, self.revisions.of(view));
+        if held.grid != wanted.grid {
+            self.grid = GpuGrid::of(gpu, model, cells)?;
         }
-        if !self
-            .shown
-            .as_ref()
-            .is_some_and(|known| known.is_same(wanted))
-        {
-            self.grid.show(gpu, model, wanted)?;
-            self.shown = Some(wanted.clone());
+        if held.values != wanted.values {
+            self.grid.show(gpu, model, cells)?;
         }
+        self.grid.revisions = wanted;
         Ok(())
     }
 

@@ -15,7 +15,7 @@ use crate::render::gpu::slabs::Slabs;
 use crate::render::gpu::strategy::{Common, Preparation, RenderStrategy};
 use crate::render::gpu::tiles::Pace;
 use crate::render::gpu::volume::Volume;
-use crate::render::gpu::{Gpu, Pipeline, Place, Round, Versions, flag};
+use crate::render::gpu::{Gpu, Pipeline, Place, Round, flag};
 use crate::render::job::Work;
 use crate::render::{DeviceBytes, RenderError};
 use crate::scene::SrgSettings;
@@ -41,7 +41,8 @@ pub struct Srg {
 
 /// The volume with its pyramids, and what they were made from.
 struct Filled {
-    versions: Versions,
+    /// Of the values.
+    revision: u64,
     /// Values that are stored as 0 and 1.
     range: [f64; 2],
     volume: Volume,
@@ -178,8 +179,8 @@ impl Srg {
     /// Fills the volume anew where values, cells or shape have changed.
     async fn fill(&mut self, what: &Preparation<'_>, shape: Shape) -> Result<(), RenderError> {
         let filled = self.filled.take().filter(|f| f.volume.shape == shape);
-        let versions = what.grid.versions;
-        if filled.as_ref().is_some_and(|f| f.versions == versions) {
+        let revision = what.grid.revisions.values;
+        if filled.as_ref().is_some_and(|f| f.revision == revision) {
             self.filled = filled;
             return Ok(());
         }
@@ -194,7 +195,7 @@ impl Srg {
         self.pyramids.average(&mut slabs, &volume, &bricks).await?;
         self.fills += 1;
         self.filled = Some(Filled {
-            versions,
+            revision,
             range,
             volume,
             bricks,
