@@ -243,7 +243,15 @@ mod tests {
                 .flat_map(|&(ijk, face)| FaceHit::of(&grid, ijk, face, origin, direction));
             let mut all: Vec<FaceHit> = all.collect();
             for hits in [&mut found, &mut all] {
-                hits.sort_by(|a, b| a.distance.total_cmp(&b.distance));
+                // Faces of two cells may be one place.
+                let order = |hit: &FaceHit| {
+                    (
+                        hit.distance.to_bits(),
+                        grid.dims().cell(hit.cell),
+                        hit.face as usize,
+                    )
+                };
+                hits.sort_by_key(order);
             }
             assert!(found == all);
             // What is entered is left, the ray starting outside of all cells or not.

@@ -340,9 +340,10 @@ fn the_volume_is_filled_anew_when_it_must_and_only_then() {
         assert_eq!(bench.prepare(&first, true).1, 1);
     }
     // What is left of a fill that was cancelled is not used.
-    bench.show(&first);
-    assert_eq!(bench.prepare(&first, false), (false, 0, 1));
-    assert_eq!(bench.prepare(&first, true).1, 1);
+    let later = view(another[0]);
+    bench.show(&later);
+    assert_eq!(bench.prepare(&later, false), (false, 0, 1));
+    assert_eq!(bench.prepare(&later, true).1, 1);
 }
 
 #[test]
