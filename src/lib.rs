@@ -24,7 +24,7 @@
 //! | [`mod@case`] | a model with its properties and steps; from files ([`case::load`]) and into them ([`case::save`]) |
 //! | [`scene`] | what a scene file says |
 //! | [`view`] | a scene resolved against a case: what is shown, from where, and how it looks |
-//! | [`render`] | from a view to an image, on the GPU |
+//! | [`render`] | from a view to an image, on the GPU or the CPU |
 //! | [`mod@reference`] | the same in plain f64 on the CPU: the truth that the others are measured against |
 //! | [`picking`] | what is seen at a place in the image |
 //! | [`picture`] | image files, legends, axes, films |
@@ -33,15 +33,12 @@
 //! | [`viewer`] | the window |
 
 pub mod case;
-#[cfg(feature = "gpu")]
 pub mod compare;
 pub mod image;
 pub mod model;
-#[cfg(feature = "gpu")]
 pub mod picking;
 pub mod picture;
 pub mod reference;
-#[cfg(feature = "gpu")]
 pub mod render;
 pub mod scene;
 pub mod session;

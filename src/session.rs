@@ -8,13 +8,10 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use crate::case::{Case, CaseError, load};
-#[cfg(feature = "gpu")]
 use crate::image::{Image, Rgb8};
 use crate::model::{CellField, Spaces};
-#[cfg(feature = "gpu")]
 use crate::picture::Shot;
 use crate::reference::{self, Located};
-#[cfg(feature = "gpu")]
 use crate::render::{self, RenderError, Renderer};
 use crate::scene::{Interpolation, Scene};
 use crate::view::{SceneError, look};
@@ -34,7 +31,6 @@ use crate::view::{SceneError, look};
 /// ```
 pub struct Session {
     case: Arc<Case>,
-    #[cfg(feature = "gpu")]
     renderer: Option<Box<dyn Renderer>>,
 }
 
@@ -52,7 +48,6 @@ pub enum Error {
     #[error(transparent)]
     Scene(#[from] SceneError),
     /// No image can be made.
-    #[cfg(feature = "gpu")]
     #[error(transparent)]
     Render(#[from] RenderError),
 }
@@ -123,7 +118,6 @@ impl Session {
     pub fn of(case: impl Into<Arc<Case>>) -> Self {
         Self {
             case: case.into(),
-            #[cfg(feature = "gpu")]
             renderer: None,
         }
     }
@@ -200,7 +194,6 @@ impl Session {
     ///
     /// # Errors
     /// When the scene cannot be shown, or there is no device that makes images.
-    #[cfg(feature = "gpu")]
     pub fn picture(&mut self, scene: &Scene) -> Result<Rgb8, Error> {
         let shot = Shot::of(scene, &self.case, false)?;
         let image = self.rendered(&shot)?;
@@ -211,13 +204,11 @@ impl Session {
     ///
     /// # Errors
     /// As [`Self::picture`].
-    #[cfg(feature = "gpu")]
     pub fn image(&mut self, scene: &Scene) -> Result<Image, Error> {
         let shot = Shot::of(scene, &self.case, true)?;
         self.rendered(&shot)
     }
 
-    #[cfg(feature = "gpu")]
     fn rendered(&mut self, shot: &Shot) -> Result<Image, Error> {
         let renderer = match &mut self.renderer {
             Some(renderer) => renderer,
@@ -289,7 +280,6 @@ mod tests {
         assert_eq!(found[1], None);
     }
 
-    #[cfg(feature = "gpu")]
     #[test]
     fn a_scene_becomes_a_picture() {
         let mut session = session();

@@ -315,10 +315,14 @@ fn rooms_have_one_direction() {
         imports.len()
     );
     assert_eq!(climbs(&imports), Vec::<String>::new());
-    // Whoever wants images knows the contract, and no executor.
-    let gpu = ["render".to_owned(), "gpu".to_owned()];
-    let knows = |(from, to): &&Import| to.starts_with(&gpu) && from[0] != "render";
-    assert_eq!(imports.iter().find(knows), None);
+    // Whoever wants images knows the contract, and no executor; nor do executors, and what they share, know others.
+    for executor in ["gpu", "cpu"] {
+        let executor = ["render".to_owned(), executor.to_owned()];
+        let stranger =
+            |from: &Module| from[0] != "render" || (from.len() > 1 && !from.starts_with(&executor));
+        let knows = |(from, to): &&Import| to.starts_with(&executor) && stranger(from);
+        assert_eq!(imports.iter().find(knows), None);
+    }
     assert_eq!(circles(&imports), Vec::<String>::new());
 }
 

@@ -108,7 +108,7 @@ impl VertexField {
         };
         let pillars: Vec<Vec<(usize, f32)>> = (0..dims.pillars())
             .into_par_iter()
-            .map(|pillar| average_on_pillar(grid, &value, pillar))
+            .map(|pillar| average_on_pillar(grid, value, pillar))
             .collect();
         let mut values = vec![f32::NAN; grid.depths().len()];
         for (entry, value) in pillars.into_iter().flatten() {

@@ -9,7 +9,6 @@ mod difference;
 mod draft;
 mod files;
 pub mod film;
-#[cfg(feature = "gpu")]
 pub mod filming;
 mod info;
 mod layout;

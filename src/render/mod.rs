@@ -5,9 +5,11 @@
 //! it any more. Whoever shows, saves, compares, times or picks uses these alone.
 
 mod error;
+#[cfg(feature = "gpu")]
 pub mod gpu;
 pub mod job;
 pub mod line_of_sight;
+pub mod plan;
 pub mod revisions;
 mod stats;
 
@@ -125,5 +127,14 @@ pub struct SetupTimes {
 /// # Errors
 /// When there is no (such) adapter, or it lacks a limit.
 pub fn executor(adapter: Option<&str>) -> Result<Arc<dyn Executor>, RenderError> {
-    Ok(Arc::new(gpu::GpuExecutor::new(adapter)?))
+    #[cfg(feature = "gpu")]
+    return Ok(Arc::new(gpu::GpuExecutor::new(adapter)?));
+    #[cfg(not(feature = "gpu"))]
+    Err(match adapter {
+        None => RenderError::NoAdapter,
+        Some(wanted) => RenderError::NoSuchAdapter {
+            wanted: wanted.to_owned(),
+            known: "none in this build".into(),
+        },
+    })
 }

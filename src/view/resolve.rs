@@ -41,10 +41,8 @@ pub(super) fn resolve_over(
     let exaggeration = exaggeration(scene, active_bounds(case)?)?;
     let spaces = Spaces::new(case.grid.map_axes(), exaggeration);
     let edges = mean_world_edges(case, exaggeration);
-    let property = match &scene.property {
-        Some(name) => name.clone(),
-        None => default_property(case),
-    };
+    let property = scene.property.clone();
+    let property = property.unwrap_or_else(|| default_property(case));
     let step = step_of(case, &scene.step, case.is_dynamic(&property))?;
     let field = case.field(&property, step)?;
     let asked = ColorRequest {

@@ -4,18 +4,18 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::mem::{offset_of, size_of};
 
 use strataray::model::topology;
-use strataray::render::gpu::columns::COLUMN_MARGINS;
-use strataray::render::gpu::layout::{
+use strataray::render::gpu::shader;
+use strataray::render::plan::columns::COLUMN_MARGINS;
+use strataray::render::plan::layout::{
     self, BlurInfo, BricksInfo, Emitter, Found, Frame, GridInfo, LightingInfo, PaintInfo, Slab,
     Tile, VolumeInfo,
 };
-use strataray::render::gpu::shader;
 use strataray::view::{lighting, surfaces};
 use wgpu::naga::front::wgsl;
 use wgpu::naga::{Expression, Literal, Module, TypeInner};
 
 /// Both sides' text, to find what the other lacks.
-const HOST: &str = include_str!("../../src/render/gpu/layout.rs");
+const HOST: &str = include_str!("../../src/render/plan/layout.rs");
 
 fn module() -> Module {
     wgsl::parse_str(&shader::compose("layout").unwrap()).unwrap()

@@ -137,7 +137,7 @@ fn closed_form_of_vertical_pillars_finds_the_same_cells() {
         ..Shape::default()
     }
     .case();
-    assert!(GpuGrid::new(&gpu, &case.grid).unwrap().vertical);
+    assert!(GpuGrid::new(&gpu, &case.grid).unwrap().facts.vertical);
     check(&gpu, &case, "VALUE");
 }
 

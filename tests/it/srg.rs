@@ -18,7 +18,6 @@ use strataray::image::metrics::{Comparison, fraction_within, psnr_8bit};
 use strataray::image::{Image, Rgb8};
 use strataray::model::{CellField, Grid, VertexField};
 use strataray::reference::{self, Locator};
-use strataray::render::gpu::layout::RUN;
 use strataray::render::gpu::pyramids::{Bricks, PyramidMaker};
 use strataray::render::gpu::resample::{Resampler, VOXEL_WORK};
 use strataray::render::gpu::slabs::Slabs;
@@ -27,6 +26,7 @@ use strataray::render::gpu::strategy::{Preparation, RenderStrategy};
 use strataray::render::gpu::tiles::Pace;
 use strataray::render::gpu::volume::Volume;
 use strataray::render::gpu::{Gpu, GpuGrid, GpuRenderer};
+use strataray::render::plan::layout::RUN;
 use strataray::render::revisions::RevisionCounter;
 use strataray::render::{Frame, Job, RenderError, Renderer};
 use strataray::scene::{

@@ -7,11 +7,13 @@
 use glam::DVec3;
 
 use super::device::Gpu;
-use super::layout::{BlurInfo, MAX_CLIP_PLANES, WORK_GAUSSIAN, WORK_MEAN, WORK_VALUES};
 use super::pipeline::{Pipeline, flag};
 use super::slabs::Slabs;
 use super::volume::Volume;
 use crate::render::RenderError;
+use crate::render::plan::layout::{
+    BlurInfo, MAX_CLIP_PLANES, Slab, WORK_GAUSSIAN, WORK_MEAN, WORK_VALUES,
+};
 use crate::view::voxels::Shape;
 
 /// What a pyramid is made from.
@@ -255,9 +257,7 @@ impl Blurs {
         let gpu = slabs.gpu;
         let info = gpu.uniform("blur", &source.info(line));
         let pipeline = self.pipeline(gpu, pass)?;
-        let dispatch = |encoder: &mut wgpu::CommandEncoder,
-                        slab: &super::layout::Slab,
-                        voxels: &wgpu::Buffer| {
+        let dispatch = |encoder: &mut wgpu::CommandEncoder, slab: &Slab, voxels: &wgpu::Buffer| {
             let slab_info = gpu.uniform("slab", slab);
             let own = [
                 info.as_entire_binding(),

@@ -1,14 +1,12 @@
-//! Faces of cells by number, and the boundary faces rasterized: where the rays of a tile come in and go out.
-
-use rayon::prelude::*;
+//! Faces of cells on the device, and the boundary faces rasterized: where the rays of a tile come in and go out.
 
 use super::device::Gpu;
 use super::grid_upload::GpuGrid;
 use super::pipeline::RasterPipeline;
 use super::round::{Place, Round};
-use crate::model::topology::Face;
-use crate::model::{Dims, Grid, Ijk};
+use crate::model::Grid;
 use crate::render::RenderError;
+use crate::render::plan::faces::face_numbers;
 
 /// Which face a pixel gets; the order is that of the shader's constants.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -80,7 +78,11 @@ impl BoundaryFaces {
             .filter(|l| l.revision == grid.revisions.drawn);
         let list = match known {
             Some(known) => known,
-            None => FaceList::new(gpu, grid, &numbers(model, &model.boundary_faces(drawn))?)?,
+            None => FaceList::new(
+                gpu,
+                grid,
+                &face_numbers(model, &model.boundary_faces(drawn))?,
+            )?,
         };
         Ok(self.list.insert(list))
     }
@@ -184,29 +186,4 @@ pub(super) fn texture(gpu: &Gpu, size: [u32; 2], format: wgpu::TextureFormat) ->
     let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING;
     let texture = gpu.flat_texture("faces", size, format, usage);
     texture.create_view(&wgpu::TextureViewDescriptor::default())
-}
-
-/// Numbers of faces as shaders know them: `(column * nk + layer) * 6 + face`.
-///
-/// # Errors
-/// When 32 bits do not number all faces of the grid.
-pub fn numbers(model: &Grid, faces: &[(Ijk, Face)]) -> Result<Vec<u32>, RenderError> {
-    let dims = model.dims();
-    let needed = 6 * dims.cells() as u64;
-    if needed >= u64::from(u32::MAX) {
-        return Err(RenderError::TooLarge {
-            what: "numbering the faces",
-            needed,
-            limit: u64::from(u32::MAX),
-        });
-    }
-    let numbers = faces
-        .par_iter()
-        .map(|(cell, face)| number(dims, *cell, *face));
-    Ok(numbers.collect())
-}
-
-fn number(dims: Dims, cell: Ijk, face: Face) -> u32 {
-    let column = cell.i + dims.ni * cell.j;
-    ((column * dims.nk + cell.k) * 6 + face as usize) as u32
 }

@@ -12,16 +12,16 @@ use super::cones::ConeTable;
 use super::device::Gpu;
 use super::extinction::{Blurs, Pyramid};
 use super::grid_upload::GpuGrid;
-use super::layout::{self, Emitter, LightingInfo, Slab};
 use super::pipeline::{Pipeline, flag};
 use super::resample::Resampler;
 use super::slabs::Slabs;
 use super::tiles::Pace;
 use super::transfer_tables::TransferTables;
-use super::uniforms::{clip_planes, ghost};
 use super::volume::Volume;
 use crate::render::RenderError;
 use crate::render::job::Progress;
+use crate::render::plan::frame::{clip_planes, ghost};
+use crate::render::plan::layout::{self, Emitter, LightingInfo, Slab};
 use crate::render::stats::LightTimes;
 use crate::scene::lighting::LightMode;
 use crate::view::View;
@@ -306,14 +306,14 @@ impl Illumination {
             position: position(view, field.range),
             sigma: view.style.lighting.sigma(),
             ghost: ghost(view)[3],
-            clip_planes: clip_planes(grid, view),
+            clip_planes: clip_planes(&grid.facts, view),
             clip_count: view.shown.clip.len() as u32,
-            bounds: grid.bounds,
+            bounds: grid.facts.bounds,
             extent: view.style.lighting.extent,
         };
         let shading = Shading::of(&view.style.lighting);
         let is_stale =
-            |made: &Option<Pyramid>| !made.as_ref().is_some_and(|p| p.revision == source.revision);
+            |made: &Option<Pyramid>| made.as_ref().is_none_or(|p| p.revision != source.revision);
         let group = self.bind(gpu, tables);
         let mut slabs = Slabs::new(gpu, &mut self.pace, progress);
         if !shading.casts_rays() {
@@ -594,7 +594,7 @@ struct LightSpace {
 
 impl LightSpace {
     fn new(grid: &GpuGrid, view: &View) -> Self {
-        let [low, high] = grid.bounds;
+        let [low, high] = grid.facts.bounds;
         let sigma = view.style.lighting.sigma();
         let edges = (high - low).max(DVec3::splat(1e-6));
         Self {
@@ -605,7 +605,7 @@ impl LightSpace {
     }
 
     fn point(&self, grid: &GpuGrid, view: &View, world: DVec3) -> Vec3 {
-        let point = view.world.spaces.grid_from_world.transform_point3(world) - grid.origin;
+        let point = view.world.spaces.grid_from_world.transform_point3(world) - grid.facts.origin;
         ((point - self.low) * self.scale).as_vec3()
     }
 

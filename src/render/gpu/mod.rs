@@ -1,8 +1,6 @@
 //! Everything that owns a GPU object: device, shaders, the compact grid, frames and probes.
 
-pub mod accel;
 pub mod bind_groups;
-pub mod columns;
 pub mod cones;
 pub mod device;
 pub mod executor;
@@ -11,7 +9,6 @@ pub mod faces;
 pub mod frame;
 pub mod grid_upload;
 pub mod illumination;
-pub mod layout;
 pub mod pipeline;
 pub mod probe;
 pub mod pyramids;
@@ -26,7 +23,6 @@ pub mod surfaces;
 mod target;
 pub mod tiles;
 pub mod transfer_tables;
-mod uniforms;
 pub mod volume;
 
 pub use device::Gpu;

@@ -4,9 +4,9 @@ use glam::DVec3;
 
 use super::device::Gpu;
 use super::grid_upload::{Constants, GpuGrid};
-use super::layout::{self, Found, NOT_FOUND};
 use super::pipeline::Pipeline;
 use crate::model::{Grid, Ijk};
+use crate::render::plan::layout::{self, Found, NOT_FOUND};
 use crate::render::{Located, RenderError};
 use crate::scene::Interpolation;
 
@@ -66,8 +66,10 @@ impl Probe {
         let grid_group = gpu_grid.bind(gpu);
         let mut located = Vec::with_capacity(points_in_grid.len());
         for batch in points_in_grid.chunks(BATCH) {
-            let points: Vec<[[f32; 4]; 2]> =
-                batch.iter().map(|&p| split(p - gpu_grid.origin)).collect();
+            let points: Vec<[[f32; 4]; 2]> = batch
+                .iter()
+                .map(|&p| split(p - gpu_grid.facts.origin))
+                .collect();
             let interpolation = layout::interpolation(interpolation);
             let info = gpu.uniform("points", &[interpolation, batch.len() as u32, 0, 0]);
             let points = gpu.storage("points", &points)?;

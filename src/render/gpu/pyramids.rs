@@ -1,10 +1,10 @@
 //! Pyramids over a resampled volume: averages, and how rays may pass its bricks.
 
 use super::device::Gpu;
-use super::layout::{BRICK, BricksInfo, LUT_SIZE, Slab};
 use super::pipeline::Pipeline;
-use super::transfer_tables::extinctions;
 use crate::render::RenderError;
+use crate::render::plan::layout::{BRICK, BricksInfo, LUT_SIZE, Slab};
+use crate::render::plan::transfer::extinctions;
 
 use super::slabs::Slabs;
 use super::volume::Volume;

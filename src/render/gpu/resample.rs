@@ -2,11 +2,11 @@
 
 use super::device::Gpu;
 use super::grid_upload::{Constants, GpuGrid};
-use super::layout::{self, VolumeInfo};
 use super::pipeline::{Pipeline, flag};
 use super::slabs::Slabs;
 use super::volume::Volume;
 use crate::render::RenderError;
+use crate::render::plan::layout::{self, VolumeInfo};
 use crate::scene::Interpolation;
 
 /// Loop iterations that a voxel costs, about: bins, column, Newton's method.
@@ -93,7 +93,7 @@ fn volume_info(
     range: [f64; 2],
     interpolation: Interpolation,
 ) -> VolumeInfo {
-    let [from, to] = grid.bounds;
+    let [from, to] = grid.facts.bounds;
     VolumeInfo {
         box_low: from.as_vec3().to_array(),
         value_low: range[0] as f32,

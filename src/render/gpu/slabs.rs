@@ -1,10 +1,10 @@
 //! Work on volumes in parts, each short enough for a slow adapter.
 
 use super::device::Gpu;
-use super::layout::Slab;
 use super::tiles::Pace;
 use crate::render::RenderError;
 use crate::render::job::Progress;
+use crate::render::plan::layout::Slab;
 
 /// Makes volumes and pyramids in parts, each short enough for a slow adapter.
 pub struct Slabs<'a> {

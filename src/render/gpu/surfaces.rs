@@ -11,14 +11,16 @@ use super::device::Gpu;
 use super::faces::{self, FORMAT, FaceList, FaceTarget};
 use super::grid_upload::GpuGrid;
 use super::illumination::Shading;
-use super::layout::{self, PaintInfo};
 use super::pipeline::{Pipeline, RasterPipeline, flag};
 use super::round::{Place, Round};
 use crate::image::Blending;
 use crate::model::Grid;
 use crate::render::RenderError;
+use crate::render::plan::faces::face_numbers;
+use crate::render::plan::layout::{self, PaintInfo};
+use crate::render::plan::surfaces::{Layer, faults, layers, palette};
 use crate::scene::Hull;
-use crate::view::surfaces::{FAINT_BEHIND, FAINT_FRONT, PALETTE, UNNAMED, faint_color};
+use crate::view::surfaces::{FAINT_BEHIND, FAINT_FRONT, faint_color};
 use crate::view::{Surfaces, View};
 
 /// Names and values of the `override` constants of shaders that blend surfaces.
@@ -30,36 +32,6 @@ pub fn constants(surfaces: Surfaces) -> [(&'static str, f64); 5] {
         ("CELL_EDGES", flag(surfaces.cell_edges)),
         ("SOLID", flag(surfaces.solid)),
     ]
-}
-
-/// Which points of which faces make a layer.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Layer {
-    /// The nearest of an opaque hull.
-    Hull,
-    /// The nearest of a faint hull.
-    Front,
-    /// The last of a faint hull.
-    Ground,
-    /// Those of a sheet that lies behind so many others.
-    Sheet(u32),
-}
-
-/// The layers that a ray can have.
-fn layers(surfaces: Surfaces) -> Vec<Layer> {
-    let sheets = match surfaces.faults {
-        true => 0..layout::SHEET_LAYERS,
-        false => 0..0,
-    };
-    let hull: &[Layer] = match surfaces.hull {
-        Hull::Hidden => &[],
-        Hull::Faint => &[Layer::Front, Layer::Ground],
-        Hull::Opaque => return vec![Layer::Hull],
-    };
-    hull.iter()
-        .copied()
-        .chain(sheets.map(Layer::Sheet))
-        .collect()
 }
 
 /// Finds surface points and gives them colors.
@@ -271,7 +243,7 @@ impl ShownSurfaces {
             (false, _) => None,
             (true, Some(boundary)) if SurfacePainter::shares_faces(view) => Some(boundary.clone()),
             (true, _) => {
-                let faces = faces::numbers(model, &view.hull_faces(model))?;
+                let faces = face_numbers(model, &view.hull_faces(model))?;
                 Some(FaceList::new(gpu, grid, &faces)?)
             }
         };
@@ -288,26 +260,4 @@ impl ShownSurfaces {
             faults: numbers.len() as u32,
         })
     }
-}
-
-/// Numbers of the fault faces in rising order, and of their colors.
-fn faults(model: &Grid, view: &View) -> Result<Vec<(u32, u32)>, RenderError> {
-    let faces = view.fault_faces(model);
-    let places: Vec<_> = faces.iter().map(|f| (f.0, f.1)).collect();
-    let color = |fault: Option<usize>| fault.map_or(PALETTE.len(), |n| n % PALETTE.len()) as u32;
-    let colors = faces.iter().map(|f| color(f.2));
-    let mut faults: Vec<_> = faces::numbers(model, &places)?
-        .into_iter()
-        .zip(colors)
-        .collect();
-    faults.sort_unstable();
-    Ok(faults)
-}
-
-/// Colors of faults as they are blended; the last one is that of faults without a name.
-fn palette(blending: Blending) -> [[f32; 4]; layout::FAULT_COLORS] {
-    std::array::from_fn(|n| {
-        let [r, g, b] = blending.of_srgb(*PALETTE.get(n).unwrap_or(&UNNAMED));
-        [r, g, b, 1.0].map(|v| v as f32)
-    })
 }

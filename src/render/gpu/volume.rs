@@ -1,9 +1,9 @@
 //! Volumes on the device over the box of the active cells, made in slabs.
 
 use super::device::Gpu;
-use super::layout::{RUN, Slab, VolumeInfo};
 use super::slabs::Slabs;
 use crate::render::RenderError;
+use crate::render::plan::layout::{RUN, Slab, VolumeInfo};
 use crate::view::voxels::{Shape, Voxel};
 
 /// Bytes of the buffer through which voxels come into the texture: no adapter needs to write it from a

@@ -7,10 +7,10 @@
 
 use crate::render::RenderError;
 use crate::render::gpu::faces::{FaceMode, FaceRaster, FaceTarget};
-use crate::render::gpu::layout::LIBC_STATE;
 use crate::render::gpu::strategy::{Common, Preparation, RenderStrategy};
 use crate::render::gpu::{Gpu, Pipeline, Place, Round, flag, tiles};
 use crate::render::job::Work;
+use crate::render::plan::layout::LIBC_STATE;
 use crate::scene::{Integration, Interpolation, LibcSettings};
 
 /// The strategy with its compiled shaders.
@@ -115,7 +115,7 @@ impl RenderStrategy for Libc {
                 self.walk = variant.compile(what.gpu)?;
                 self.variant = variant;
             }
-            let margin = match what.grid.layers_cross {
+            let margin = match what.grid.facts.layers_cross {
                 // Cells may overlap anywhere: every entry counts.
                 true => f32::MAX,
                 false => what.view.fault_gap() as f32,

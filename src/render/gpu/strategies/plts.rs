@@ -6,10 +6,10 @@
 //! a sample inside a cell, a point location at each entry into the model.
 
 use crate::render::RenderError;
-use crate::render::gpu::layout::RAY_STATE;
 use crate::render::gpu::strategy::{Common, Preparation, RenderStrategy};
 use crate::render::gpu::{Gpu, Pipeline, Place, Round};
 use crate::render::job::Work;
+use crate::render::plan::layout::RAY_STATE;
 
 /// The strategy with its compiled shader.
 pub struct Plts {

@@ -8,7 +8,6 @@
 
 use crate::model::Dims;
 use crate::render::gpu::faces::{FaceMode, FaceRaster, FaceTarget};
-use crate::render::gpu::layout::RAY_STATE;
 use crate::render::gpu::pyramids::{Bricks, Classifier, Limits, PyramidMaker};
 use crate::render::gpu::resample::Resampler;
 use crate::render::gpu::slabs::Slabs;
@@ -17,6 +16,7 @@ use crate::render::gpu::tiles::Pace;
 use crate::render::gpu::volume::Volume;
 use crate::render::gpu::{Gpu, Pipeline, Place, Round, flag};
 use crate::render::job::Work;
+use crate::render::plan::layout::RAY_STATE;
 use crate::render::{DeviceBytes, RenderError};
 use crate::scene::SrgSettings;
 use crate::transfer::TransferFunction;

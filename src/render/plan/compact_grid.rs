@@ -1,0 +1,151 @@
+//! The grid in the form in which executors read it: pillars, shared depth lists, bins, all relative to an origin.
+
+use std::time::{Duration, Instant};
+
+use glam::{DVec2, DVec3};
+use rayon::prelude::*;
+
+use super::accel::AccelGrid;
+use super::columns::{self, ColumnShape};
+use super::layout::{COLUMN_FLAG, GridInfo, LIST_GAPPED, LIST_OFFSET};
+use crate::model::Grid;
+use crate::render::RenderError;
+
+/// What is true of a grid as a whole.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct GridFacts {
+    /// Origin of the coordinates in grid space.
+    pub origin: DVec3,
+    /// Box of the active cells relative to the origin.
+    pub bounds: [DVec3; 2],
+    /// True where all pillars are vertical, so that points are located in closed form.
+    pub vertical: bool,
+    /// True where the layers of some column cross, so that cells may overlap.
+    pub layers_cross: bool,
+    /// +1 where the cells are right-handed in grid space, else -1.
+    pub handedness: f32,
+}
+
+/// A grid in compact form, without what is shown of it. `shaders/shared/grid.wgsl` says what the arrays hold.
+pub struct CompactGrid {
+    /// What is true of it as a whole.
+    pub facts: GridFacts,
+    /// Time that building the acceleration grid took.
+    pub acceleration_time: Duration,
+    /// Sizes of the grid and of its acceleration grid.
+    pub info: GridInfo,
+    /// Of each pillar x, y at the origin's depth, what rounding to f32 cut off there, and their change per unit of
+    /// depth.
+    pub pillars: Vec<[[f32; 2]; 3]>,
+    /// The four depth lists of each column, with flags.
+    pub column_lists: Vec<[u32; 4]>,
+    /// The pool of depth lists.
+    pub depths: Vec<f32>,
+    /// First entry in `bin_columns` and depth range of each bin; one more than there are bins.
+    pub bins: Vec<[u32; 2]>,
+    /// Columns of the bins.
+    pub bin_columns: Vec<u32>,
+}
+
+impl CompactGrid {
+    /// Brings a grid into compact form.
+    ///
+    /// # Errors
+    /// When its depth lists have more entries than can be numbered.
+    pub fn new(grid: &Grid) -> Result<Self, RenderError> {
+        if grid.depths().len() > LIST_OFFSET as usize {
+            return Err(RenderError::TooLarge {
+                what: "depth lists",
+                needed: 4 * grid.depths().len() as u64,
+                limit: 4 * u64::from(LIST_OFFSET),
+            });
+        }
+        let bounds = grid.bounds().unwrap_or([DVec3::ZERO, DVec3::ONE]);
+        let origin = round_origin(bounds);
+        let start = Instant::now();
+        let shapes = columns::shapes(grid);
+        let accel = AccelGrid::new(grid, &shapes, origin);
+        let acceleration_time = start.elapsed();
+        let dims = grid.dims();
+        let depths = grid.depths().par_iter();
+        Ok(Self {
+            facts: GridFacts {
+                origin,
+                bounds: bounds.map(|b| b - origin),
+                vertical: grid.pillars().iter().all(|p| p.slope() == DVec2::ZERO),
+                layers_cross: shapes.iter().any(|s| s.layers_cross),
+                handedness: if grid.signed_bulk_volume() < 0.0 {
+                    -1.0
+                } else {
+                    1.0
+                },
+            },
+            acceleration_time,
+            info: GridInfo {
+                ni: dims.ni as u32,
+                nj: dims.nj as u32,
+                nk: dims.nk as u32,
+                bins_x: accel.size[0],
+                bins_y: accel.size[1],
+                reserved: 0,
+                bin_origin: accel.origin.as_vec2().to_array(),
+                bin_size: accel.bin.as_vec2().to_array(),
+                depth_low: accel.depth[0] as f32,
+                depth_scale: accel.depth[1] as f32,
+            },
+            pillars: pillars(grid, origin),
+            column_lists: column_lists(grid, &shapes),
+            depths: depths.map(|d| (d - origin.z) as f32).collect(),
+            bins: accel.bins,
+            bin_columns: accel.columns,
+        })
+    }
+
+    /// Empties the bins of the lower half of x, so that tests have a grid in which points are lost.
+    #[cfg(test)]
+    pub(crate) fn lose_half(&mut self) {
+        for row in self.bins.chunks_exact_mut(self.info.bins_x as usize) {
+            let half = row.len() / 2;
+            let next = row[half][0];
+            row[..half].iter_mut().for_each(|bin| bin[0] = next);
+        }
+    }
+}
+
+/// The middle of the model, rounded so coarsely that coordinates that were f32 in the file stay
+/// exact when it is subtracted.
+fn round_origin([low, high]: [DVec3; 2]) -> DVec3 {
+    let extent = (high - low).max_element().max(1e-6);
+    let grain = (extent.log2().floor() - 10.0).min(0.0).exp2();
+    (0.5 * (low + high) / grain).round() * grain
+}
+
+fn pillars(grid: &Grid, origin: DVec3) -> Vec<[[f32; 2]; 3]> {
+    let compact = grid.pillars().iter().map(|p| {
+        let at = (p.at(origin.z) - origin).truncate();
+        let low_bits = at - at.as_vec2().as_dvec2();
+        [at, low_bits, p.slope()].map(|v| v.as_vec2().to_array())
+    });
+    compact.collect()
+}
+
+fn column_lists(grid: &Grid, shapes: &[ColumnShape]) -> Vec<[u32; 4]> {
+    shapes
+        .par_iter()
+        .enumerate()
+        .map(|(column, shape)| {
+            let mut lists = grid
+                .column_lists(column)
+                .map(|list| list.offset() as u32 | if list.gapped() { LIST_GAPPED } else { 0 });
+            if shape.layers_cross {
+                lists[0] |= COLUMN_FLAG;
+            }
+            for bit in 0..3 {
+                if shape.margin_level >> bit & 1 == 1 {
+                    lists[bit + 1] |= COLUMN_FLAG;
+                }
+            }
+            lists
+        })
+        .collect()
+}
