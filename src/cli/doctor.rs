@@ -1,7 +1,7 @@
 //! `strataray doctor`: what this machine has to make images with, and what is missing.
 
 use serde_json::{Value, json};
-use strataray::render::gpu::device::{AdapterFacts, adapters};
+use strataray::render::{AdapterFacts, adapters};
 
 #[derive(clap::Args)]
 #[command(after_help = "Examples:

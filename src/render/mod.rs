@@ -4,6 +4,7 @@
 //! that. An image is a [`Job`]: it is advanced until a deadline or run to its end, and dropped where nobody wants
 //! it any more. Whoever shows, saves, compares, times or picks uses these alone.
 
+mod adapters;
 mod error;
 #[cfg(feature = "gpu")]
 pub mod gpu;
@@ -17,6 +18,7 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 
+pub use adapters::{AdapterFacts, adapters};
 pub use error::RenderError;
 pub use job::Job;
 pub use line_of_sight::{LineOfSight, SurfacePoint};

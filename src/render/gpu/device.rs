@@ -3,7 +3,7 @@
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
 use super::bind_groups::{Parameters, SharedLayouts};
-use crate::render::RenderError;
+use crate::render::{AdapterFacts, RenderError};
 
 /// The first error of what was recorded or submitted, until someone asks.
 #[derive(Debug, Default)]
@@ -342,25 +342,6 @@ fn lacking(adapter: &wgpu::Adapter, parameters: Parameters) -> Option<String> {
             "it offers {offered} storage buffers per shader stage and {needed} are needed; install a Vulkan driver (on Debian the package mesa-vulkan-drivers)"
         )
     })
-}
-
-/// An adapter that the system offers.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct AdapterFacts {
-    /// Its name.
-    pub name: String,
-    /// What it is, such as `discrete GPU` or `software`.
-    pub kind: &'static str,
-    /// What it is reached by, such as `vulkan`.
-    pub backend: &'static str,
-    /// The driver and its version; may be empty.
-    pub driver: String,
-    /// Bytes that one array of a model can have.
-    pub most_bytes: u64,
-    /// Pixels along the edge of an image, and voxels along that of a volume, at most.
-    pub most_texels: [u32; 2],
-    /// Why it cannot be used.
-    pub lacking: Option<String>,
 }
 
 /// All adapters, the best one first.
