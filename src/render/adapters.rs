@@ -18,11 +18,3 @@ pub struct AdapterFacts {
     /// Why it cannot be used.
     pub lacking: Option<String>,
 }
-
-/// All adapters, the best one first.
-pub fn adapters() -> Vec<AdapterFacts> {
-    #[cfg(feature = "gpu")]
-    return super::gpu::device::adapters();
-    #[cfg(not(feature = "gpu"))]
-    Vec::new()
-}

@@ -18,7 +18,7 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 
-pub use adapters::{AdapterFacts, adapters};
+pub use adapters::AdapterFacts;
 pub use error::RenderError;
 pub use job::Job;
 pub use line_of_sight::{LineOfSight, SurfacePoint};
@@ -139,4 +139,12 @@ pub fn executor(adapter: Option<&str>) -> Result<Arc<dyn Executor>, RenderError>
             known: "none in this build".into(),
         },
     })
+}
+
+/// All adapters, the best one first.
+pub fn adapters() -> Vec<AdapterFacts> {
+    #[cfg(feature = "gpu")]
+    return gpu::device::adapters();
+    #[cfg(not(feature = "gpu"))]
+    Vec::new()
 }
