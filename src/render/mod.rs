@@ -5,6 +5,7 @@
 //! it any more. Whoever shows, saves, compares, times or picks uses these alone.
 
 mod adapters;
+pub mod cpu;
 mod error;
 #[cfg(feature = "gpu")]
 pub mod gpu;
@@ -30,7 +31,7 @@ use crate::view::View;
 /// Who makes images.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ExecutorInfo {
-    /// Kind of executor: `gpu`.
+    /// Kind of executor: `gpu` or `cpu`.
     pub executor: &'static str,
     /// Name and kind of the adapter in one line.
     pub adapter: String,
@@ -124,21 +125,16 @@ pub struct SetupTimes {
     pub acceleration: std::time::Duration,
 }
 
-/// Opens the best executor, or the best one whose adapter's name contains `adapter`, whatever the letter case.
+/// Opens the best executor, or the best one whose adapter's name contains `adapter`, whatever the letter case; `cpu`
+/// is the one without an adapter.
 ///
 /// # Errors
 /// When there is no (such) adapter, or it lacks a limit.
 pub fn executor(adapter: Option<&str>) -> Result<Arc<dyn Executor>, RenderError> {
-    #[cfg(feature = "gpu")]
-    return Ok(Arc::new(gpu::GpuExecutor::new(adapter)?));
-    #[cfg(not(feature = "gpu"))]
-    Err(match adapter {
-        None => RenderError::NoAdapter,
-        Some(wanted) => RenderError::NoSuchAdapter {
-            wanted: wanted.to_owned(),
-            known: "none in this build".into(),
-        },
-    })
+    match adapter {
+        Some(name) if name.eq_ignore_ascii_case("cpu") => Ok(Arc::new(cpu::CpuExecutor)),
+        adapter => by_adapter(adapter),
+    }
 }
 
 /// All adapters, the best one first.
@@ -147,4 +143,20 @@ pub fn adapters() -> Vec<AdapterFacts> {
     return gpu::device::adapters();
     #[cfg(not(feature = "gpu"))]
     Vec::new()
+}
+
+#[cfg(feature = "gpu")]
+fn by_adapter(adapter: Option<&str>) -> Result<Arc<dyn Executor>, RenderError> {
+    Ok(Arc::new(gpu::GpuExecutor::new(adapter)?))
+}
+
+#[cfg(not(feature = "gpu"))]
+fn by_adapter(adapter: Option<&str>) -> Result<Arc<dyn Executor>, RenderError> {
+    match adapter {
+        None => Ok(Arc::new(cpu::CpuExecutor)),
+        Some(name) => Err(RenderError::NoSuchAdapter {
+            wanted: name.to_owned(),
+            known: "cpu".to_owned(),
+        }),
+    }
 }

@@ -3,7 +3,7 @@
 use super::device::Gpu;
 use super::pipeline::flag;
 use crate::model::Grid;
-use crate::render::plan::{CompactGrid, GridFacts, drawn_words, values};
+use crate::render::plan::{CompactGrid, GridFacts, drawn_words, ghost_words, values};
 use crate::render::revisions::Revisions;
 use crate::render::{DeviceBytes, RenderError};
 use crate::view::ShownCells;
@@ -84,12 +84,8 @@ impl GpuGrid {
     pub fn of(gpu: &Gpu, model: &Grid, cells: &ShownCells) -> Result<Self, RenderError> {
         let (grid, _) = cells.in_grid(model);
         let mut made = Self::new(gpu, grid)?;
-        if cells.ghosts.is_some() {
-            let cells = grid.active_cells().iter();
-            let is_ghost: Vec<bool> = cells.map(|c| model.active_index(*c).is_none()).collect();
-            let words = drawn_words(grid, &is_ghost);
-            let bits: Vec<u32> = words.iter().map(|w| w[0]).collect();
-            made.ghost_cells = Some(gpu.storage("ghost cells", &bits)?);
+        if let Some(words) = ghost_words(model, cells) {
+            made.ghost_cells = Some(gpu.storage("ghost cells", &words)?);
         }
         Ok(made)
     }

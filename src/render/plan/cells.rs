@@ -22,6 +22,15 @@ pub fn drawn_words(grid: &Grid, drawn: &[bool]) -> Vec<[u32; 2]> {
     words
 }
 
+/// One bit for each slot: the ghosts among the cells that rays meet; `None` where no ghosts are shown.
+pub fn ghost_words(model: &Grid, cells: &ShownCells) -> Option<Vec<u32>> {
+    cells.ghosts.as_ref()?;
+    let (grid, _) = cells.in_grid(model);
+    let all = grid.active_cells().iter();
+    let is_ghost: Vec<bool> = all.map(|c| model.active_index(*c).is_none()).collect();
+    Some(drawn_words(grid, &is_ghost).iter().map(|w| w[0]).collect())
+}
+
 /// The values of what is shown of the case's grid `model`: one for each cell that rays meet, in the order of slots,
 /// or one for each entry of the depth lists. None is NaN.
 pub fn values(model: &Grid, cells: &ShownCells) -> Vec<f32> {

@@ -1,0 +1,79 @@
+//! Where a ray passes the boundary of what is drawn, as samples of its lattice see it: between two passages all
+//! samples lie in cells, or none does.
+
+use super::frame::{PixelRay, Ray};
+use super::raster::Met;
+
+/// Samples nearer to a face than this part of a step are asked of its cell, against rounding.
+const MARGIN: f32 = 0.02;
+
+/// A boundary face that a ray passes; places are numbers of samples, and parts of them.
+#[derive(Debug, Clone, Copy)]
+pub struct Passage {
+    /// Number of the face.
+    pub face: u32,
+    /// Samples from here on may lie behind the face.
+    pub near: f32,
+    /// Samples from here on do.
+    pub far: f32,
+    /// Where the ray meets the face's triangles.
+    pub at: f32,
+    /// +1 where the ray comes into the cell of the face, -1 where it leaves, 0 where it does both or neither.
+    pub turn: i32,
+}
+
+/// The passages of a ray in the order in which it comes to them.
+#[derive(Debug, Default)]
+pub struct Boundary {
+    passages: Vec<Passage>,
+    /// Cells that the ray is in before the first of them.
+    before: i32,
+}
+
+impl Boundary {
+    /// Takes the faces that a ray meets. Where it may start among cells, how many it is in follows from the end, which
+    /// lies in none.
+    pub fn gather(&mut self, met: &[Met], through: &PixelRay, ray: &Ray, step: f32, inside: bool) {
+        let scale = f64::from(through.slant) / f64::from(step);
+        let sample = |depth: f64| (depth * scale - 0.5 - f64::from(ray.first)) as f32;
+        let passages = met.iter().map(|m| Passage {
+            face: m.face,
+            near: sample(m.span[0]) - MARGIN,
+            far: sample(m.span[1]) + MARGIN,
+            at: m.point.map_or(0.0, |(depth, _)| sample(depth)),
+            turn: m.point.map_or(0, |(_, turn)| turn),
+        });
+        self.passages.clear();
+        self.passages.extend(passages);
+        self.passages
+            .sort_unstable_by(|a, b| a.near.total_cmp(&b.near));
+        let all = self.passages.iter().map(|p| p.turn).sum::<i32>();
+        self.before = if inside { -all } else { 0 };
+    }
+
+    /// The passages to which the ray has come at a sample.
+    pub fn until(&self, n: f32) -> &[Passage] {
+        let count = self.passages.partition_point(|p| p.near <= n);
+        &self.passages[..count]
+    }
+
+    /// The first sample behind one outside of all cells that may lie in one; `None` where there is none.
+    pub fn next(&self, n: f32) -> Option<f32> {
+        let passed = self.until(n);
+        if passed.iter().any(|p| p.far >= n) {
+            return Some(n + 1.0);
+        }
+        self.passages.get(passed.len()).map(|p| p.near.ceil())
+    }
+
+    /// True where there are passages at or before a sample, and at or behind it.
+    pub fn surrounds(&self, n: f32) -> bool {
+        !self.until(n).is_empty() && self.passages.iter().any(|p| p.far >= n)
+    }
+
+    /// How many cells a sample seems to be in.
+    pub fn depth(&self, n: f32) -> i32 {
+        let passed = self.until(n).iter().filter(|p| p.at <= n);
+        self.before + passed.map(|p| p.turn).sum::<i32>()
+    }
+}

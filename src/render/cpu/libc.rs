@@ -1,0 +1,602 @@
+//! LIBC: linear interpolation with barycentric coordinates (campagnolo-2021, 4.1.2). The twin of `shaders/libc.wgsl`.
+//!
+//! From each boundary face at which a ray comes in, it walks from cell to cell through shared faces. Each face is two
+//! triangles, cut along one diagonal for both of its cells; parameters are linear between the points of entry and exit.
+//!
+//! Corners are projected along the ray, so that it is the origin: edges are cross products, and a shared edge gives the
+//! same number in each of its cells, so that no ray slips between two of them.
+//! Departures from the paper: across a fault the cell behind is found by its column's depth lists, through collapsed
+//! layers by the next one that is not; a segment can be integrated as a whole.
+
+use glam::{Vec2, Vec3A, Vec4};
+
+use super::facing::{
+    FacePlace, column_behind, face_corner, face_orientation, on_face, side_lists, sides_join,
+};
+use super::frame::{PixelRay, Ray};
+use super::grid::{Grid, all_coincide};
+use super::locate::{Query, locate};
+use super::projection::{RayFrame, cross2d};
+use super::raster::Met;
+use super::scene::Scene;
+use super::section::SECTION_ENOUGH;
+use super::surfaces::Layers;
+use super::tally::Tally;
+use super::thorough::encloses;
+use super::transfer::Accumulated;
+use crate::render::plan::layout::COLUMN_FLAG;
+use crate::scene::{Integration, Interpolation, LibcSettings};
+
+/// Steps without progress after which a ray is set right by point location.
+const MOST_STALLS: u32 = 32;
+/// Recoveries of one ray after which it counts as lost.
+const MOST_RECOVERIES: u32 = 1000;
+/// Optical depth and part of the value range that one piece of a segment may have.
+const PIECE_DEPTH: f32 = 0.5;
+const PIECE_RANGE: f32 = 0.05;
+const MOST_PIECES: f32 = 16.0;
+
+/// A boundary face through which a ray comes in.
+#[derive(Debug, Clone, Copy)]
+pub struct Entry {
+    distance: f32,
+    face: u32,
+}
+
+/// The entries of a ray, nearest first.
+pub fn gather(met: &[Met], through: &PixelRay, entries: &mut Vec<Entry>) {
+    let of = |m: &Met| {
+        let (depth, _) = m.point.filter(|(_, turn)| *turn > 0)?;
+        Some(Entry {
+            distance: (depth * f64::from(through.slant)) as f32,
+            face: m.face,
+        })
+    };
+    entries.clear();
+    entries.extend(met.iter().filter_map(of));
+    entries.sort_unstable_by(|a, b| {
+        let order = a.distance.total_cmp(&b.distance);
+        order.then(a.face.cmp(&b.face))
+    });
+}
+
+/// What a ray walks through.
+pub struct Way<'a> {
+    /// What all rays read.
+    pub scene: &'a Scene<'a>,
+    /// The ray.
+    pub ray: &'a Ray,
+    /// Its entries.
+    pub entries: &'a [Entry],
+    /// What the user chose.
+    pub settings: LibcSettings,
+    /// How far before the end of what is done the next entry may lie: faces of a fault need not meet.
+    pub margin: f32,
+}
+
+/// What a ray is about to do.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Phase {
+    NeedsEntry,
+    Walks,
+    /// Stands at a fault, behind which a cell is to be found.
+    CrossesFault,
+    /// Found no way out of its cell.
+    Strayed,
+    Ended,
+}
+
+/// Where a ray has come to.
+struct Walk<'a> {
+    way: &'a Way<'a>,
+    r: RayFrame,
+    corners: Corners,
+    phase: Phase,
+    column: u32,
+    layer: u32,
+    /// Distance along the ray and parameters at which the current cell was entered.
+    t: f32,
+    uvw: Vec3A,
+    /// Face through which the last cell was left.
+    exit_face: u32,
+    /// Distance up to which the ray is done.
+    done: f32,
+    /// Next sample of the lattice.
+    n: f32,
+    /// The next entry.
+    entry: usize,
+    peels: u64,
+    recoveries: u32,
+    /// Steps in a row that have brought the ray no further.
+    stalls: u32,
+}
+
+/// Adds what a ray meets to what is there.
+pub fn cast(way: &Way<'_>, layers: &mut Layers, sum: &mut Accumulated, tally: &mut Tally) {
+    let ray = way.ray;
+    if ray.leave <= ray.enter {
+        return;
+    }
+    let t = ray.enter.max(0.0);
+    let mut walk = Walk {
+        way,
+        r: RayFrame::at(ray.at(t), ray.direction, t),
+        corners: Corners::default(),
+        phase: Phase::NeedsEntry,
+        column: 0,
+        layer: 0,
+        t: ray.enter,
+        uvw: Vec3A::ZERO,
+        exit_face: 0,
+        done: ray.enter,
+        n: 0.0,
+        entry: 0,
+        peels: 0,
+        recoveries: 0,
+        stalls: 0,
+    };
+    if ray.starts_inside {
+        walk.locate_again(tally);
+        tally.entries += u64::from(walk.phase == Phase::Walks);
+    }
+    while walk.phase != Phase::Ended && walk.recoveries <= MOST_RECOVERIES {
+        match walk.phase {
+            Phase::NeedsEntry => walk.enter(tally),
+            Phase::Walks => walk.step(layers, sum, tally),
+            Phase::CrossesFault => walk.cross_fault(),
+            Phase::Strayed => walk.set_right(tally),
+            Phase::Ended => {}
+        }
+    }
+    tally.lost_rays += u64::from(walk.recoveries > MOST_RECOVERIES);
+    tally.peels = tally.peels.max(walk.peels);
+}
+
+impl Walk<'_> {
+    fn grid(&self) -> &Grid {
+        self.way.scene.grid
+    }
+
+    /// Takes the next entry; a ray without one has ended.
+    fn enter(&mut self, tally: &mut Tally) {
+        let first = self.done - self.way.margin;
+        let left = self.way.entries.iter().skip(self.entry);
+        let passed = left.take_while(|e| e.distance < first).count();
+        let Some(entry) = self.way.entries.get(self.entry + passed) else {
+            self.phase = Phase::Ended;
+            return;
+        };
+        self.entry += passed + 1;
+        self.peels += 1;
+        tally.entries += 1;
+        let place = FacePlace::of(entry.face, self.grid().nk());
+        self.come_into(place.column, place.layer);
+        let (t, at) = self
+            .corners
+            .enter_through(place.side, self.sense(place.side));
+        self.t = t;
+        self.uvw = on_face(place.side, at);
+    }
+
+    /// Goes on in a cell.
+    fn come_into(&mut self, column: u32, layer: u32) {
+        self.phase = Phase::Walks;
+        self.column = column;
+        self.layer = layer;
+        self.corners
+            .project(self.way.scene.grid, &self.r, column, layer);
+    }
+
+    /// Sign that the triangles of a face have where the ray comes in.
+    fn sense(&self, face: u32) -> f32 {
+        -self.way.scene.frame.numbers.grid_handedness * face_orientation(face)
+    }
+
+    /// Through the current cell, and into the one behind its exit.
+    fn step(&mut self, layers: &mut Layers, sum: &mut Accumulated, tally: &mut Tally) {
+        tally.steps += 1;
+        let handedness = self.way.scene.frame.numbers.grid_handedness;
+        let exit = self.corners.exit(handedness);
+        let is_stalled = exit.as_ref().is_none_or(|exit| exit.t <= self.t);
+        self.stalls = if is_stalled { self.stalls + 1 } else { 0 };
+        let Some(exit) = exit.filter(|_| self.stalls <= MOST_STALLS) else {
+            self.phase = Phase::Strayed;
+            return;
+        };
+        let uvw = on_face(exit.face, exit.at);
+        let t = exit.t.max(self.t);
+        self.integrate(t, uvw, layers, sum, tally);
+        self.t = t;
+        self.done = t;
+        self.uvw = uvw;
+        self.exit_face = exit.face;
+        tally.crossings += 1;
+        let ray = self.way.ray;
+        if !self.way.scene.transfer.is_open(sum) || self.n >= ray.count || t >= ray.leave {
+            self.phase = Phase::Ended;
+        } else {
+            self.step_through();
+        }
+    }
+
+    /// Moves the ray into the cell behind its exit, to the fault there, or to where it needs an entry.
+    fn step_through(&mut self) {
+        let grid = self.way.scene.grid;
+        let face = self.exit_face;
+        let (column, layer) = (self.column, self.layer);
+        self.phase = Phase::NeedsEntry;
+        if face >= 4 {
+            if let Some(next) = next_layer(grid, column, layer, face & 1, self.way.settings) {
+                self.uvw.z = 1.0 - self.uvw.z;
+                self.come_into(column, next);
+            }
+            return;
+        }
+        let Some(next) = column_behind(grid, column, face) else {
+            return;
+        };
+        let [mine, theirs] = [column, next].map(|c| grid.lists(c));
+        let sides = [side_lists(mine, face), side_lists(theirs, face ^ 1)];
+        if sides_join(grid, sides[0], sides[1], layer) {
+            if grid.is_drawn(next, layer) {
+                let axis = (face >> 1) as usize;
+                self.uvw[axis] = 1.0 - self.uvw[axis];
+                self.come_into(next, layer);
+            }
+        } else if self.way.settings.cross_faults && theirs[0] & COLUMN_FLAG == 0 {
+            self.phase = Phase::CrossesFault;
+        }
+    }
+
+    /// Enters the cell of the next column that the ray meets at a fault: the layer whose upper and lower edge have the
+    /// ray between them. Where there is none the ray needs an entry.
+    fn cross_fault(&mut self) {
+        self.phase = Phase::NeedsEntry;
+        let grid = self.way.scene.grid;
+        let Some(next) = column_behind(grid, self.column, self.exit_face) else {
+            return;
+        };
+        let face = self.exit_face ^ 1;
+        // Edges have the sense of the face that was left.
+        let sense = -self.sense(self.exit_face);
+        let lists = side_lists(grid.lists(next), face);
+        let pillars = grid.pillars(next);
+        let [a, b] = [0, 1].map(|n| pillars[face_corner(face, n) as usize]);
+        let is_below = |layer: u32, bottom: u32| {
+            let depth = |list: u32| grid.depth(Grid::list_entry(list, layer, bottom));
+            let p = self.r.project(&a, depth(lists[0]));
+            let q = self.r.project(&b, depth(lists[1]));
+            sense * cross2d(p, q) > 0.0
+        };
+        let (mut low, mut high) = (0, grid.nk());
+        while low < high {
+            let middle = (low + high) / 2;
+            if is_below(middle, 1) {
+                low = middle + 1;
+            } else {
+                high = middle;
+            }
+        }
+        if low < grid.nk() && grid.is_drawn(next, low) && is_below(low, 0) {
+            self.come_into(next, low);
+            let (_, at) = self.corners.enter_through(face, self.sense(face));
+            self.uvw = on_face(face, at);
+        }
+    }
+
+    /// Finds by point location a ray that found no way out of its cell.
+    fn set_right(&mut self, tally: &mut Tally) {
+        let (grid, ray) = (self.way.scene.grid, self.way.ray);
+        let step = self.way.scene.frame.numbers.step;
+        let cell = super::cell::Cell::load(grid, self.column, self.layer);
+        tally.recovered += 1;
+        self.t += 0.25 * step;
+        self.locate_again(tally);
+        // The next sample is lost where the ray has no cell, and yet the last one holds the sample.
+        let n = self.n.max((self.t / step - 0.5).ceil() - ray.first);
+        let holds = || encloses(&cell, cell.relative_to(ray.sample(n)));
+        if self.phase != Phase::Walks && n < ray.count && holds() {
+            tally.lost_samples += 1;
+        }
+    }
+
+    /// Locates the ray at its distance; it walks on in its cell, or needs an entry where there is none.
+    fn locate_again(&mut self, tally: &mut Tally) {
+        let query = Query {
+            point: self.way.ray.at(self.t),
+            low_bits: Vec3A::ZERO,
+            enough: SECTION_ENOUGH,
+        };
+        let location = locate(self.way.scene.grid, query, Vec3A::ZERO);
+        tally.locations += 1;
+        tally.iterations += u64::from(location.iterations);
+        self.done = self.done.max(self.t);
+        self.stalls = 0;
+        self.recoveries += 1;
+        self.phase = Phase::NeedsEntry;
+        if let Some((cell, solution)) = location.found {
+            self.come_into(cell.column, cell.layer);
+            self.uvw = solution.uvw.clamp(Vec3A::ZERO, Vec3A::ONE);
+        }
+    }
+
+    /// Adds what lies between the current place of the ray and its exit at distance `t`. Surfaces lie on faces, so those
+    /// that are nearer than the exit lie at the entry.
+    fn integrate(
+        &mut self,
+        t: f32,
+        uvw: Vec3A,
+        layers: &mut Layers,
+        sum: &mut Accumulated,
+        tally: &mut Tally,
+    ) {
+        let (scene, ray) = (self.way.scene, self.way.ray);
+        layers.blend_until(sum, 0.5 * (self.t + t));
+        let is_ghost = scene.grid.is_ghost(self.column, self.layer);
+        if self.way.settings.integration == Integration::Segments {
+            let from = self.t.max(self.done).max(ray.enter);
+            let to = t.min(ray.leave);
+            if to <= from {
+                return;
+            }
+            if is_ghost {
+                let entry = scene.shading.shade_entry(scene.ghost, true);
+                sum.absorb(entry, entry.w * (to - from));
+            } else {
+                let segment = self.segment(t, uvw);
+                tally.samples += integrate_segment(scene, &segment, sum, from, to);
+            }
+            return;
+        }
+        // Samples from the first one at or behind the entry to the last one before the exit.
+        let step = scene.frame.numbers.step;
+        let until = |t: f32| (t / step - 0.5).ceil() - ray.first;
+        let end = until(t).min(ray.count);
+        let first = self.n.max(until(self.t));
+        let count = end - first;
+        self.n = self.n.max(end);
+        if count <= 0.0 {
+            return;
+        }
+        if is_ghost || scene.grid.interpolation == Interpolation::Cell {
+            let entry = match is_ghost {
+                true => scene.ghost,
+                false => scene
+                    .transfer
+                    .of(scene.grid.cell_value(self.column, self.layer)),
+            };
+            let entry = scene.shading.shade_entry(entry, is_ghost);
+            scene.transfer.accumulate_many(sum, entry, count);
+            tally.samples += count as u64;
+            return;
+        }
+        let segment = self.segment(t, uvw);
+        let mut n = first;
+        while n < end && scene.transfer.is_open(sum) {
+            let entry = scene.transfer.of(segment.value(ray.distance(step, n)));
+            let entry = scene.shading.shade_entry(entry, false);
+            scene.transfer.accumulate(sum, entry);
+            n += 1.0;
+            tally.samples += 1;
+        }
+    }
+
+    /// The values from where the current cell was entered to an exit.
+    fn segment(&self, t: f32, uvw: Vec3A) -> Segment {
+        let [top, bottom] = self.grid().corner_values(self.column, self.layer);
+        Segment {
+            t: self.t,
+            length: (t - self.t).max(1e-20),
+            uvw: self.uvw,
+            along: uvw - self.uvw,
+            top,
+            bottom,
+        }
+    }
+}
+
+/// The drawn layer below (`bottom` 1) or above that the ray comes into.
+fn next_layer(
+    grid: &Grid,
+    column: u32,
+    layer: u32,
+    bottom: u32,
+    settings: LibcSettings,
+) -> Option<u32> {
+    let lists = grid.lists(column);
+    let mine = grid.layer_depths(lists, layer, bottom);
+    let mut at = layer;
+    loop {
+        at = match bottom {
+            0 => at.checked_sub(1)?,
+            _ => at + 1,
+        };
+        let joins = |side: u32| all_coincide(mine, grid.layer_depths(lists, at, side));
+        if at >= grid.nk() || !joins(1 - bottom) {
+            return None;
+        }
+        if grid.is_drawn(column, at) {
+            return Some(at);
+        }
+        // A layer without thickness hides nothing; what is behind it joins.
+        if !settings.cross_faults || !joins(bottom) {
+            return None;
+        }
+    }
+}
+
+/// Where a ray leaves a cell.
+struct Exit {
+    t: f32,
+    face: u32,
+    /// Parameters on the face along its two axes.
+    at: Vec2,
+}
+
+/// Corners of a cell relative to the ray, the four of its top and the four of its bottom: two coordinates across the
+/// ray and the distance along it.
+#[derive(Default)]
+struct Corners {
+    /// Pillars of a column as the ray sees them: where they are at depth 0, and their change per unit of depth.
+    pillars: Option<(u32, [[Vec4; 2]; 3])>,
+    x: [Vec4; 2],
+    y: [Vec4; 2],
+    z: [Vec4; 2],
+}
+
+impl Corners {
+    fn project(&mut self, grid: &Grid, r: &RayFrame, column: u32, layer: u32) {
+        let known = self.pillars.filter(|(known, _)| *known == column);
+        let (_, pillars) = *self.pillars.insert(match known {
+            Some(known) => known,
+            None => (column, pillars_of(grid, r, column)),
+        });
+        let lists = grid.lists(column);
+        let depths = [0, 1].map(|bottom| grid.layer_depths(lists, layer, bottom));
+        let [x, y, z] = pillars.map(|[at, slope]| depths.map(|depth| at + depth * slope));
+        (self.x, self.y, self.z) = (x, y, z);
+    }
+
+    /// Twice the areas that pairs of corners span with the ray.
+    fn areas(&self, a: [usize; 4], b: [usize; 4]) -> Vec4 {
+        let pick = |of: &[Vec4; 2], n: [usize; 4]| Vec4::from_array(n.map(|n| of[n >> 2][n & 3]));
+        pick(&self.x, a) * pick(&self.y, b) - pick(&self.y, a) * pick(&self.x, b)
+    }
+
+    /// Where the ray leaves, at the farthest of all exits.
+    fn exit(&self, handedness: f32) -> Option<Exit> {
+        let u = self.areas([0, 2, 4, 6], [1, 3, 5, 7]);
+        let v = self.areas([0, 1, 4, 5], [2, 3, 6, 7]);
+        let w = self.x[0] * self.y[1] - self.y[0] * self.x[1];
+        let diagonals = self.areas([0, 1, 0, 2], [6, 7, 5, 7]);
+        let others = self.areas([0, 4, 0, 4], [3, 7, 3, 7]);
+        let h = handedness;
+        let sides = [
+            (-h, [v.x, w.z, diagonals.x, v.z, w.x]),
+            (h, [v.y, w.w, diagonals.y, v.w, w.y]),
+            (h, [u.x, w.y, diagonals.z, u.z, w.x]),
+            (-h, [u.y, w.w, diagonals.w, u.w, w.z]),
+            (-h, [u.x, v.y, others.x, u.y, v.x]),
+            (h, [u.z, v.w, others.y, u.w, v.z]),
+        ];
+        let mut best: Option<Exit> = None;
+        for (face, (sense, sides)) in (0..).zip(sides) {
+            let z = || [0, 1, 2, 3].map(|n| self.depth(face_corner(face, n)));
+            let is_best = |t: f32| best.as_ref().is_none_or(|best| t > best.t);
+            if let Some((t, at)) = leave(sides.map(|side| sense * side), z).filter(|e| is_best(e.0))
+            {
+                best = Some(Exit { t, face, at });
+            }
+        }
+        best
+    }
+
+    fn depth(&self, corner: u32) -> f32 {
+        self.z[(corner >> 2) as usize][(corner & 3) as usize]
+    }
+
+    fn corner(&self, corner: u32) -> Vec3A {
+        let (layer, n) = ((corner >> 2) as usize, (corner & 3) as usize);
+        Vec3A::new(self.x[layer][n], self.y[layer][n], self.z[layer][n])
+    }
+
+    /// Distance and parameters on a face of the point at which a ray comes in, clamped into the face.
+    fn enter_through(&self, face: u32, sense: f32) -> (f32, Vec2) {
+        let [q00, q10, q01, q11] = [0, 1, 2, 3].map(|n| self.corner(face_corner(face, n)));
+        let e0 = (sense * cross2d(q00, q10)).max(0.0);
+        let e1 = (sense * cross2d(q10, q11)).max(0.0);
+        let d = sense * cross2d(q00, q11);
+        let f = (-sense * cross2d(q01, q11)).max(0.0);
+        let g = (-sense * cross2d(q00, q01)).max(0.0);
+        if d <= 0.0 {
+            let sum = (e0 + e1 - d).max(1e-30);
+            let t = (e1 * q00.z - d * q10.z + e0 * q11.z) / sum;
+            return (t, Vec2::new(e0 - d, e0) / sum);
+        }
+        let sum = (d + f + g).max(1e-30);
+        let t = (d * q01.z + f * q00.z + g * q11.z) / sum;
+        (t, Vec2::new(g, d + g) / sum)
+    }
+}
+
+/// Pillars of a column as a ray sees them: x, y and distance, of the four of them.
+fn pillars_of(grid: &Grid, r: &RayFrame, column: u32) -> [[Vec4; 2]; 3] {
+    let pillars = grid.pillars(column).map(|pillar| {
+        let at = r.project(&pillar, 0.0);
+        [at, r.turned(pillar.slope.extend(1.0).into())]
+    });
+    [0, 1, 2].map(|axis| {
+        [0, 1].map(|what| Vec4::from_array(pillars.map(|pillar: [Vec3A; 2]| pillar[what][axis])))
+    })
+}
+
+/// Distance and parameters at which the ray leaves through a face, if it does. `sides` are of the pairs of corners
+/// 00 10, 10 11, 00 11, 01 11 and 00 01, with the sign that triangles have on the way out.
+fn leave([e0, e1, d, f, g]: [f32; 5], z: impl FnOnce() -> [f32; 4]) -> Option<(f32, Vec2)> {
+    let (first, second) = (e0 + e1 - d, d - f - g);
+    if e0 >= 0.0 && e1 >= 0.0 && d <= 0.0 && first > 0.0 {
+        let [z00, z10, _, z11] = z();
+        let t = (e1 * z00 - d * z10 + e0 * z11) / first;
+        return Some((t, Vec2::new(e0 - d, e0) / first));
+    }
+    (d >= 0.0 && f <= 0.0 && g <= 0.0 && second > 0.0).then(|| {
+        let [z00, _, z01, z11] = z();
+        let t = (d * z01 - f * z00 - g * z11) / second;
+        (t, Vec2::new(-g, d - g) / second)
+    })
+}
+
+/// The value along a segment: trilinear at parameters that are linear in the distance.
+struct Segment {
+    t: f32,
+    length: f32,
+    uvw: Vec3A,
+    along: Vec3A,
+    top: Vec4,
+    bottom: Vec4,
+}
+
+impl Segment {
+    fn value(&self, t: f32) -> f32 {
+        let q = self.uvw + self.along * ((t - self.t) / self.length).clamp(0.0, 1.0);
+        let values = self.top + q.z * (self.bottom - self.top);
+        let low = values.x + q.x * (values.y - values.x);
+        let high = values.z + q.x * (values.w - values.z);
+        low + q.y * (high - low)
+    }
+}
+
+/// The segment in pieces so small that the order of colors within one does not matter; in each the means of extinction
+/// and color over its values are differences of integrals. Returns their number.
+fn integrate_segment(
+    scene: &Scene<'_>,
+    segment: &Segment,
+    sum: &mut Accumulated,
+    from: f32,
+    to: f32,
+) -> u64 {
+    let transfer = &scene.transfer;
+    let length = to - from;
+    let values = [from, from + 0.5 * length, to].map(|t| segment.value(t));
+    let [low, high] = [f32::min, f32::max].map(|of: fn(f32, f32) -> f32| {
+        let [first, middle, last] = values;
+        of(of(first, middle), last)
+    });
+    let extinctions = values.map(|value| transfer.of(value).w);
+    let depth = length * extinctions.into_iter().fold(0.0, f32::max);
+    let range = (high - low) * transfer.value_scale();
+    let pieces = (depth / PIECE_DEPTH).max(range / PIECE_RANGE).ceil();
+    let pieces = pieces.clamp(1.0, MOST_PIECES);
+    let mut before = values[0];
+    let mut done = 0.0;
+    while done < pieces && transfer.is_open(sum) {
+        done += 1.0;
+        let value = segment.value(from + length * done / pieces);
+        let mean = transfer.mean(before, value);
+        let color = Vec3A::from_vec4(mean) / mean.w.max(1e-30);
+        let entry = scene.shading.shade_entry(color.extend(mean.w), false);
+        sum.absorb(entry, mean.w * length / pieces);
+        before = value;
+    }
+    done as u64
+}

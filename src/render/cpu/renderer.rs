@@ -1,0 +1,228 @@
+//! Images of one grid.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use glam::{DVec2, DVec3, Vec3A, Vec4};
+use rayon::prelude::*;
+
+use super::frame::Frame as FrameOfRays;
+use super::grid::Grid;
+use super::locate::{Query, locate};
+use super::picture::{Picture, Strategy};
+use super::scene::Scene;
+use super::shading::Shading;
+use super::surfaces::SurfaceFaces;
+use super::transfer::{Tables, Transfer};
+use crate::model::{Grid as Model, Ijk};
+use crate::render::job::{Job, Progress};
+use crate::render::line_of_sight::{LineOfSight, Sighting, SurfaceTree};
+use crate::render::plan::faces::face_numbers;
+use crate::render::plan::frame::{frame_uniform, ghost};
+use crate::render::revisions::{RevisionCounter, Revisions};
+use crate::render::{DeviceBytes, Frame, LightTimes, Located, RenderError, Renderer, SetupTimes};
+use crate::scene::StrategyKind;
+use crate::view::View;
+
+/// Newton steps below this end a location that was asked for.
+const PROBE_ENOUGH: f32 = 5e-6;
+
+/// Makes images of one grid.
+pub struct CpuRenderer {
+    model: Arc<Model>,
+    times: SetupTimes,
+    grid: Grid,
+    /// Counts the views.
+    counter: RevisionCounter,
+    /// Those of what the grid shows.
+    revisions: Revisions,
+    tables: Kept<Tables>,
+    /// Boundary faces of the drawn cells, once a ray needs them.
+    boundary: Kept<Vec<u32>>,
+    surfaces: Kept<SurfaceFaces>,
+    /// Faces of surfaces that were looked at.
+    surface_tree: SurfaceTree,
+}
+
+/// Something that is made anew where its revision has counted up.
+struct Kept<T>(Option<(u64, T)>);
+
+impl<T> Default for Kept<T> {
+    fn default() -> Self {
+        Self(None)
+    }
+}
+
+impl<T> Kept<T> {
+    fn update(
+        &mut self,
+        revision: u64,
+        make: impl FnOnce() -> Result<T, RenderError>,
+    ) -> Result<&T, RenderError> {
+        let kept = match self.0.take().filter(|(of, _)| *of == revision) {
+            Some(known) => known,
+            None => (revision, make()?),
+        };
+        Ok(&self.0.insert(kept).1)
+    }
+}
+
+impl CpuRenderer {
+    /// Brings a grid into compact form.
+    ///
+    /// # Errors
+    /// When it cannot be numbered.
+    pub fn new(model: &Arc<Model>) -> Result<Self, RenderError> {
+        let start = Instant::now();
+        let grid = Grid::new(model)?;
+        let acceleration = grid.compact.acceleration_time;
+        Ok(Self {
+            model: model.clone(),
+            times: SetupTimes {
+                upload: start.elapsed().saturating_sub(acceleration),
+                acceleration,
+            },
+            grid,
+            counter: RevisionCounter::default(),
+            revisions: Revisions::default(),
+            tables: Kept::default(),
+            boundary: Kept::default(),
+            surfaces: Kept::default(),
+            surface_tree: SurfaceTree::default(),
+        })
+    }
+
+    async fn frame(&mut self, view: &View, progress: Progress) -> Result<Frame, RenderError> {
+        let start = Instant::now();
+        let strategy = supported(view)?;
+        self.prepare(view)?;
+        let (model, now) = (&self.model, self.revisions);
+        let tables = self.tables.update(now.transfer, || Ok(Tables::new(view)))?;
+        let boundary = self.boundary.update(now.drawn, || {
+            let (grid, drawn) = view.shown.cells.in_grid(model);
+            face_numbers(grid, &grid.boundary_faces(drawn))
+        })?;
+        let surfaces = self
+            .surfaces
+            .update(now.surfaces, || SurfaceFaces::new(model, view))?;
+        let scene = Scene {
+            frame: FrameOfRays::new(frame_uniform(&self.grid.compact.facts, view)),
+            grid: &self.grid,
+            transfer: Transfer::new(tables, view),
+            ghost: Vec4::from(ghost(view)),
+            shading: Shading::of(&view.style.lighting),
+            surfaces: view.style.surfaces,
+        };
+        let prepare = start.elapsed();
+        let picture = Picture {
+            scene: &scene,
+            view,
+            strategy,
+            boundary,
+            surfaces,
+        };
+        let (image, stats) = picture.render(&progress).await;
+        let lists = boundary.len() + surfaces.hull.len() + 2 * surfaces.faults.len();
+        Ok(Frame {
+            image,
+            stats,
+            prepare,
+            light: LightTimes::default(),
+            bytes: self.grid.bytes()
+                + DeviceBytes {
+                    geometry: 4 * lists as u64,
+                    targets: stats.target_bytes,
+                    ..DeviceBytes::default()
+                },
+        })
+    }
+}
+
+/// What casts the rays of a view.
+///
+/// # Errors
+/// When the view asks for what there is not.
+fn supported(view: &View) -> Result<Strategy, RenderError> {
+    let lighting = &view.style.lighting;
+    if lighting.occlusion.is_some() || !lighting.lights.is_empty() {
+        return Err(RenderError::Unsupported {
+            what: "occlusion and lights",
+        });
+    }
+    match view.sampling.strategy {
+        _ if !view.casts_rays() => Ok(Strategy::Solid),
+        StrategyKind::Plts => Ok(Strategy::Plts),
+        StrategyKind::Libc => Ok(Strategy::Libc),
+        StrategyKind::Srg => Err(RenderError::Unsupported {
+            what: "the strategy srg",
+        }),
+    }
+}
+
+impl Renderer for CpuRenderer {
+    fn grid(&self) -> &Arc<Model> {
+        &self.model
+    }
+
+    fn setup_times(&self) -> SetupTimes {
+        self.times
+    }
+
+    fn prepare(&mut self, view: &View) -> Result<(), RenderError> {
+        let cells = &view.shown.cells;
+        let wanted = self.counter.of(view);
+        if self.revisions.grid != wanted.grid {
+            self.grid = Grid::of(&self.model, cells)?;
+        }
+        if self.revisions.values != wanted.values {
+            self.grid.show(&self.model, cells);
+        }
+        self.revisions = wanted;
+        Ok(())
+    }
+
+    fn start<'a>(&'a mut self, view: &'a View) -> Job<'a, Frame> {
+        Job::new(|progress| Box::pin(self.frame(view, progress)))
+    }
+
+    fn locate(
+        &mut self,
+        view: &View,
+        points: &[DVec3],
+    ) -> Result<Vec<Option<Located>>, RenderError> {
+        self.prepare(view)?;
+        let grid = &self.grid;
+        let ni = self.model.dims().ni;
+        let locate = |world: &DVec3| {
+            let in_grid = view.world.spaces.grid_from_world.transform_point3(*world);
+            let point = in_grid - grid.compact.facts.origin;
+            let rounded = point.as_vec3a();
+            let query = Query {
+                point: rounded,
+                low_bits: (point - rounded.as_dvec3()).as_vec3a(),
+                enough: PROBE_ENOUGH,
+            };
+            let (cell, solution) = locate(grid, query, Vec3A::ZERO).found?;
+            let inside = solution.uvw.clamp(Vec3A::ZERO, Vec3A::ONE);
+            Some(Located {
+                ijk: Ijk {
+                    i: cell.column as usize % ni,
+                    j: cell.column as usize / ni,
+                    k: cell.layer as usize,
+                },
+                parameters: (2.0 * inside - 1.0).as_dvec3(),
+                value: f64::from(cell.value(inside)),
+            })
+        };
+        Ok(points.par_iter().map(locate).collect())
+    }
+
+    fn look(&mut self, view: &View, at: DVec2) -> Result<Option<LineOfSight>, RenderError> {
+        let sighting = Sighting::through(&self.model, view, at, &mut self.surface_tree);
+        let Some(sighting) = sighting else {
+            return Ok(None);
+        };
+        let located = self.locate(view, &sighting.points())?;
+        Ok(Some(sighting.located(&located)))
+    }
+}

@@ -1,0 +1,25 @@
+//! What all rays of a frame read.
+
+use glam::Vec4;
+
+use super::frame::Frame;
+use super::grid::Grid;
+use super::shading::Shading;
+use super::transfer::Transfer;
+use crate::view::Surfaces;
+
+/// What all rays of a frame read.
+pub struct Scene<'a> {
+    /// Camera and lattice.
+    pub frame: Frame,
+    /// The grid with what is shown of it.
+    pub grid: &'a Grid,
+    /// Colors and extinctions.
+    pub transfer: Transfer<'a>,
+    /// Color and extinction of inactive cells.
+    pub ghost: Vec4,
+    /// Light.
+    pub shading: Shading,
+    /// Which surfaces are shown.
+    pub surfaces: Surfaces,
+}

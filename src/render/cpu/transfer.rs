@@ -1,0 +1,163 @@
+//! Value to color and extinction, and sums of them along a ray. The twin of `shaders/shared/transfer.wgsl` and
+//! `table.wgsl`.
+
+use glam::{Vec3A, Vec4, Vec4Swizzles};
+
+use crate::render::plan::layout::{LUT_SIZE, per_unit};
+use crate::render::plan::transfer::{transfer_integrals, transfer_table};
+use crate::view::View;
+
+/// The transfer function's tables, for one transfer function and blending.
+pub struct Tables {
+    /// Color, as it is blended, and extinction at equal distances over the range.
+    table: Vec<Vec4>,
+    /// Integrals over the position of extinction times color, and of extinction.
+    integrals: Vec<Vec4>,
+}
+
+impl Tables {
+    /// The tables of a view.
+    pub fn new(view: &View) -> Self {
+        let table = transfer_table(view);
+        let vectors = |entries: &[[f32; 4]]| entries.iter().map(|e| Vec4::from(*e)).collect();
+        Self {
+            integrals: vectors(&transfer_integrals(&table)),
+            table: vectors(&table),
+        }
+    }
+}
+
+/// What rays make of values.
+pub struct Transfer<'a> {
+    tables: &'a Tables,
+    value_low: f32,
+    value_scale: f32,
+    /// World-space distance of samples.
+    step: f32,
+    /// Transmittance at which a ray ends.
+    early_termination: f32,
+    /// Cells with a value are solid: nothing of their inside is seen.
+    is_solid: bool,
+}
+
+/// Front-to-back emission and absorption; colors as they are blended, premultiplied.
+#[derive(Clone, Copy)]
+pub struct Accumulated {
+    /// Red, green and blue.
+    pub color: Vec3A,
+    /// What is left of what lies behind.
+    pub transmittance: f32,
+}
+
+impl Accumulated {
+    /// Nothing but a color that covers all behind it by its fourth coordinate.
+    pub fn of(color: Vec4) -> Self {
+        Self {
+            color: Vec3A::from_vec4(color),
+            transmittance: 1.0 - color.w,
+        }
+    }
+
+    /// Adds a stretch of one color and an optical depth.
+    pub fn absorb(&mut self, entry: Vec4, optical_depth: f32) {
+        let passed = (-optical_depth).exp();
+        self.color += self.transmittance * (1.0 - passed) * Vec3A::from_vec4(entry);
+        self.transmittance *= passed;
+    }
+
+    /// Lays a color of an opacity behind what there is.
+    pub fn blend(&mut self, color: Vec3A, opacity: f32) {
+        self.color += self.transmittance * opacity * color;
+        self.transmittance *= 1.0 - opacity;
+    }
+
+    /// The pixel: color times alpha, and alpha.
+    pub fn pixel(&self) -> [f32; 4] {
+        let [r, g, b] = self.color.to_array();
+        [r, g, b, 1.0 - self.transmittance]
+    }
+}
+
+impl<'a> Transfer<'a> {
+    /// What rays of a view make of values.
+    pub fn new(tables: &'a Tables, view: &View) -> Self {
+        let range = view.style.transfer.range;
+        Self {
+            tables,
+            value_low: range[0] as f32,
+            value_scale: per_unit(range),
+            step: view.sampling.step as f32,
+            early_termination: view.sampling.early_termination as f32,
+            is_solid: view.style.surfaces.solid,
+        }
+    }
+
+    /// Part of the range of values per unit.
+    pub fn value_scale(&self) -> f32 {
+        self.value_scale
+    }
+
+    /// Color and extinction of the inside of a cell.
+    pub fn of(&self, value: f32) -> Vec4 {
+        let entry = self.color(value);
+        match self.is_solid {
+            true => entry.xyz().extend(0.0),
+            false => entry,
+        }
+    }
+
+    fn position(&self, value: f32) -> f32 {
+        ((value - self.value_low) * self.value_scale).clamp(0.0, 1.0)
+    }
+
+    /// Color and extinction of a value, whatever is seen of insides.
+    fn color(&self, value: f32) -> Vec4 {
+        between(&self.tables.table, self.position(value))
+    }
+
+    /// Means over the values between two: of extinction times color, and of extinction.
+    pub fn mean(&self, a: f32, b: f32) -> Vec4 {
+        if self.is_solid {
+            return Vec4::ZERO;
+        }
+        let [pa, pb] = [a, b].map(|value| self.position(value));
+        if (pb - pa).abs() * ((LUT_SIZE - 1) as f32) < 4.0 {
+            // Differences of large sums would be rounding errors; the table is all but linear here.
+            let entry = self.of(0.5 * (a + b));
+            return (entry.xyz() * entry.w).extend(entry.w);
+        }
+        let integral = |position| between(&self.tables.integrals, position);
+        (integral(pb) - integral(pa)) / (pb - pa)
+    }
+
+    /// Adds a sample of a color and an extinction.
+    pub fn accumulate(&self, sum: &mut Accumulated, entry: Vec4) {
+        sum.absorb(entry, entry.w * self.step);
+    }
+
+    /// Adds so many samples of one color and extinction, or as many of them as a ray needs until it ends; returns
+    /// how many these were.
+    pub fn accumulate_many(&self, sum: &mut Accumulated, entry: Vec4, count: f32) -> f32 {
+        let depth = entry.w * self.step;
+        let open = self.early_termination.max(1e-30) / sum.transmittance;
+        let needed = (open.ln() / -depth.max(1e-20)).ceil().max(1.0);
+        let count = count.min(needed);
+        sum.absorb(entry, depth * count);
+        count
+    }
+
+    /// False once nothing behind can be seen.
+    pub fn is_open(&self, sum: &Accumulated) -> bool {
+        sum.transmittance > 0.0 && sum.transmittance >= self.early_termination
+    }
+}
+
+/// Linear between the entries of a table, at a position from 0 to 1.
+fn between(table: &[Vec4], position: f32) -> Vec4 {
+    let at = position * (LUT_SIZE - 1) as f32;
+    let entry = (at as usize).min(LUT_SIZE as usize - 2);
+    match table.get(entry..entry + 2) {
+        Some([low, high]) => low.lerp(*high, at - entry as f32),
+        _ => Vec4::ZERO,
+    }
+}
