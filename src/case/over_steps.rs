@@ -201,7 +201,7 @@ impl Case {
                 return Ok(Arc::default());
             };
             let field = scale.field(&field, f64::NAN);
-            Ok(boundaries::find(&derivatives::samples(&self.grid, &field)).into())
+            Ok(boundaries::find(&derivatives::samples(&self.grid, &field, None)).into())
         })
     }
 

@@ -5,6 +5,7 @@ mod bench;
 mod cancel;
 mod choice;
 mod compare;
+mod doctor;
 mod info;
 mod pick;
 mod probe;
@@ -28,7 +29,8 @@ const EXAMPLES: &str = "Examples:
   strataray sample faulted -o models
   strataray bench R1 samples/scissor/SCISSOR.EGRID
   strataray pick samples/scissor/SCISSOR.EGRID --at 500,500
-  strataray probe samples/scissor/SCISSOR.EGRID --property PORO --points points.csv";
+  strataray probe samples/scissor/SCISSOR.EGRID --property PORO --points points.csv
+  strataray doctor";
 
 /// Sees oil and gas reservoirs from the inside: volume ray casting of corner-point grids.
 #[derive(Parser)]
@@ -61,6 +63,8 @@ enum Command {
     Bench(bench::Arguments),
     /// Writes a synthetic faulted model with time steps.
     Sample(sample::Arguments),
+    /// Tells what this machine has to make images with, and what is missing.
+    Doctor(doctor::Arguments),
 }
 
 /// How much to say on standard error.
@@ -110,6 +114,7 @@ pub fn run() -> ExitCode {
         Some(Command::Compare(a)) => compare::run(&a),
         Some(Command::Bench(a)) => bench::run(&a),
         Some(Command::Sample(a)) => sample::run(&a),
+        Some(Command::Doctor(a)) => doctor::run(&a),
         None => open_window(arguments.cases, arguments.watch),
     };
     match result {

@@ -6,7 +6,7 @@ use anyhow::Context;
 use glam::DVec2;
 use serde_json::{Value, json};
 use strataray::case::Case;
-use strataray::picking::{CellOnRay, Fault, Hit, Part, Pick, Picker};
+use strataray::picking::{self, CellOnRay, Fault, Hit, Part, Pick};
 use strataray::picture::{Shot, short_unit};
 
 use super::Verbosity;
@@ -48,7 +48,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let at = place(&shot, scene.size, pixel)?;
     let executor = arguments.options.open_executor(&reporter)?;
     let mut renderer = executor.renderer(&case.grid)?;
-    let pick = Picker::default().pick(&mut *renderer, &case, &shot.view, at)?;
+    let pick = picking::pick(&mut *renderer, &case, &shot.view, at)?;
     match arguments.json {
         true => println!(
             "{}",

@@ -228,7 +228,7 @@ fn conditions_of_view(case: &Case, view: &View) -> [markdown::Row; 3] {
     let step = step.map_or_else(String::new, |s| {
         format!(", step {}, {}", view.shown.step, s.date)
     });
-    let values = match view.shown.interpolation {
+    let values = match view.shown.cells.interpolation {
         Interpolation::Cell => "values of cells",
         Interpolation::Vertex => "values between vertices",
     };

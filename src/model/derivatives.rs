@@ -25,12 +25,15 @@ pub struct Sample {
 /// Centers nearer than this part of the mean distance are one place.
 const LEAST_DISTANCE: f64 = 1e-3;
 
-/// Samples at all faces that two active cells with a value share as a whole, so never across a fault.
+/// Samples at all faces that two active cells with a value share as a whole, so never across a fault; both are
+/// among the cells that `kept` (by active index) names, where it is given.
 ///
 /// Along the line between both cells the derivative is their difference over the distance; along the two
 /// other axes it is the mean of both cells' own. The grid's axes are taken to be at right angles, and
 /// mixed second derivatives to be zero.
-pub fn samples(grid: &Grid, field: &CellField) -> Vec<Sample> {
+pub fn samples(grid: &Grid, field: &CellField, kept: Option<&[bool]>) -> Vec<Sample> {
+    let is_kept = |active: u32| kept.is_none_or(|kept| kept[active as usize]);
+    let has_value = |active: u32| !field.values()[active as usize].is_nan() && is_kept(active);
     let cells = grid.active_cells().par_iter();
     let centers: Vec<DVec3> = cells
         .map(|&cell| grid.hexahedron(grid.dims().ijk(cell)).center())
@@ -38,7 +41,7 @@ pub fn samples(grid: &Grid, field: &CellField) -> Vec<Sample> {
     let faces = [Face::IPlus, Face::JPlus, Face::KPlus];
     let axes: Vec<Axis> = faces
         .into_par_iter()
-        .map(|face| Axis::new(grid, field, &centers, face))
+        .map(|face| Axis::new(grid, field, &centers, face, has_value))
         .collect();
     let along: Vec<Vec<Sample>> = (0..axes.len())
         .into_par_iter()
@@ -56,8 +59,13 @@ struct Axis {
 }
 
 impl Axis {
-    fn new(grid: &Grid, field: &CellField, centers: &[DVec3], face: Face) -> Self {
-        let has_value = |active: u32| !field.values()[active as usize].is_nan();
+    fn new(
+        grid: &Grid,
+        field: &CellField,
+        centers: &[DVec3],
+        face: Face,
+        has_value: impl Fn(u32) -> bool + Sync,
+    ) -> Self {
         let neighbor = |active: usize, ijk: Ijk| {
             let Behind::Neighbor(next) = grid.behind(ijk, face) else {
                 return None;
@@ -178,7 +186,7 @@ mod tests {
         // Centers at 0.5, 1.5, ... and f = x^2: f' = 2x, f'' = 2.
         let grid = row(&[1.0; 6], 6);
         let values = (0..6).map(|n| (n as f32 + 0.5).powi(2)).collect();
-        let found = samples(&grid, &CellField::new(values));
+        let found = samples(&grid, &CellField::new(values), None);
         assert_eq!(found.len(), 5);
         for (n, sample) in found.iter().enumerate().skip(1).take(3) {
             assert!((sample.first - 2.0 * (n as f64 + 1.0)).abs() < 1e-6);
@@ -189,7 +197,7 @@ mod tests {
     #[test]
     fn longer_cells_have_smaller_derivatives() {
         let grid = row(&[1.0, 1.0, 3.0], 3);
-        let found = samples(&grid, &CellField::new(vec![0.0, 1.0, 2.0]));
+        let found = samples(&grid, &CellField::new(vec![0.0, 1.0, 2.0]), None);
         // Distances 1 and 2; their mean is the unit of length.
         let firsts = [found[0].first, found[1].first];
         assert!((firsts[0] - 1.5).abs() < 1e-9 && (firsts[1] - 0.75).abs() < 1e-9);
@@ -198,12 +206,14 @@ mod tests {
     #[test]
     fn nothing_is_taken_across_a_fault_or_beside_no_value() {
         let field = CellField::new(vec![0.0, 1.0, 5.0, 6.0]);
-        let cut = samples(&row(&[1.0; 4], 2), &field);
+        let cut = samples(&row(&[1.0; 4], 2), &field, None);
         assert_eq!(cut.len(), 2);
         assert!(cut.iter().all(|s| s.first == 1.0 && s.second == 0.0));
-        assert_eq!(samples(&row(&[1.0; 4], 4), &field).len(), 3);
+        assert_eq!(samples(&row(&[1.0; 4], 4), &field, None).len(), 3);
+        let kept = [true, true, true, false];
+        assert_eq!(samples(&row(&[1.0; 4], 4), &field, Some(&kept)).len(), 2);
         let gap = CellField::new(vec![0.0, f32::NAN, 5.0, 6.0]);
-        assert_eq!(samples(&row(&[1.0; 4], 4), &gap).len(), 1);
-        assert!(samples(&row(&[1.0], 1), &CellField::new(vec![1.0])).is_empty());
+        assert_eq!(samples(&row(&[1.0; 4], 4), &gap, None).len(), 1);
+        assert!(samples(&row(&[1.0], 1), &CellField::new(vec![1.0]), None).is_empty());
     }
 }

@@ -62,8 +62,14 @@ impl CellField {
 
     /// Statistics over the active cells; `None` where no value is defined.
     pub fn statistics(&self) -> Option<Statistics> {
+        self.statistics_of(None)
+    }
+
+    /// [`Self::statistics`] over the cells that `kept` (by active index) names, where it is given.
+    pub fn statistics_of(&self, kept: Option<&[bool]>) -> Option<Statistics> {
         let (mut min, mut max, mut sum, mut count) = (f64::INFINITY, f64::NEG_INFINITY, 0.0, 0);
-        for &v in self.0.iter().filter(|v| !v.is_nan()) {
+        let is_kept = |at: usize| kept.is_none_or(|kept| kept[at]);
+        for (_, &v) in (self.0.iter().enumerate()).filter(|(at, v)| !v.is_nan() && is_kept(*at)) {
             let v = f64::from(v);
             min = min.min(v);
             max = max.max(v);
@@ -89,10 +95,20 @@ pub struct VertexField(Vec<f32>);
 impl VertexField {
     /// Averages a cell field at the vertices.
     pub fn new(grid: &Grid, field: &CellField) -> Self {
+        Self::of(grid, field, None)
+    }
+
+    /// [`Self::new`] of the cells that `kept` (by active index) names, where it is given.
+    pub fn of(grid: &Grid, field: &CellField, kept: Option<&[bool]>) -> Self {
         let dims = grid.dims();
+        let value = |ijk: Ijk| {
+            let active = grid.active_index(dims.cell(ijk))?.0 as usize;
+            let value = field.0[active];
+            (!value.is_nan() && kept.is_none_or(|kept| kept[active])).then_some(value)
+        };
         let pillars: Vec<Vec<(usize, f32)>> = (0..dims.pillars())
             .into_par_iter()
-            .map(|pillar| average_on_pillar(grid, field, pillar))
+            .map(|pillar| average_on_pillar(grid, value, pillar))
             .collect();
         let mut values = vec![f32::NAN; grid.depths().len()];
         for (entry, value) in pillars.into_iter().flatten() {
@@ -104,6 +120,14 @@ impl VertexField {
     /// The values by depth-pool position.
     pub fn values(&self) -> &[f32] {
         &self.0
+    }
+
+    /// The same, with 0 where no defined active cell touches.
+    pub fn into_defined(mut self) -> Vec<f32> {
+        for value in self.0.iter_mut().filter(|v| v.is_nan()) {
+            *value = 0.0;
+        }
+        self.0
     }
 
     /// The eight corner values of a cell.
@@ -121,8 +145,12 @@ struct Touch {
 }
 
 /// Means at the distinct depths of one pillar, by depth-pool position.
-fn average_on_pillar(grid: &Grid, field: &CellField, pillar: usize) -> Vec<(usize, f32)> {
-    let mut touching = touching(grid, field, pillar);
+fn average_on_pillar(
+    grid: &Grid,
+    value: impl Fn(Ijk) -> Option<f32>,
+    pillar: usize,
+) -> Vec<(usize, f32)> {
+    let mut touching = touching(grid, value, pillar);
     touching.sort_by(|a, b| a.depth.total_cmp(&b.depth));
     let mut means = Vec::with_capacity(touching.len());
     let mut rest = touching.as_slice();
@@ -143,8 +171,8 @@ fn average_on_pillar(grid: &Grid, field: &CellField, pillar: usize) -> Vec<(usiz
     means
 }
 
-/// Top and bottom corners on a pillar of the active cells around it that have a value.
-fn touching(grid: &Grid, field: &CellField, pillar: usize) -> Vec<Touch> {
+/// Top and bottom corners on a pillar of the cells around it that have a value.
+fn touching(grid: &Grid, value: impl Fn(Ijk) -> Option<f32>, pillar: usize) -> Vec<Touch> {
     let dims = grid.dims();
     let (pi, pj) = (pillar % (dims.ni + 1), pillar / (dims.ni + 1));
     let mut touching = Vec::new();
@@ -156,7 +184,7 @@ fn touching(grid: &Grid, field: &CellField, pillar: usize) -> Vec<Touch> {
         for k in 0..dims.nk {
             let ijk = Ijk { i, j, k };
             let cell = dims.cell(ijk);
-            let Some(value) = field.value(grid, cell) else {
+            let Some(value) = value(ijk) else {
                 continue;
             };
             for entry in [corner, corner + 4].map(|c| grid.corner_entry(ijk, c)) {

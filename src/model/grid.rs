@@ -16,6 +16,7 @@
 //! ```
 
 use std::iter::Sum;
+use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
@@ -105,12 +106,14 @@ pub struct GridInput<'a, C, Z> {
 }
 
 /// A corner-point grid in its file's own coordinates (grid space).
+///
+/// Copies share the geometry and have their own activity.
 #[derive(Debug, Clone)]
 pub struct Grid {
     dims: Dims,
-    pillars: Vec<Pillar>,
-    lists: Vec<DepthList>,
-    depths: Vec<f64>,
+    pillars: Arc<[Pillar]>,
+    lists: Arc<[DepthList]>,
+    depths: Arc<[f64]>,
     active_cells: Vec<CellIndex>,
     active_rank: Vec<u32>,
     map_axes: Option<MapAxes>,
@@ -151,8 +154,8 @@ impl Grid {
         Ok(Self {
             dims,
             pillars,
-            lists,
-            depths,
+            lists: lists.into(),
+            depths: depths.into(),
             active_cells,
             active_rank,
             map_axes: input.map_axes,
@@ -178,9 +181,13 @@ impl Grid {
     pub fn with_inactive(&self) -> Self {
         let cells = self.dims.cells() as u32;
         Self {
+            dims: self.dims,
+            pillars: self.pillars.clone(),
+            lists: self.lists.clone(),
+            depths: self.depths.clone(),
             active_cells: (0..cells).map(CellIndex).collect(),
             active_rank: (0..cells).collect(),
-            ..self.clone()
+            map_axes: self.map_axes,
         }
     }
 

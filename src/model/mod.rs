@@ -4,6 +4,7 @@ pub mod corner_point;
 mod depth_lists;
 pub mod derivatives;
 pub mod derived;
+pub mod face_tree;
 pub mod faults;
 pub mod fields;
 pub mod grid;
@@ -14,6 +15,7 @@ pub mod synthetic;
 pub mod topology;
 
 pub use corner_point::Hexahedron;
+pub use face_tree::{FaceHit, FaceTree};
 pub use faults::FaultFaces;
 pub use fields::{CellField, Statistics, VertexField};
 pub use grid::{Grid, GridInput, ModelError, Pillar};

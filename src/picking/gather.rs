@@ -5,9 +5,8 @@ use std::collections::HashMap;
 use glam::DVec3;
 
 use super::Part;
-use super::surfaces::Met;
 use crate::image::Blending;
-use crate::model::Ijk;
+use crate::model::{FaceHit, Ijk};
 use crate::view::View;
 
 /// A sample of the volume, or a point of a surface: what a ray passes in one step.
@@ -30,7 +29,7 @@ pub(super) enum PieceSource {
     /// A drawn cell: what of it, and its value there in the scale of the view.
     Cell { ijk: Ijk, value: f64, part: Part },
     /// A fault's sheet between the cells.
-    Sheet(Met),
+    Sheet(FaceHit),
     /// An inactive cell, which has no value.
     Ghost,
 }
@@ -95,7 +94,7 @@ impl Gathered {
             let (ijk, contribution) = match &piece.of {
                 PieceSource::Cell { ijk, .. } => (*ijk, *contribution),
                 // It has its own color, but lies on a face of that cell.
-                PieceSource::Sheet(met) => (met.cell, 0.0),
+                PieceSource::Sheet(hit) => (hit.cell, 0.0),
                 PieceSource::Ghost => continue,
             };
             let place = *places.entry(ijk).or_insert(cells.len());

@@ -21,22 +21,18 @@
 
 mod choice;
 mod gather;
-mod ray;
 mod sight;
-mod surfaces;
 
 use glam::{DVec2, DVec3};
 
 use crate::case::{Case, CaseError};
 use crate::model::topology::{Behind, Face};
-use crate::model::{Grid, Ijk};
+use crate::model::{FaceHit, Grid, Ijk};
 use crate::render::{RenderError, Renderer};
 use crate::view::View;
 
 use gather::{Gathered, Passed, PieceSource};
-use ray::Ray;
 use sight::Sight;
-use surfaces::{Met, SurfaceFaces};
 
 /// Opacity below which a pixel shows nothing but background.
 const LEAST_OPACITY: f64 = 0.02;
@@ -162,51 +158,38 @@ impl Pick {
     }
 }
 
-/// Finds what is seen at places in pictures; keeps the faces of their surfaces from one place to the next.
-#[derive(Default)]
-pub struct Picker {
-    surfaces: SurfaceFaces,
-}
-
-impl Picker {
-    /// What is seen at a place in the picture (0 to 1, right and down) of a view of the case whose grid the
-    /// renderer has.
-    ///
-    /// # Errors
-    /// When the device reports an error, or the values cannot be read.
-    pub fn pick(
-        &mut self,
-        renderer: &mut dyn Renderer,
-        case: &Case,
-        view: &View,
-        at: DVec2,
-    ) -> Result<Pick, PickError> {
-        let nothing = Pick {
-            property: view.shown.property.clone(),
-            step: view.shown.step,
-            ..Pick::default()
-        };
-        let ray = Ray::through(view, at);
-        let Some(span) = ray.span(view) else {
-            return Ok(nothing);
-        };
-        let met = self.surfaces.seen(case, view, &ray);
-        let sight = Sight::new(case, view, ray, span, met);
-        let located = renderer.locate(view, &sight.points())?;
-        let gathered = Gathered::of(sight.pieces(&located), view);
-        let cells = cells(case, view, &gathered)?;
-        let hit = hit(case, view, &sight, &gathered, &cells);
-        let fault = match hit.as_ref().map(|h| &h.part) {
-            Some(Part::Fault(fault)) => Some(fault.clone()),
-            _ => sheet(&gathered).and_then(|met| fault_of(case, met)),
-        };
-        Ok(Pick {
-            cells,
-            hit,
-            fault,
-            ..nothing
-        })
-    }
+/// What is seen at a place in the picture (0 to 1, right and down) of a view of the case whose grid the renderer has.
+///
+/// # Errors
+/// When the renderer reports an error, or the values cannot be read.
+pub fn pick(
+    renderer: &mut dyn Renderer,
+    case: &Case,
+    view: &View,
+    at: DVec2,
+) -> Result<Pick, PickError> {
+    let nothing = Pick {
+        property: view.shown.property.clone(),
+        step: view.shown.step,
+        ..Pick::default()
+    };
+    let Some(line) = renderer.look(view, at)? else {
+        return Ok(nothing);
+    };
+    let sight = Sight::new(case, view, &line);
+    let gathered = Gathered::of(sight.pieces(), view);
+    let cells = cells(case, view, &gathered)?;
+    let hit = hit(case, view, &sight, &gathered, &cells);
+    let fault = match hit.as_ref().map(|h| &h.part) {
+        Some(Part::Fault(fault)) => Some(fault.clone()),
+        _ => sheet(&gathered).and_then(|hit| fault_of(case, hit)),
+    };
+    Ok(Pick {
+        cells,
+        hit,
+        fault,
+        ..nothing
+    })
 }
 
 /// The cells with their values.
@@ -245,9 +228,9 @@ fn hit(
             let cell = on_ray(*ijk)?;
             (cell, part.clone(), Some(*value), cell.contribution)
         }
-        PieceSource::Sheet(met) => {
-            let part = Part::Fault(fault_of(case, *met)?);
-            (on_ray(met.cell)?, part, None, *of_piece)
+        PieceSource::Sheet(hit) => {
+            let part = Part::Fault(fault_of(case, *hit)?);
+            (on_ray(hit.cell)?, part, None, *of_piece)
         }
         PieceSource::Ghost => return None,
     };
@@ -269,20 +252,20 @@ fn hit(
 }
 
 /// The nearest sheet that is seen.
-fn sheet(gathered: &Gathered) -> Option<Met> {
+fn sheet(gathered: &Gathered) -> Option<FaceHit> {
     let mut sheets = gathered
         .pieces
         .iter()
         .filter_map(|(piece, of_pixel)| match piece.of {
-            PieceSource::Sheet(met) => (*of_pixel >= LEAST_SHEET).then_some(met),
+            PieceSource::Sheet(hit) => (*of_pixel >= LEAST_SHEET).then_some(hit),
             _ => None,
         });
     sheets.next()
 }
 
 /// The fault that a face lies on, if it does.
-fn fault_of(case: &Case, met: Met) -> Option<Fault> {
-    let Met { cell, face, .. } = met;
+fn fault_of(case: &Case, hit: FaceHit) -> Option<Fault> {
+    let FaceHit { cell, face, .. } = hit;
     if matches!(face, Face::KMinus | Face::KPlus) {
         return None;
     }
@@ -296,7 +279,7 @@ fn fault_of(case: &Case, met: Met) -> Option<Fault> {
     };
     // A ray leaves the near cell through a face that is turned away, and enters the far one otherwise.
     let drop = drop(&case.grid, cell, face, beyond);
-    let (near, far, throw) = match met.is_back {
+    let (near, far, throw) = match hit.is_exit {
         true => (cell, beyond, drop),
         false => (beyond, cell, -drop),
     };

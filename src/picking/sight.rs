@@ -3,94 +3,34 @@
 use glam::DVec3;
 
 use super::gather::{Piece, PieceSource};
-use super::ray::{Ray, Span};
-use super::surfaces::Met;
 use super::{Part, fault_of};
 use crate::case::Case;
 use crate::model::Ijk;
-use crate::render::Located;
-use crate::scene::Hull;
-use crate::view::View;
-use crate::view::ghosts::{self, shown_grid};
+use crate::render::{LineOfSight, Located, SurfacePoint};
 use crate::view::surfaces::{SHEET_OPACITY, fault_color};
+use crate::view::{View, ghosts};
 
-/// How far beside a surface its cell is located, as a part of the sampling step.
-const BESIDE: f64 = 1e-3;
 /// Part of a legend within which two values are the same to the eye.
 const TOLD_APART: f64 = 0.01;
 
-/// A ray of a view, and the surfaces on it.
+/// A line of sight of a view, with the look of what lies on it.
 pub(super) struct Sight<'a> {
     case: &'a Case,
     view: &'a View,
-    ray: Ray,
-    span: Span,
-    surfaces: Vec<Surface>,
-}
-
-/// A point of a surface.
-#[derive(Clone, Copy)]
-enum Surface {
-    /// Of the section of an opaque clip plane, at a distance.
-    Section(f64),
-    /// Of the hull.
-    Hull(Met),
-    /// Of a fault between the cells.
-    Sheet(Met),
-}
-
-impl Surface {
-    fn distance(self) -> f64 {
-        match self {
-            Self::Section(distance) => distance,
-            Self::Hull(met) | Self::Sheet(met) => met.distance,
-        }
-    }
+    line: &'a LineOfSight,
 }
 
 impl<'a> Sight<'a> {
-    /// Along a ray that meets these points of hull or faults, whichever the view shows.
-    pub fn new(case: &'a Case, view: &'a View, ray: Ray, span: Span, met: Vec<Met>) -> Self {
-        let surface = match view.style.surfaces.hull {
-            Hull::Opaque => Surface::Hull,
-            Hull::Hidden | Hull::Faint => Surface::Sheet,
-        };
-        let section = span.section.map(Surface::Section);
-        let surfaces = section.into_iter().chain(met.into_iter().map(surface));
-        Self {
-            case,
-            view,
-            ray,
-            surfaces: surfaces.collect(),
-            span,
-        }
+    pub fn new(case: &'a Case, view: &'a View, line: &'a LineOfSight) -> Self {
+        Self { case, view, line }
     }
 
-    /// Points of world space whose cells have to be known: beside each surface, then the samples.
-    pub fn points(&self) -> Vec<DVec3> {
-        let beside = BESIDE * self.view.sampling.step;
-        let surfaces = self.surfaces.iter().map(|surface| match surface {
-            Surface::Hull(met) if met.is_back => met.distance - beside,
-            other => other.distance() + beside,
-        });
-        let samples = self.span.samples.clone().map(|n| self.sample_at(n));
-        let all = surfaces.chain(samples);
-        all.map(|distance| self.at(distance)).collect()
-    }
-
-    fn sample_at(&self, number: u64) -> f64 {
-        (number as f64 + 0.5) * self.span.step
-    }
-
-    /// All that contributes to the pixel and all cells besides, nearest first; `located` answers
-    /// [`Self::points`].
-    pub fn pieces(&self, located: &[Option<Located>]) -> Vec<Piece> {
-        let (beside, samples) = located.split_at(self.surfaces.len().min(located.len()));
-        let surfaces = self.surfaces.iter().zip(beside);
-        let surfaces = surfaces.filter_map(|(surface, located)| self.surface(*surface, *located));
-        let samples = self.span.samples.clone().zip(samples);
-        let samples =
-            samples.filter_map(|(n, located)| self.sample(self.sample_at(n), (*located)?));
+    /// All that contributes to the pixel and all cells besides, nearest first.
+    pub fn pieces(&self) -> Vec<Piece> {
+        let surfaces = self.line.surfaces.iter();
+        let surfaces = surfaces.filter_map(|(point, located)| self.surface(*point, *located));
+        let samples = self.line.samples.iter();
+        let samples = samples.filter_map(|(at, located)| self.sample(*at, *located));
         let mut pieces: Vec<Piece> = surfaces.chain(samples).collect();
         pieces.sort_by(|a, b| a.at.total_cmp(&b.at));
         pieces
@@ -98,7 +38,7 @@ impl<'a> Sight<'a> {
 
     /// A point on the ray, in world space.
     pub fn at(&self, distance: f64) -> DVec3 {
-        self.ray.at(distance)
+        self.line.ray.at(distance)
     }
 
     /// The color of a cell's own value.
@@ -141,11 +81,11 @@ impl<'a> Sight<'a> {
         };
         let opacity = match self.is_before_hull(at) {
             true => 0.0,
-            false => -(-extinction * self.span.step).exp_m1(),
+            false => -(-extinction * self.line.span.step).exp_m1(),
         };
         Some(Piece {
             at,
-            reach: 0.5 * self.span.step,
+            reach: 0.5 * self.line.span.step,
             opacity,
             color,
             of,
@@ -154,14 +94,15 @@ impl<'a> Sight<'a> {
 
     /// Nothing is drawn before the hull where a ray comes from outside: a sample there is rounding.
     fn is_before_hull(&self, at: f64) -> bool {
-        let hull = self.surfaces.iter().find(|s| matches!(s, Surface::Hull(_)));
-        let has_more = self.span.starts_inside || self.view.shown.ghosts.is_some();
+        let mut surfaces = self.line.surfaces.iter().map(|(point, _)| *point);
+        let hull = surfaces.find(|s| matches!(s, SurfacePoint::Hull(_)));
+        let has_more = self.line.span.starts_inside || self.view.shown.cells.ghosts.is_some();
         hull.is_some_and(|hull| !has_more && at < hull.distance())
     }
 
-    fn surface(&self, surface: Surface, located: Option<Located>) -> Option<Piece> {
+    fn surface(&self, surface: SurfacePoint, located: Option<Located>) -> Option<Piece> {
         let (opacity, color, of) = match surface {
-            Surface::Section(_) => {
+            SurfacePoint::Section(_) => {
                 let located = located.filter(|l| !self.is_ghost(l.ijk))?;
                 let of = PieceSource::Cell {
                     ijk: located.ijk,
@@ -170,20 +111,20 @@ impl<'a> Sight<'a> {
                 };
                 (1.0, self.color(located.value), of)
             }
-            Surface::Hull(met) => {
-                let inside = located.filter(|l| l.ijk == met.cell);
-                let value = inside.map_or_else(|| self.own_value(met.cell), |l| Some(l.value))?;
-                let fault = fault_of(self.case, met);
+            SurfacePoint::Hull(hit) => {
+                let inside = located.filter(|l| l.ijk == hit.cell);
+                let value = inside.map_or_else(|| self.own_value(hit.cell), |l| Some(l.value))?;
+                let fault = fault_of(self.case, hit);
                 let of = PieceSource::Cell {
-                    ijk: met.cell,
+                    ijk: hit.cell,
                     value,
-                    part: fault.map_or(Part::Face(met.face), Part::Fault),
+                    part: fault.map_or(Part::Face(hit.face), Part::Fault),
                 };
                 (1.0, self.color(value), of)
             }
-            Surface::Sheet(met) => {
-                let color = fault_color(self.view.shown.named_faults.fault_of(met.cell, met.face));
-                (SHEET_OPACITY, color, PieceSource::Sheet(met))
+            SurfacePoint::Sheet(hit) => {
+                let color = fault_color(self.view.shown.named_faults.fault_of(hit.cell, hit.face));
+                (SHEET_OPACITY, color, PieceSource::Sheet(hit))
             }
         };
         Some(Piece {
@@ -197,12 +138,17 @@ impl<'a> Sight<'a> {
 
     /// A cell's value in the scale of the view.
     fn own_value(&self, ijk: Ijk) -> Option<f64> {
-        let grid = shown_grid(&self.case.grid, self.view.shown.ghosts.as_ref());
-        let value = self.view.shown.field.value(grid, grid.dims().cell(ijk));
+        let grid = &self.case.grid;
+        let value = self
+            .view
+            .shown
+            .cells
+            .field
+            .value(grid, grid.dims().cell(ijk));
         value.map(f64::from)
     }
 
     fn is_ghost(&self, ijk: Ijk) -> bool {
-        self.view.shown.ghosts.is_some() && !self.case.grid.is_active(ijk)
+        self.view.shown.cells.ghosts.is_some() && !self.case.grid.is_active(ijk)
     }
 }

@@ -265,7 +265,7 @@ pub(super) mod tests {
     use crate::model::{CellField, Spaces};
     use crate::scene::{Interpolation, Projection, StrategyKind};
     use crate::transfer::{TransferFunction, presets};
-    use crate::view::{Camera, Notes, Sampling, Shown, Style, World};
+    use crate::view::{Camera, Notes, Sampling, Shown, ShownCells, Style, World};
 
     /// A view from the southwest on a box of 10 by 9 by 4.
     pub fn view(size: [u32; 2], background: f64) -> View {
@@ -317,14 +317,15 @@ pub(super) mod tests {
             shown: Shown {
                 property: "SWAT".into(),
                 step: 0,
-                field: CellField::new(Vec::new()).into(),
-                interpolation: Interpolation::Cell,
+                cells: ShownCells::new(
+                    CellField::new(Vec::new()).into(),
+                    Vec::new(),
+                    Interpolation::Cell,
+                ),
                 connections: std::sync::Arc::default(),
                 named_faults: std::sync::Arc::default(),
                 chosen_faults: None,
-                drawn: Vec::new().into(),
                 clip: Vec::new(),
-                ghosts: None,
             },
             notes: Notes {
                 has_box: true,

@@ -13,7 +13,7 @@ use crate::model::{CellField, Dims, Grid, GridInput, Ijk, MapAxes, Spaces, Verte
 use crate::scene::lighting::{LightSpec, VolumeSpec};
 use crate::scene::{Interpolation, LightingSpec, StrategyKind};
 use crate::transfer::TransferFunction;
-use crate::view::{Camera, Notes, Sampling, Shown, Style, View, World, lighting};
+use crate::view::{Camera, Notes, Sampling, Shown, ShownCells, Style, View, World, lighting};
 
 /// A grid whose pillars and depths are functions of their place.
 struct Shape<'a> {
@@ -136,14 +136,15 @@ fn view(grid: &Grid, field: CellField, extinction: f64, sampling_step: f64) -> V
         shown: Shown {
             property: "TEST".into(),
             step: 0,
-            interpolation: Interpolation::Cell,
             connections: std::sync::Arc::default(),
             named_faults: std::sync::Arc::default(),
             chosen_faults: None,
-            drawn: vec![true; grid.active_cells().len()].into(),
             clip: Vec::new(),
-            ghosts: None,
-            field: field.into(),
+            cells: ShownCells::new(
+                field.into(),
+                vec![true; grid.active_cells().len()],
+                Interpolation::Cell,
+            ),
         },
         notes: Notes {
             has_box: false,
@@ -162,7 +163,7 @@ fn light(view: &mut View, spec: LightingSpec, voxel: DVec3) {
         ..spec.volume
     };
     let spec = LightingSpec { volume, ..spec };
-    view.style.lighting = lighting::resolve(&spec, extent, view.shown.drawn.len()).unwrap();
+    view.style.lighting = lighting::resolve(&spec, extent, view.shown.cells.drawn.len()).unwrap();
 }
 
 /// A white light with sharp shadows that shines along `direction`.
@@ -385,7 +386,7 @@ fn hidden_and_undefined_cells_are_empty() {
     // The central ray runs along the edge of four pairs of cells, which the first pair has.
     let mut hidden = view(&grid, constant(&grid), 0.07, 0.3);
     for n in [0, 2, 4, 6] {
-        std::sync::Arc::make_mut(&mut hidden.shown.drawn)[n] = false;
+        std::sync::Arc::make_mut(&mut hidden.shown.cells.drawn)[n] = false;
     }
     let expected = |samples: f64| 1.0 - (-0.07 * 0.3 * samples).exp();
     // 90..100 has samples n = 300..=332 (33 of them), 100..110 the other 34.
@@ -428,7 +429,7 @@ fn picture_does_not_depend_on_where_the_model_is_nor_on_its_axes() {
         let field = CellField::new((0..60).map(|n| n as f32 / 60.0).collect());
         let mut view = view(grid, field, 0.01, 3.0);
         view.style.transfer.opacity = vec![(0.0, 0.0), (1.0, 0.05)];
-        view.shown.interpolation = Interpolation::Vertex;
+        view.shown.cells.interpolation = Interpolation::Vertex;
         view.camera = Camera::framing(
             &view.world.corners,
             1.0,

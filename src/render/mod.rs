@@ -4,20 +4,25 @@
 //! that. An image is a [`Job`]: it is advanced until a deadline or run to its end, and dropped where nobody wants
 //! it any more. Whoever shows, saves, compares, times or picks uses these alone.
 
+mod adapters;
 pub mod cpu;
 mod error;
 #[cfg(feature = "gpu")]
 pub mod gpu;
 pub mod job;
+pub mod line_of_sight;
 pub mod plan;
+pub mod revisions;
 mod stats;
 
 use std::sync::Arc;
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
+pub use adapters::AdapterFacts;
 pub use error::RenderError;
 pub use job::Job;
+pub use line_of_sight::{LineOfSight, SurfacePoint};
 pub use stats::{DeviceBytes, Frame, FrameStats, LightTimes};
 
 use crate::model::{Grid, Ijk};
@@ -91,6 +96,13 @@ pub trait Renderer {
         points: &[DVec3],
     ) -> Result<Vec<Option<Located>>, RenderError>;
 
+    /// What lies on the ray through a place in the image of a view (0 to 1, right and down); `None` where the ray
+    /// misses all that is kept.
+    ///
+    /// # Errors
+    /// When the device reports an error.
+    fn look(&mut self, view: &View, at: DVec2) -> Result<Option<LineOfSight>, RenderError>;
+
     /// Makes an image, and tells after each piece how much of it, or of what is prepared for it, is done.
     ///
     /// # Errors
@@ -123,6 +135,14 @@ pub fn executor(adapter: Option<&str>) -> Result<Arc<dyn Executor>, RenderError>
         Some(name) if name.eq_ignore_ascii_case("cpu") => Ok(Arc::new(cpu::CpuExecutor)),
         adapter => by_adapter(adapter),
     }
+}
+
+/// All adapters, the best one first.
+pub fn adapters() -> Vec<AdapterFacts> {
+    #[cfg(feature = "gpu")]
+    return gpu::device::adapters();
+    #[cfg(not(feature = "gpu"))]
+    Vec::new()
 }
 
 #[cfg(feature = "gpu")]

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::View;
 use super::error::{SceneError, wrong};
 use crate::scene::{ClipSpec, CutFace, Mode};
 
@@ -44,4 +45,12 @@ pub(super) fn planes(planes: &[ClipSpec], mode: Mode) -> Result<Vec<ClipPlane>, 
         })
     };
     planes.iter().map(resolve).collect()
+}
+
+impl View {
+    /// True where a point of world space lies on the kept side of every clip plane.
+    pub fn keeps(&self, point: DVec3) -> bool {
+        let mut planes = self.shown.clip.iter();
+        planes.all(|plane| (point - plane.point).dot(plane.normal) >= 0.0)
+    }
 }

@@ -87,14 +87,8 @@ pub struct Shown {
     pub property: String,
     /// Step.
     pub step: usize,
-    /// Its values, in the scale of the transfer function; see [`View::true_value`].
-    pub field: Arc<CellField>,
-    /// How values vary inside a cell.
-    pub interpolation: Interpolation,
-    /// By active index: true where the cell is drawn (has thickness and a value, passes the filter).
-    pub drawn: Arc<Vec<bool>>,
-    /// Where inactive cells are shown: the grid that field and selection go by then.
-    pub ghosts: Option<Arc<Ghosts>>,
+    /// Which cells are drawn, and their values.
+    pub cells: ShownCells,
     /// Planes that cut parts away.
     pub clip: Vec<ClipPlane>,
     /// Ends in world space of the connections that are marked: those of drawn cells.
@@ -149,6 +143,62 @@ pub struct Notes {
     pub facts: Option<Arc<Facts>>,
 }
 
+/// The cells that rays meet, and their values.
+#[derive(Debug, Clone)]
+pub struct ShownCells {
+    /// Values by active index, in the scale of the transfer function; see [`View::true_value`]. They are there
+    /// whether or not the cell is drawn.
+    pub field: Arc<CellField>,
+    /// How values vary inside a cell.
+    pub interpolation: Interpolation,
+    /// By active index: true where the cell is drawn (has thickness and a value, passes the filter).
+    pub drawn: Arc<Vec<bool>>,
+    /// A filter hides cells by their place or value.
+    pub is_filtered: bool,
+    /// Where inactive cells are shown: these too, beside the drawn ones.
+    pub ghosts: Option<Arc<Ghosts>>,
+}
+
+impl ShownCells {
+    /// Cells of a field, by active index, of which `drawn` are drawn.
+    pub fn new(field: Arc<CellField>, drawn: Vec<bool>, interpolation: Interpolation) -> Self {
+        Self {
+            field,
+            interpolation,
+            drawn: Arc::new(drawn),
+            is_filtered: false,
+            ghosts: None,
+        }
+    }
+
+    /// True where another selection of the same case's cells has the same values, and draws the same cells.
+    pub fn is_same(&self, other: &Self) -> bool {
+        let kinds = |s: &Self| (s.interpolation, s.is_filtered, s.ghosts.is_some());
+        // Pointers first: `Arc` compares them where equality is exact.
+        kinds(self) == kinds(other) && self.field == other.field && self.drawn == other.drawn
+    }
+
+    /// By active index the cells whose values count for averages at vertices and for ranges; `None` where all do.
+    /// Of a filtered view these are the drawn ones, so that no value shows of a cell that is filtered away.
+    pub fn valued(&self) -> Option<&[bool]> {
+        self.is_filtered.then_some(&self.drawn)
+    }
+
+    /// Smallest and largest value of [`Self::field`] among these cells; `None` where no value is defined.
+    pub fn value_range(&self) -> Option<[f64; 2]> {
+        let statistics = self.field.statistics_of(self.valued())?;
+        Some([statistics.min, statistics.max])
+    }
+
+    /// Given the case's grid: the grid that rays pass, and by its active index the cells of it that are drawn.
+    pub fn in_grid<'a>(&'a self, grid: &'a Grid) -> (&'a Grid, &'a [bool]) {
+        match &self.ghosts {
+            None => (grid, &self.drawn),
+            Some(ghosts) => (&ghosts.grid, &ghosts.drawn),
+        }
+    }
+}
+
 impl View {
     /// The same view by a strategy.
     #[must_use]
@@ -176,8 +226,7 @@ impl View {
     /// Smallest and largest corner in grid space of the drawn cells of `grid` (the case's), ghosts aside; `None`
     /// where none is drawn.
     pub fn drawn_bounds(&self, grid: &Grid) -> Option<[DVec3; 2]> {
-        let drawn = self.drawn_active(grid);
-        let cells = grid.active_cells().par_iter().zip(drawn);
+        let cells = grid.active_cells().par_iter().zip(&*self.shown.cells.drawn);
         grid.bounds_of(cells.filter_map(|(cell, drawn)| drawn.then(|| grid.dims().ijk(*cell))))
     }
 
@@ -194,7 +243,7 @@ impl View {
 
     /// True where rays pass through something: between the faces of solid cells there is nothing but ghosts.
     pub fn casts_rays(&self) -> bool {
-        !self.style.surfaces.solid || self.shown.ghosts.is_some()
+        !self.style.surfaces.solid || self.shown.cells.ghosts.is_some()
     }
 
     /// Color of a position in the range of values, in the numbers that are blended.

@@ -9,16 +9,17 @@ use super::colors::{self, ColorRequest, Colors, interpolation};
 use super::error::{SceneError, positive, wrong};
 use super::facts::{self, Facts};
 use super::framing::{self, Direction, Subject};
-use super::ghosts::{Ghosts, shown_grid};
+use super::ghosts::Ghosts;
 use super::lighting::{self, Lighting};
 use super::look::default_property;
 use super::step::step_of;
 use super::voxels::Shape;
 use super::{
-    Camera, ClipPlane, Notes, Sampling, Shown, Style, Surfaces, View, World, clip, filter, surfaces,
+    Camera, ClipPlane, Notes, Sampling, Shown, ShownCells, Style, Surfaces, View, World, clip,
+    filter, surfaces,
 };
 use crate::case::Case;
-use crate::model::{CellField, CellIndex, Dims, Ijk, Spaces};
+use crate::model::{CellField, CellIndex, Dims, Grid, Ijk, Spaces};
 use crate::scene::{CameraSpec, Inactive, Mode, Scene, SrgSettings};
 use crate::transfer::presets;
 
@@ -40,10 +41,8 @@ pub(super) fn resolve_over(
     let exaggeration = exaggeration(scene, active_bounds(case)?)?;
     let spaces = Spaces::new(case.grid.map_axes(), exaggeration);
     let edges = mean_world_edges(case, exaggeration);
-    let property = match &scene.property {
-        Some(name) => name.clone(),
-        None => default_property(case),
-    };
+    let property = scene.property.clone();
+    let property = property.unwrap_or_else(|| default_property(case));
     let step = step_of(case, &scene.step, case.is_dynamic(&property))?;
     let field = case.field(&property, step)?;
     let asked = ColorRequest {
@@ -56,20 +55,19 @@ pub(super) fn resolve_over(
         thinnest: filter::thinnest(&scene.filter, case.grid.dims(), edges)?,
     };
     let Colors {
-        field: shown,
+        field: in_scale,
         transfer,
         beyond,
     } = colors::resolve(&asked, &field)?;
     let clip = clip::planes(&scene.clip, scene.mode)?;
     let Cells {
-        field,
         drawn,
         ghosts,
         connections,
         facts,
         subject,
         box_corners,
-    } = cells(&asked, [field, shown], &spaces, &clip)?;
+    } = cells(&asked, [&field, &in_scale], &spaces, &clip)?;
     let world_bounds = bounds_of(&box_corners);
     let size = checked_size(scene.size)?;
     Ok(View {
@@ -93,10 +91,13 @@ pub(super) fn resolve_over(
         shown: Shown {
             property,
             step,
-            field,
-            interpolation: interpolation(scene),
-            drawn: Arc::new(drawn),
-            ghosts,
+            cells: ShownCells {
+                field: in_scale,
+                interpolation: interpolation(scene),
+                drawn: Arc::new(drawn),
+                is_filtered: scene.filter.limits(),
+                ghosts,
+            },
             clip,
             connections,
             named_faults: case.fault_faces.clone(),
@@ -243,7 +244,6 @@ fn mean_world_edges(case: &Case, exaggeration: f64) -> DVec3 {
 
 /// Which cells are drawn, and what follows from that.
 struct Cells {
-    field: Arc<CellField>,
     drawn: Vec<bool>,
     ghosts: Option<Arc<Ghosts>>,
     connections: Arc<Vec<[DVec3; 2]>>,
@@ -256,69 +256,42 @@ struct Cells {
 /// The cells of a scene, from the values of the property: true ones, and those in the scale of its colors.
 fn cells(
     asked: &ColorRequest<'_>,
-    [values, field]: [Arc<CellField>; 2],
+    [values, in_scale]: [&CellField; 2],
     spaces: &Spaces,
     clip: &[ClipPlane],
 ) -> Result<Cells, SceneError> {
     let ColorRequest { scene, case, .. } = *asked;
-    let (field, drawn) = filtered(case, field, scene)?;
+    let drawn = filter::drawn(case, in_scale, &scene.filter, &scene.step)?;
     let framed = match framing::still(&scene.filter, case) {
-        Some(still) => filter::drawn(case, &values, &still, &scene.step)?,
+        Some(still) => filter::drawn(case, values, &still, &scene.step)?,
         None => drawn.clone(),
     };
     let facts = scene.show.info.then(|| {
         let seen = facts::uncut(&case.grid, &drawn, clip, spaces);
-        Arc::new(Facts::of(case, asked.property, &values, &seen, scene))
+        Arc::new(Facts::of(case, asked.property, values, &seen, scene))
     });
     let connections = match scene.show.nnc {
         true => connections(case, spaces, &drawn),
         false => Vec::new(),
     };
-    let (ghosts, field, drawn, framed) = match scene.show.inactive {
-        Inactive::Hidden => (None, field, drawn, framed),
-        Inactive::Ghost => {
-            let (ghosts, field, drawn) = Ghosts::new(&case.grid, &field, &drawn);
-            let framed = ghosts.with(&case.grid, &framed);
-            (Some(Arc::new(ghosts)), Arc::new(field), drawn, framed)
-        }
+    let ghosts = match scene.show.inactive {
+        Inactive::Hidden => None,
+        Inactive::Ghost => Some(Arc::new(Ghosts::new(&case.grid, &drawn))),
     };
-    let grid = shown_grid(&case.grid, ghosts.as_ref());
+    let (grid, framed): (&Grid, _) = match &ghosts {
+        None => (&case.grid, framed),
+        Some(ghosts) => (&ghosts.grid, ghosts.with(&case.grid, &framed)),
+    };
     let subject = Subject::of(grid, &framed, spaces).ok_or(SceneError::Empty)?;
     let bounds = grid.bounds().ok_or(SceneError::Empty)?;
     Ok(Cells {
         box_corners: box_corners(spaces, bounds),
-        field,
         drawn,
         ghosts,
         connections: Arc::new(connections),
         facts,
         subject,
     })
-}
-
-/// Which cells are drawn, and their values: averages at vertices are of drawn cells, so that no color of a cell
-/// shows that is filtered away.
-fn filtered(
-    case: &Case,
-    field: Arc<CellField>,
-    scene: &Scene,
-) -> Result<(Arc<CellField>, Vec<bool>), SceneError> {
-    let drawn = filter::drawn(case, &field, &scene.filter, &scene.step)?;
-    let field = match scene.filter.limits() {
-        true => Arc::new(only(&field, &drawn)),
-        false => field,
-    };
-    Ok((field, drawn))
-}
-
-/// The values of the drawn cells; the others have none.
-fn only(field: &CellField, drawn: &[bool]) -> CellField {
-    let values = field.values().iter().zip(drawn);
-    CellField::new(
-        values
-            .map(|(v, d)| if *d { *v } else { f32::NAN })
-            .collect(),
-    )
 }
 
 /// Middles of the cells of non-neighbor connections in world space, where both are drawn.

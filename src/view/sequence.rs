@@ -227,7 +227,7 @@ fn at_step(scene: &Scene, step: usize) -> Scene {
 /// The scene's range, or that of the values of one step; `None` where none is defined.
 fn defined_range(scene: &Scene, view: &View) -> Option<[f64; 2]> {
     let fixed = matches!(scene.range, RangeSpec::Fixed(_));
-    let defined = fixed || view.shown.field.statistics().is_some();
+    let defined = fixed || view.shown.cells.value_range().is_some();
     defined.then(|| view.style.transfer.true_range())
 }
 

@@ -160,28 +160,16 @@ impl View {
         2.0 * self.sampling.step
     }
 
-    /// Which active cells of `grid` (the case's) are drawn, by active index.
-    pub fn drawn_active(&self, grid: &Grid) -> Vec<bool> {
-        match &self.shown.ghosts {
-            None => self.shown.drawn.to_vec(),
-            Some(ghosts) => {
-                let cells = grid.active_cells().iter();
-                let of_all = cells.filter_map(|&cell| ghosts.grid.active_index(cell));
-                of_all.map(|a| self.shown.drawn[a.0 as usize]).collect()
-            }
-        }
-    }
-
     /// The faces of the hull: boundary faces of the drawn cells of `grid` (the case's); inactive cells shown
     /// as ghosts have none.
     pub fn hull_faces(&self, grid: &Grid) -> Vec<(Ijk, Face)> {
-        grid.boundary_faces(&self.drawn_active(grid))
+        grid.boundary_faces(&self.shown.cells.drawn)
     }
 
     /// The fault faces of the drawn cells of `grid` (the case's) that the view shows, with the fault's number
     /// where it has a name; those of named faults are there whatever their throw.
     pub fn fault_faces(&self, grid: &Grid) -> Vec<(Ijk, Face, Option<usize>)> {
-        let faces = grid.fault_faces_of(&self.drawn_active(grid), &self.shown.named_faults);
+        let faces = grid.fault_faces_of(&self.shown.cells.drawn, &self.shown.named_faults);
         faces
             .into_iter()
             .map(|(cell, face)| (cell, face, self.shown.named_faults.fault_of(cell, face)))

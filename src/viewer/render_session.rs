@@ -12,7 +12,7 @@ use crate::case::Case;
 use crate::image::Rgb8;
 use crate::image::metrics::{Comparison, ciede2000_map};
 use crate::model::Grid;
-use crate::picking::{Pick, PickError, Picker};
+use crate::picking::{self, Pick, PickError};
 use crate::picture;
 use crate::render::{self, Executor, RenderError, Renderer};
 use crate::scene::{CameraSpec, Scene};
@@ -44,7 +44,6 @@ struct SideState {
     /// Cases that share a grid share what is on the device.
     renderer: Option<Box<dyn Renderer>>,
     resolved: VecDeque<(RenderRequest, Arc<View>)>,
-    picker: Picker,
 }
 
 impl RenderSession {
@@ -170,7 +169,6 @@ impl RenderSession {
         let has = |known: &Arc<Grid>| std::ptr::eq(Arc::as_ptr(known), grid.as_ptr());
         for side in &mut self.sides {
             side.renderer.take_if(|kept| has(kept.grid()));
-            side.picker = Picker::default();
             side.resolved.retain(|(wanted, _)| !is_of(&wanted.case));
         }
         // The device frees what it is done with when it is asked.
@@ -192,11 +190,8 @@ impl RenderSession {
         let executor = self.open(say).map_err(Failure::of_device)?;
         let side = &mut self.sides[side];
         let view = side.view(wanted)?;
-        let mut picker = std::mem::take(&mut side.picker);
         let renderer = side.renderer(&*executor, &wanted.case)?;
-        let pick = picker.pick(renderer, &wanted.case, &view, at);
-        side.picker = picker;
-        pick.map_err(|error| Failure {
+        picking::pick(renderer, &wanted.case, &view, at).map_err(|error| Failure {
             is_device: matches!(error, PickError::Render(_)),
             sentence: error.to_string(),
         })

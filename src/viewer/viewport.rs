@@ -119,9 +119,9 @@ impl Viewport {
     fn under(&mut self, view: &View, grid: &Grid, at: DVec2) -> DVec3 {
         let known = self.drawn.take();
         let known =
-            known.filter(|d| std::ptr::eq(d.cells.as_ptr(), Arc::as_ptr(&view.shown.drawn)));
+            known.filter(|d| std::ptr::eq(d.cells.as_ptr(), Arc::as_ptr(&view.shown.cells.drawn)));
         let drawn = known.unwrap_or_else(|| Drawn {
-            cells: Arc::downgrade(&view.shown.drawn),
+            cells: Arc::downgrade(&view.shown.cells.drawn),
             bounds: view.drawn_bounds(grid),
         });
         let bounds = self.drawn.insert(drawn).bounds;

@@ -12,7 +12,7 @@ use strataray::scene::{
     CameraSpec, FramingCamera, Interpolation, OpacitySpec, Projection, RangeSpec, Scene,
     StrategyKind,
 };
-use strataray::view::{self, View};
+use strataray::view::{self, ShownCells, View};
 
 fn scene(azimuth: f64, elevation: f64, opacity: &[[f64; 2]]) -> Scene {
     let mut scene = Scene {
@@ -217,8 +217,8 @@ fn a_linear_field_is_reproduced_inside_on_both() {
             .collect();
         let mut grid = GpuGrid::new(&gpu, &case.grid).unwrap();
         let drawn = vec![true; case.grid.active_cells().len()];
-        grid.show(&gpu, &case.grid, &field, &drawn, Interpolation::Vertex)
-            .unwrap();
+        let shown = ShownCells::new(field.clone(), drawn, Interpolation::Vertex);
+        grid.show(&gpu, &case.grid, &shown).unwrap();
         let found = probe::locate(&gpu, &grid, &case.grid, &points, Interpolation::Vertex).unwrap();
         let locator = Locator::new(&case.grid);
         let vertices = VertexField::new(&case.grid, &field);

@@ -109,7 +109,7 @@ fn true_values_come_back_from_every_scale() {
     );
     let positive = permx.values().iter().filter(|v| **v > 0.0);
     let least = positive.fold(f32::INFINITY, |a, b| a.min(*b));
-    for (shown, value) in log.shown.field.values().iter().zip(permx.values()) {
+    for (shown, value) in log.shown.cells.field.values().iter().zip(permx.values()) {
         let wanted = f64::from(value.max(least));
         let back = log.true_value(f64::from(*shown));
         assert!((back / wanted - 1.0).abs() < 1e-5, "{back} {wanted}");
@@ -123,13 +123,20 @@ fn true_values_come_back_from_every_scale() {
         &json!({"property": "FIPNUM", "transfer": {"coloring": "categories"}}),
     );
     let fipnum = case.field("FIPNUM", 0).unwrap();
-    for (shown, value) in regions.shown.field.values().iter().zip(fipnum.values()) {
+    for (shown, value) in regions
+        .shown
+        .cells
+        .field
+        .values()
+        .iter()
+        .zip(fipnum.values())
+    {
         assert_eq!(regions.true_value(f64::from(*shown)), f64::from(*value));
     }
     let Scale::Categories(values) = &regions.style.transfer.scale else {
         panic!("{:?}", regions.style.transfer.scale);
     };
-    assert!(values.len() > 1 && regions.shown.interpolation == Interpolation::Cell);
+    assert!(values.len() > 1 && regions.shown.cells.interpolation == Interpolation::Cell);
     assert_eq!(
         regions.style.transfer.range,
         [-0.5, values.len() as f64 - 0.5]
@@ -255,6 +262,7 @@ fn fronts_in_a_grid_are_found_at_their_value() {
         boundaries::find(&derivatives::samples(
             &case.grid,
             &along_i(&case.grid, value),
+            None,
         ))
     };
     // From 0.2 to 0.8 within some three cells, and within one.
@@ -293,7 +301,7 @@ fn boundaries_of_a_million_cells() {
     .unwrap();
     let field = CellField::new(model.fields.values("SWAT", 1.0).unwrap());
     let start = std::time::Instant::now();
-    let samples = derivatives::samples(&grid, &field);
+    let samples = derivatives::samples(&grid, &field, None);
     let sampled = start.elapsed();
     let found = boundaries::find(&samples);
     println!(

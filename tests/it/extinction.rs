@@ -68,7 +68,7 @@ impl Found {
 
     /// Opacities of a unit of length before any blur.
     fn opacities(&self) -> Block {
-        let statistics = self.view.shown.field.statistics().unwrap();
+        let statistics = self.view.shown.cells.field.statistics().unwrap();
         let transfer = &self.view.style.transfer;
         let [low, high] = [statistics.min, statistics.max];
         let mut block = self.pyramid[0].clone();
@@ -173,7 +173,7 @@ fn values_by_chance_are_blurred_in_cubes() {
             return;
         };
         // One cell a voxel: the volume has their values.
-        let statistics = found.view.shown.field.statistics().unwrap();
+        let statistics = found.view.shown.cells.field.statistics().unwrap();
         let part = |v: f64| (v - statistics.min) / (statistics.max - statistics.min);
         for (at, held) in found.pyramid[0].voxels().zip(&found.field) {
             let error = (held.value - part(hash(at))).abs();

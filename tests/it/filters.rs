@@ -24,7 +24,11 @@ fn sample() -> Case {
 
 /// I, J and K from 1 of the drawn cells.
 fn drawn(case: &Case, view: &View) -> Vec<[usize; 3]> {
-    let cells = case.grid.active_cells().iter().zip(view.shown.drawn.iter());
+    let cells = case
+        .grid
+        .active_cells()
+        .iter()
+        .zip(view.shown.cells.drawn.iter());
     let drawn = cells.filter(|(_, drawn)| **drawn);
     drawn
         .map(|(cell, _)| {
@@ -64,7 +68,7 @@ fn bounds_may_be_open_and_filters_turned_around() {
     let values = soil.values();
     let count = |filter: Value| {
         let view = view(&case, json!({"filter": {"properties": [filter]}}));
-        view.shown.drawn.iter().filter(|d| **d).count()
+        view.shown.cells.drawn.iter().filter(|d| **d).count()
     };
     let all = count(json!({"name": "SOIL"}));
     let least = count(json!({"name": "SOIL", "min": 0.5}));
@@ -234,13 +238,14 @@ fn differences_are_properties_of_a_scene() {
     let [swat, soil] = ["SWAT", "SOIL"].map(|n| case.field(n, last).unwrap());
     let two = view(&case, json!({"property": "SWAT-SOIL@same", "step": "last"}));
     assert_eq!(two.shown.step, last);
-    for (n, v) in two.shown.field.values().iter().enumerate() {
+    for (n, v) in two.shown.cells.field.values().iter().enumerate() {
         assert_eq!(*v, swat.values()[n] - soil.values()[n]);
     }
     // Water that came is oil that left.
     let of_step = |name: &str| {
         view(&case, json!({"property": name, "step": "last"}))
             .shown
+            .cells
             .field
     };
     let [came, left] = ["SWAT-SWAT@first", "SOIL-SOIL@2005-01-01"].map(of_step);

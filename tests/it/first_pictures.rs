@@ -29,7 +29,13 @@ fn oil_that_shows(case: &Case, view: &View) -> f64 {
     let weights = case.weights();
     let thickness = Derived::Thickness.field(&case.grid);
     let (mut shown, mut all) = (0.0, 0.0);
-    let cells = view.shown.field.values().iter().zip(weights.values.iter());
+    let cells = view
+        .shown
+        .cells
+        .field
+        .values()
+        .iter()
+        .zip(weights.values.iter());
     for ((soil, volume), thickness) in cells.zip(thickness.values()) {
         let oil = f64::from(*soil).max(0.0) * f64::from(*volume);
         let extinction = view

@@ -31,9 +31,12 @@ fn reach_of_box(view: &View) -> [DVec2; 2] {
 
 /// Smallest and largest place in the picture of the corners of the drawn cells.
 fn reach(view: &View, case: &Case) -> [DVec2; 2] {
-    let drawn = view.drawn_active(&case.grid);
-    let cells = case.grid.active_cells().iter().zip(drawn);
-    let drawn = cells.filter(|(_, drawn)| *drawn);
+    let cells = case
+        .grid
+        .active_cells()
+        .iter()
+        .zip(&*view.shown.cells.drawn);
+    let drawn = cells.filter(|(_, drawn)| **drawn);
     let corners = drawn.flat_map(|(cell, _)| {
         let ijk = case.grid.dims().ijk(*cell);
         case.grid.hexahedron(ijk).0
@@ -160,7 +163,10 @@ fn a_filter_is_framed_but_not_what_changes_with_time() {
     let cameras = [0, 10, 20].map(|step| {
         scene.step = StepSpec::Index(step);
         let view = view::resolve(&scene, &case).unwrap();
-        (view.camera, view.shown.drawn.iter().filter(|d| **d).count())
+        (
+            view.camera,
+            view.shown.cells.drawn.iter().filter(|d| **d).count(),
+        )
     });
     assert!(cameras.iter().all(|c| c.0 == whole.camera));
     assert!(cameras[0].1 != cameras[2].1);

@@ -21,6 +21,7 @@ mod compare;
 mod cone_accuracy;
 mod cones;
 mod dispatch;
+mod doctor;
 mod extinction;
 mod facts;
 mod films;

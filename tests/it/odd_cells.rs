@@ -10,6 +10,7 @@ use strataray::reference::{Located, Locator};
 use strataray::render;
 use strataray::render::gpu::{Gpu, GpuGrid, probe};
 use strataray::scene::Interpolation;
+use strataray::view::ShownCells;
 
 /// Cells apart from each other, each with pillars of its own.
 struct Loose {
@@ -97,9 +98,8 @@ fn locate(
     let cells = grid.active_cells().len();
     let mut on_device = GpuGrid::new(gpu, grid).unwrap();
     let field = CellField::new(vec![1.0; cells]);
-    on_device
-        .show(gpu, grid, &field, &vec![true; cells], Interpolation::Cell)
-        .unwrap();
+    let shown = ShownCells::new(field.into(), vec![true; cells], Interpolation::Cell);
+    on_device.show(gpu, grid, &shown).unwrap();
     let found = probe::locate(gpu, &on_device, grid, points, Interpolation::Cell).unwrap();
     let locator = Locator::new(grid);
     let truth = points.iter().map(|&p| locator.locate(p));

@@ -12,7 +12,7 @@ use strataray::image::Image;
 use strataray::image::metrics::{ciede2000, lab};
 use strataray::model::Ijk;
 use strataray::model::topology::Face;
-use strataray::picking::{Part, Pick, Picker};
+use strataray::picking::{self, Part, Pick};
 use strataray::render::Renderer;
 use strataray::render::gpu::GpuRenderer;
 use strataray::scene::{
@@ -110,10 +110,9 @@ fn what_is_picked_has_the_color_that_is_seen() {
         let mut renderer = GpuRenderer::new(gpu.clone(), &case.grid).unwrap();
         let frame = renderer.render(&view, &|_| true);
         let image = frame.unwrap().image;
-        let mut picker = Picker::default();
         let (mut shown, mut own, mut first) = (0, 0, 0);
         for (pixel, at) in covered(&image, PLACES) {
-            let pick = picker.pick(&mut renderer, &case, &view, at).unwrap();
+            let pick = picking::pick(&mut renderer, &case, &view, at).unwrap();
             let hit = pick.hit.clone().unwrap();
             let color = seen_color(&image, pixel);
             let is_alike = |value: f64| ciede2000(value_color(&view, value), color) <= ALIKE;
@@ -161,10 +160,9 @@ fn a_click_on_the_first_picture_takes_the_value_that_is_seen() {
         let mut renderer = GpuRenderer::new(gpu.clone(), &case.grid).unwrap();
         let frame = renderer.render(&view, &|_| true);
         let image = frame.unwrap().image;
-        let mut picker = Picker::default();
         let (mut alike, mut first, mut whole) = (0, 0, 0);
         for (pixel, at) in covered(&image, PLACES) {
-            let pick = picker.pick(&mut renderer, &case, &view, at).unwrap();
+            let pick = picking::pick(&mut renderer, &case, &view, at).unwrap();
             let color = seen_color(&image, pixel);
             let is_alike = |value: f64| {
                 let [a, b] = [value_color(&view, value), color].map(without_lightness);
@@ -190,9 +188,8 @@ fn stepping_along_the_line_of_sight_reaches_all_cells() {
     let case = load::open(&common::sample()).unwrap();
     let view = view::resolve(&opening(&case), &case).unwrap();
     let mut renderer = GpuRenderer::new(gpu, &case.grid).unwrap();
-    let mut picker = Picker::default();
     for at in [DVec2::splat(0.5), DVec2::new(0.4, 0.55)] {
-        let pick = picker.pick(&mut renderer, &case, &view, at).unwrap();
+        let pick = picking::pick(&mut renderer, &case, &view, at).unwrap();
         let hit = pick.hit.as_ref().unwrap();
         let before: Vec<Ijk> = walk_of(&pick, hit.ijk, -1);
         let behind: Vec<Ijk> = walk_of(&pick, hit.ijk, 1);
@@ -250,7 +247,7 @@ const BLUE_TO_RED: [(f64, &str); 2] = [(0.0, "#0000ff"), (1.0, "#ff0000")];
 fn pick(case: &Case, scene: &Scene) -> Option<Pick> {
     let view = view::resolve(scene, case).unwrap();
     let mut renderer = GpuRenderer::new(common::gpu()?, &case.grid).unwrap();
-    let picked = Picker::default().pick(&mut renderer, case, &view, DVec2::splat(0.5));
+    let picked = picking::pick(&mut renderer, case, &view, DVec2::splat(0.5));
     Some(picked.unwrap())
 }
 
@@ -492,10 +489,9 @@ fn a_fault_is_picked_where_it_is_what_is_seen() {
 }
 
 #[test]
-fn one_picker_answers_for_every_view() {
+fn one_renderer_answers_for_every_view() {
     let Some(gpu) = common::gpu() else { return };
     let case = load::open(&common::sample()).unwrap();
-    let mut renderer = GpuRenderer::new(gpu, &case.grid).unwrap();
     let plain = opening(&case);
     let mut scenes = vec![plain.clone()];
     for (hull, faults) in [
@@ -511,19 +507,18 @@ fn one_picker_answers_for_every_view() {
         scene.show.inactive = Inactive::Ghost;
         scenes.push(scene);
     }
-    let mut kept = Picker::default();
+    let mut kept = GpuRenderer::new(gpu.clone(), &case.grid).unwrap();
     let mut parts = Vec::new();
     for scene in scenes.iter().chain(scenes.iter().rev()) {
         let view = view::resolve(scene, &case).unwrap();
+        let mut fresh = GpuRenderer::new(gpu.clone(), &case.grid).unwrap();
         for at in [
             DVec2::new(0.5, 0.5),
             DVec2::new(0.4, 0.52),
             DVec2::new(0.6, 0.45),
         ] {
-            let fresh = Picker::default()
-                .pick(&mut renderer, &case, &view, at)
-                .unwrap();
-            let again = kept.pick(&mut renderer, &case, &view, at).unwrap();
+            let fresh = picking::pick(&mut fresh, &case, &view, at).unwrap();
+            let again = picking::pick(&mut kept, &case, &view, at).unwrap();
             assert_eq!(fresh, again);
             parts.extend(fresh.hit.map(|h| std::mem::discriminant(&h.part)));
         }
@@ -552,9 +547,7 @@ fn the_command_gives_the_same_answer() {
     let view = view::resolve(&scene, &case).unwrap();
     let mut renderer = GpuRenderer::new(gpu, &case.grid).unwrap();
     let at = middle([230, 190], view.size);
-    let pick = Picker::default()
-        .pick(&mut renderer, &case, &view, at)
-        .unwrap();
+    let pick = picking::pick(&mut renderer, &case, &view, at).unwrap();
     let hit = pick.hit.as_ref().unwrap();
     let scene = file.to_str().unwrap();
     let output = run(&["--scene", scene, "--at", "230,190", "--json", "--plain"]);

@@ -6,8 +6,6 @@ use strataray::case::load;
 use strataray::image::Image;
 use strataray::image::metrics::{fraction_within, psnr_8bit, ssim_8bit};
 use strataray::model::CellIndex;
-use strataray::picking::Picker;
-use strataray::reference;
 use strataray::render::Renderer;
 use strataray::render::gpu::GpuRenderer;
 use strataray::scene::{
@@ -15,6 +13,7 @@ use strataray::scene::{
     Projection, Scene, StrategyKind,
 };
 use strataray::view::{self, View};
+use strataray::{picking, reference};
 
 /// Large enough for all bounds to tell their twins.
 const SIZE: [u32; 2] = [80, 60];
@@ -251,7 +250,7 @@ fn what_is_picked_in_parallel_lies_under_the_pointer() {
     ]
     .map(DVec2::from_array)
     {
-        let pick = Picker::default().pick(&mut renderer, &case, &view, at);
+        let pick = picking::pick(&mut renderer, &case, &view, at);
         let Some(hit) = pick.unwrap().hit else {
             continue;
         };

@@ -9,6 +9,7 @@ use strataray::reference::{self, Located, Locator};
 use strataray::render;
 use strataray::render::gpu::{Gpu, GpuGrid, probe};
 use strataray::scene::Interpolation;
+use strataray::view::ShownCells;
 
 const POINTS: usize = 100_000;
 
@@ -146,9 +147,8 @@ fn check(gpu: &Gpu, case: &Case, property: &str) {
     let vertices = VertexField::new(grid, &field);
     let drawn = vec![true; grid.active_cells().len()];
     let mut gpu_grid = GpuGrid::new(gpu, grid).unwrap();
-    gpu_grid
-        .show(gpu, grid, &field, &drawn, Interpolation::Vertex)
-        .unwrap();
+    let shown = ShownCells::new(field.clone(), drawn, Interpolation::Vertex);
+    gpu_grid.show(gpu, grid, &shown).unwrap();
     let points = points(grid, POINTS, 7);
     let on_gpu = probe::locate(gpu, &gpu_grid, grid, &points, Interpolation::Vertex).unwrap();
     let locator = Locator::new(grid);
@@ -256,9 +256,8 @@ fn known_parameters_come_back_on_both() {
         // A linear field, given at the cells, is not linear at the hull's vertices: compare parameters.
         let field = CellField::new(vec![1.0; 27]);
         let mut gpu_grid = GpuGrid::new(&gpu, &grid).unwrap();
-        gpu_grid
-            .show(&gpu, &grid, &field, &[true; 27], Interpolation::Cell)
-            .unwrap();
+        let shown = ShownCells::new(field.into(), vec![true; 27], Interpolation::Cell);
+        gpu_grid.show(&gpu, &grid, &shown).unwrap();
         let on_gpu = probe::locate(&gpu, &gpu_grid, &grid, &points, Interpolation::Cell).unwrap();
         let locator = Locator::new(&grid);
         for (((ijk, q), point), gpu) in known.iter().zip(&points).zip(&on_gpu) {

@@ -27,13 +27,14 @@ use strataray::render::gpu::tiles::Pace;
 use strataray::render::gpu::volume::Volume;
 use strataray::render::gpu::{Gpu, GpuGrid, GpuRenderer};
 use strataray::render::plan::layout::RUN;
+use strataray::render::revisions::RevisionCounter;
 use strataray::render::{Frame, Job, RenderError, Renderer};
 use strataray::scene::{
     self, CameraSpec, ClipSpec, CutFace, ExplicitCamera, FramingCamera, Inactive, Interpolation,
     OpacitySpec, Projection, RangeSpec, Scene, SrgSettings, StrategyKind,
 };
 use strataray::view::voxels::{self, Voxel};
-use strataray::view::{self, View};
+use strataray::view::{self, ShownCells, View};
 
 /// No switch is on.
 const PLAIN: SrgSettings = SrgSettings {
@@ -102,9 +103,8 @@ fn volume_of(
 ) -> ([u32; 3], Vec<[f64; 2]>) {
     let mut on_device = GpuGrid::new(gpu, grid).unwrap();
     let drawn: Vec<bool> = field.values().iter().map(|v| !v.is_nan()).collect();
-    on_device
-        .show(gpu, grid, field, &drawn, interpolation)
-        .unwrap();
+    let shown = ShownCells::new(field.clone().into(), drawn, interpolation);
+    on_device.show(gpu, grid, &shown).unwrap();
     let volume = Volume::new(gpu, voxels::Shape::of(grid.dims(), factor, false));
     let range = range_of(field);
     let mut resampler = Resampler::new(gpu, false).unwrap();
@@ -223,6 +223,7 @@ struct Bench<'a> {
     gpu: &'a Gpu,
     case: &'a Case,
     grid: GpuGrid,
+    revisions: RevisionCounter,
     srg: Srg,
 }
 
@@ -232,21 +233,15 @@ impl<'a> Bench<'a> {
             gpu,
             case,
             grid: GpuGrid::new(gpu, &case.grid).unwrap(),
+            revisions: RevisionCounter::default(),
             srg: Srg::new(gpu).unwrap(),
         }
     }
 
     fn show(&mut self, view: &View) {
         let (gpu, model) = (self.gpu, &self.case.grid);
-        self.grid
-            .show(
-                gpu,
-                model,
-                &view.shown.field,
-                &view.shown.drawn,
-                view.shown.interpolation,
-            )
-            .unwrap();
+        self.grid.show(gpu, model, &view.shown.cells).unwrap();
+        self.grid.revisions = self.revisions.of(view);
     }
 
     /// Whether it was not cancelled, how often the volume was filled, and how often progress was told.
@@ -345,9 +340,10 @@ fn the_volume_is_filled_anew_when_it_must_and_only_then() {
         assert_eq!(bench.prepare(&first, true).1, 1);
     }
     // What is left of a fill that was cancelled is not used.
-    bench.show(&first);
-    assert_eq!(bench.prepare(&first, false), (false, 0, 1));
-    assert_eq!(bench.prepare(&first, true).1, 1);
+    let later = view(another[0]);
+    bench.show(&later);
+    assert_eq!(bench.prepare(&later, false), (false, 0, 1));
+    assert_eq!(bench.prepare(&later, true).1, 1);
 }
 
 #[test]
@@ -357,9 +353,8 @@ fn a_fill_is_split_into_parts_that_the_pace_allows() {
     let field = case.field("PORO", 0).unwrap();
     let mut on_device = GpuGrid::new(&gpu, &case.grid).unwrap();
     let drawn = vec![true; field.values().len()];
-    on_device
-        .show(&gpu, &case.grid, &field, &drawn, Interpolation::Cell)
-        .unwrap();
+    let shown = ShownCells::new(field.clone(), drawn, Interpolation::Cell);
+    on_device.show(&gpu, &case.grid, &shown).unwrap();
     let volume = Volume::new(&gpu, voxels::Shape::of(case.grid.dims(), 4.0, false));
     let [width, height, depth] = volume.shape.size.map(u64::from);
     let voxels = width * height * depth;
@@ -669,7 +664,7 @@ fn a_field_that_resampling_keeps_is_seen_as_the_reference_sees_it() {
                     camera.projection = projection;
                 }
                 let view = view::resolve(&scene, &case).unwrap();
-                assert_eq!(view.shown.interpolation, Interpolation::Vertex);
+                assert_eq!(view.shown.cells.interpolation, Interpolation::Vertex);
                 let truth = reference::render(&case.grid, &view, &|_| true).unwrap();
                 assert!(truth.pixels.iter().filter(|p| p[3] > 0.3).count() > 300);
                 let mut renderer = GpuRenderer::new(gpu.clone(), &case.grid).unwrap();

@@ -35,7 +35,7 @@ struct Counts {
 }
 
 fn by_reference(case: &Case, view: &View) -> Counts {
-    let locator = Locator::of_drawn(&case.grid, &view.shown.drawn);
+    let locator = Locator::of_drawn(&case.grid, &view.shown.cells.drawn);
     let to_corners = view.world.corners.iter();
     let to_corners = to_corners.map(|corner| corner.distance(view.camera.eye));
     let steps = (to_corners.fold(0.0, f64::max) / view.sampling.step).ceil() as u32;

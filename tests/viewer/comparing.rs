@@ -133,7 +133,7 @@ fn a_difference_of_steps_is_one_of_values() {
     );
     let case = driven.document().case.clone().unwrap();
     let [now, then] = [20, 0].map(|step| case.field("SOIL", step).unwrap());
-    for (n, v) in shown.shown.field.values().iter().enumerate() {
+    for (n, v) in shown.shown.cells.field.values().iter().enumerate() {
         assert_eq!(*v, now.values()[n] - then.values()[n]);
     }
     // Around 0, where neither color is.
@@ -157,6 +157,7 @@ fn a_difference_of_steps_is_one_of_values() {
     assert!(
         view(&driven, 0)
             .shown
+            .cells
             .field
             .values()
             .iter()
@@ -191,6 +192,7 @@ fn a_difference_of_cases_is_made_cell_by_cell() {
     assert!(
         shown
             .shown
+            .cells
             .field
             .values()
             .iter()
@@ -199,7 +201,15 @@ fn a_difference_of_cases_is_made_cell_by_cell() {
     // Against the first step of the other one.
     compare(&mut driven, of(&copy, Some(0)));
     driven.wait("the first step", |w| {
-        let oil = |p: &Picture| p.view.shown.field.values().iter().any(|v| v.abs() > 0.3);
+        let oil = |p: &Picture| {
+            p.view
+                .shown
+                .cells
+                .field
+                .values()
+                .iter()
+                .any(|v| v.abs() > 0.3)
+        };
         w.picture(0).is_some_and(|(p, is_final)| is_final && oil(p))
     });
     // Cells are picked in it, with the value that is seen.

@@ -11,7 +11,14 @@ use super::driven::Driven;
 /// Cells that the picture draws.
 fn drawn(driven: &Driven) -> usize {
     let (picture, _) = driven.harness.state().picture(0).unwrap();
-    picture.view.shown.drawn.iter().filter(|d| **d).count()
+    picture
+        .view
+        .shown
+        .cells
+        .drawn
+        .iter()
+        .filter(|d| **d)
+        .count()
 }
 
 /// Types into a field in place of what is there.

@@ -12,8 +12,7 @@ use super::locate::{Located, Locator};
 use crate::model::corner_point::weights;
 use crate::model::{CellField, Grid, VertexField};
 use crate::scene::Interpolation;
-use crate::view::ghosts::{self, shown_grid};
-use crate::view::{ClipPlane, View};
+use crate::view::{ClipPlane, View, ghosts};
 
 /// A ray in world space.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -93,16 +92,17 @@ pub(super) struct Sample {
 impl<'a> Integrator<'a> {
     /// Prepares the search for cells and, where asked for, the averages at the vertices.
     ///
-    /// `grid` is the case's; where the view shows inactive cells, it brings its own.
+    /// `grid` is the case's.
     pub fn new(grid: &'a Grid, view: &'a View) -> Self {
         let surfaces = SurfaceFaces::new(grid, view);
-        let grid = shown_grid(grid, view.shown.ghosts.as_ref());
-        let by_vertex = view.shown.interpolation == Interpolation::Vertex;
+        let (cells, drawn) = view.shown.cells.in_grid(grid);
+        let by_vertex = view.shown.cells.interpolation == Interpolation::Vertex;
         Self {
             grid,
             view,
-            locator: Locator::of_drawn(grid, &view.shown.drawn),
-            vertices: by_vertex.then(|| VertexField::new(grid, &view.shown.field)),
+            locator: Locator::of_drawn(cells, drawn),
+            vertices: by_vertex
+                .then(|| VertexField::of(grid, &view.shown.cells.field, view.shown.cells.valued())),
             surfaces,
         }
     }
@@ -211,13 +211,13 @@ impl<'a> Integrator<'a> {
     /// What is drawn at a point of world space, clip planes aside.
     pub(super) fn sample(&self, position: DVec3) -> Option<Sample> {
         let sample = self.sample_in(self.drawn_at(position)?);
-        let shown = sample.value.is_some() || self.view.shown.ghosts.is_some();
+        let shown = sample.value.is_some() || self.view.shown.cells.ghosts.is_some();
         shown.then_some(sample)
     }
 
     /// What is at a place in a cell.
     pub(super) fn sample_in(&self, located: Located) -> Sample {
-        let (field, vertices) = (&self.view.shown.field, self.vertices.as_ref());
+        let (field, vertices) = (&self.view.shown.cells.field, self.vertices.as_ref());
         let value = value_at(self.grid, &located, field, vertices);
         Sample { located, value }
     }

@@ -29,7 +29,7 @@ fn row(faces: &[f64]) -> Grid {
 /// Of such a row, its cells drawn or not, with one extinction and rays over cones that begin at 1.
 fn row_view(grid: &Grid, drawn: &[bool], extinction: f64, rays: u32) -> View {
     let mut view = view(grid, constant(grid), extinction, 1.0);
-    view.shown.drawn = drawn.to_vec().into();
+    view.shown.cells.drawn = drawn.to_vec().into();
     let spec = LightingSpec {
         rays,
         ..LightingSpec::default()

@@ -22,7 +22,7 @@ fn stage(lights: Vec<LightSpec>) -> (Grid, View) {
     }
     .grid();
     let mut view = view(&grid, constant(&grid), 50.0, 2.5);
-    view.shown.drawn = (0..9).map(|n| n == 5 || n == 6).collect::<Vec<_>>().into();
+    view.shown.cells.drawn = (0..9).map(|n| n == 5 || n == 6).collect::<Vec<_>>().into();
     let spec = LightingSpec {
         lights,
         shadows: ShadowSpec {

@@ -18,7 +18,7 @@ fn gradients_are_those_of_the_interpolated_value() {
     let mut random = fastrand::Rng::with_seed(12);
     let field = CellField::new((0..60).map(|_| random.f32()).collect());
     let mut view = view(&grid, field, 0.01, 3.0);
-    view.shown.interpolation = Interpolation::Vertex;
+    view.shown.cells.interpolation = Interpolation::Vertex;
     view.style.transfer.range = [-1.0, 3.0];
     let integrator = Integrator::new(&grid, &view);
     let value = |p: DVec3| integrator.sample(p).and_then(|s: Sample| s.value);
@@ -42,7 +42,7 @@ fn gradients_are_those_of_the_interpolated_value() {
         );
         assert!(gradient.length() > 1e-5);
     }
-    view.shown.interpolation = Interpolation::Cell;
+    view.shown.cells.interpolation = Interpolation::Cell;
     let constant = Integrator::new(&grid, &view);
     let middle = view.world.spaces.world_from_grid.transform_point3(
         grid.hexahedron(grid.dims().ijk(grid.active_cells()[0]))
@@ -62,7 +62,7 @@ fn rising(rate: f64, direction: [f64; 3]) -> (Grid, View) {
         .map(|n| (5.0 * rate) as f32 * (n % 4) as f32)
         .collect();
     let mut view = view(&grid, CellField::new(values), 0.01, 1.0);
-    view.shown.interpolation = Interpolation::Vertex;
+    view.shown.cells.interpolation = Interpolation::Vertex;
     view.style.transfer.reference_length = 2.0;
     let spec = LightingSpec {
         lights: vec![directional(direction)],
@@ -115,9 +115,9 @@ fn blinn_phong_follows_its_formula() {
             );
         }
         // By the cell's own value, or without the model, there is no surface.
-        view.shown.interpolation = Interpolation::Cell;
+        view.shown.cells.interpolation = Interpolation::Cell;
         assert!((inner_color(&grid, &view)[2] - 1.2).abs() < 1e-12);
-        view.shown.interpolation = Interpolation::Vertex;
+        view.shown.cells.interpolation = Interpolation::Vertex;
         view.style.lighting.blinn_phong = false;
         assert!((inner_color(&grid, &view)[2] - 1.2).abs() < 1e-12);
     }
@@ -131,9 +131,7 @@ fn dark_ghosts(exact_colors: bool) -> [f64; 4] {
     }
     .grid();
     let mut view = view(&grid, constant(&grid), 0.07, 0.3);
-    let (ghosts, field, drawn) = Ghosts::new(&grid, &view.shown.field, &[true; 4]);
-    (view.shown.field, view.shown.drawn) = (field.into(), drawn.into());
-    view.shown.ghosts = Some(ghosts.into());
+    view.shown.cells.ghosts = Some(Ghosts::new(&grid, &[true; 4]).into());
     view.world.bounds[0].x -= 10.0;
     let spec = LightingSpec {
         lights: vec![directional([-1.0, 0.0, 0.0])],
@@ -166,25 +164,20 @@ fn a_ghost_between_values_has_no_gradient() {
     }
     .grid();
     let mut view = view(&grid, CellField::new(vec![0.0, 1.0]), 0.07, 0.3);
-    view.shown.interpolation = Interpolation::Vertex;
-    let gradient = |view: &View, values: [f32; 3]| {
-        let all = view
-            .shown
-            .ghosts
-            .as_ref()
-            .map_or(&grid, |ghosts| &ghosts.grid);
-        let mut view = view.clone();
-        view.shown.field = CellField::new(values.to_vec()).into();
-        let integrator = Integrator::new(all, &view);
+    view.shown.cells.interpolation = Interpolation::Vertex;
+    let gradient = |grid: &Grid, view: &View| {
+        let integrator = Integrator::new(grid, view);
         let middle = integrator.sample(DVec3::new(15.0, 10.0, -203.0)).unwrap();
         integrator.gradient(&middle)
     };
-    let (ghosts, field, drawn) = Ghosts::new(&grid, &view.shown.field, &[true; 2]);
-    (view.shown.field, view.shown.drawn) = (field.into(), drawn.into());
-    view.shown.ghosts = Some(ghosts.into());
+    view.shown.cells.ghosts = Some(Ghosts::new(&grid, &[true; 2]).into());
     // All of its vertices have values, of the cells beside it.
-    assert_eq!(gradient(&view, [0.0, f32::NAN, 1.0]), None);
-    let with_value = gradient(&view, [0.0, 0.5, 1.0]).unwrap();
+    assert_eq!(gradient(&grid, &view), None);
+    // With a value of its own it has one.
+    view.shown.cells.ghosts = None;
+    view.shown.cells.field = CellField::new(vec![0.0, 0.5, 1.0]).into();
+    view.shown.cells.drawn = vec![true; 3].into();
+    let with_value = gradient(&grid.with_inactive(), &view).unwrap();
     assert!(with_value.distance(0.05 * DVec3::X) < 1e-9);
 }
 
@@ -193,7 +186,7 @@ fn light_that_shades_nothing_changes_no_bit() {
     let grid = skewed();
     let field = CellField::new((0..60).map(|n| n as f32 / 60.0).collect());
     let mut view = view(&grid, field, 0.02, 3.0);
-    view.shown.interpolation = Interpolation::Vertex;
+    view.shown.cells.interpolation = Interpolation::Vertex;
     view.camera.eye.x -= 500.0;
     let picture = |view: &View| render(&grid, view, &|_| true).unwrap().pixels;
     let off = picture(&view);

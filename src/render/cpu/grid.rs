@@ -5,12 +5,13 @@
 
 use glam::{Vec2, Vec4};
 
-use crate::model::{CellField, Grid as Model};
+use crate::model::Grid as Model;
 use crate::render::plan::columns::COLUMN_MARGINS;
 use crate::render::plan::layout::{COLUMN_FLAG, LIST_GAPPED, LIST_OFFSET};
-use crate::render::plan::{CompactGrid, drawn_words, values};
+use crate::render::plan::{CompactGrid, drawn_words, ghost_words, values};
 use crate::render::{DeviceBytes, RenderError};
 use crate::scene::Interpolation;
+use crate::view::ShownCells;
 
 /// Corners closer than this along their pillar coincide.
 pub const COINCIDENT: f32 = 1e-3;
@@ -39,32 +40,39 @@ pub struct Pillar {
 }
 
 impl Grid {
-    /// Brings a grid into compact form. `is_ghost` names its ghosts by active index, where they are shown.
+    /// Brings the case's grid into compact form, with nothing shown of it.
     ///
     /// # Errors
     /// When it cannot be numbered.
-    pub fn new(model: &Model, is_ghost: Option<&[bool]>) -> Result<Self, RenderError> {
-        let bits = |is_ghost| drawn_words(model, is_ghost).iter().map(|w| w[0]).collect();
+    pub fn new(model: &Model) -> Result<Self, RenderError> {
         Ok(Self {
             compact: CompactGrid::new(model)?,
             interpolation: Interpolation::Cell,
             drawn_cells: drawn_words(model, &[]),
             values: Vec::new(),
-            ghost_cells: is_ghost.map(bits),
+            ghost_cells: None,
         })
     }
 
-    /// Takes the values of a field for the cells that `drawn` (by active index) names.
-    pub fn show(
-        &mut self,
-        model: &Model,
-        field: &CellField,
-        drawn: &[bool],
-        interpolation: Interpolation,
-    ) {
-        self.drawn_cells = drawn_words(model, drawn);
-        self.values = values(model, field, drawn, interpolation);
-        self.interpolation = interpolation;
+    /// Brings the grid that rays pass in a view of the case's grid `model` into compact form: with its inactive cells
+    /// as ghosts, or without.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn of(model: &Model, cells: &ShownCells) -> Result<Self, RenderError> {
+        let (grid, _) = cells.in_grid(model);
+        Ok(Self {
+            ghost_cells: ghost_words(model, cells),
+            ..Self::new(grid)?
+        })
+    }
+
+    /// Takes the drawn cells and their values; `model` is the case's grid.
+    pub fn show(&mut self, model: &Model, cells: &ShownCells) {
+        let (grid, drawn) = cells.in_grid(model);
+        self.drawn_cells = drawn_words(grid, drawn);
+        self.values = values(model, cells);
+        self.interpolation = cells.interpolation;
     }
 
     /// Bytes by purpose.

@@ -3,7 +3,8 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use glam::{DVec3, Vec3A, Vec4};
+use glam::{DVec2, DVec3, Vec3A, Vec4};
+use rayon::prelude::*;
 
 use super::frame::Frame as FrameOfRays;
 use super::grid::Grid;
@@ -13,14 +14,15 @@ use super::scene::Scene;
 use super::shading::Shading;
 use super::surfaces::SurfaceFaces;
 use super::transfer::{Tables, Transfer};
-use crate::model::{CellField, Grid as Model, Ijk};
+use crate::model::{Grid as Model, Ijk};
 use crate::render::job::{Job, Progress};
+use crate::render::line_of_sight::{LineOfSight, Sighting, SurfaceTree};
 use crate::render::plan::faces::face_numbers;
 use crate::render::plan::frame::{frame_uniform, ghost};
+use crate::render::revisions::{RevisionCounter, Revisions};
 use crate::render::{DeviceBytes, Frame, LightTimes, Located, RenderError, Renderer, SetupTimes};
-use crate::scene::{Interpolation, StrategyKind};
+use crate::scene::StrategyKind;
 use crate::view::View;
-use crate::view::ghosts::{Ghosts, shown_grid};
 
 /// Newton steps below this end a location that was asked for.
 const PROBE_ENOUGH: f32 = 5e-6;
@@ -30,47 +32,38 @@ pub struct CpuRenderer {
     model: Arc<Model>,
     times: SetupTimes,
     grid: Grid,
-    shown: Option<Shown>,
-    tables: Option<Tables>,
+    /// Counts the views.
+    counter: RevisionCounter,
+    /// Those of what the grid shows.
+    revisions: Revisions,
+    tables: Kept<Tables>,
     /// Boundary faces of the drawn cells, once a ray needs them.
-    boundary: Option<Vec<u32>>,
-    surfaces: Option<ShownSurfaces>,
+    boundary: Kept<Vec<u32>>,
+    surfaces: Kept<SurfaceFaces>,
+    /// Faces of surfaces that were looked at.
+    surface_tree: SurfaceTree,
 }
 
-/// The field and selection that are in memory.
-#[derive(Clone, PartialEq)]
-struct Shown {
-    field: Arc<CellField>,
-    drawn: Arc<Vec<bool>>,
-    interpolation: Interpolation,
-    ghosts: Option<Arc<Ghosts>>,
-}
+/// Something that is made anew where its revision has counted up.
+struct Kept<T>(Option<(u64, T)>);
 
-/// The faces of surfaces, and what they are those of.
-struct ShownSurfaces {
-    faces: SurfaceFaces,
-    drawn: Arc<Vec<bool>>,
-    has_hull: bool,
-    has_faults: bool,
-    chosen: Option<Arc<[bool]>>,
-}
-
-impl ShownSurfaces {
-    fn new(model: &Model, view: &View) -> Result<Self, RenderError> {
-        Ok(Self {
-            faces: SurfaceFaces::new(model, view)?,
-            drawn: view.shown.drawn.clone(),
-            has_hull: view.style.surfaces.has_hull(),
-            has_faults: view.style.surfaces.faults,
-            chosen: view.shown.chosen_faults.clone(),
-        })
+impl<T> Default for Kept<T> {
+    fn default() -> Self {
+        Self(None)
     }
+}
 
-    fn are_of(&self, view: &View) -> bool {
-        self.drawn == view.shown.drawn
-            && self.has_hull == view.style.surfaces.has_hull()
-            && self.has_faults == view.style.surfaces.faults
-            && self.chosen == view.shown.chosen_faults
+impl<T> Kept<T> {
+    fn update(
+        &mut self,
+        revision: u64,
+        make: impl FnOnce() -> Result<T, RenderError>,
+    ) -> Result<&T, RenderError> {
+        let kept = match self.0.take().filter(|(of, _)| *of == revision) {
+            Some(known) => known,
+            None => (revision, make()?),
+        };
+        Ok(&self.0.insert(kept).1)
     }
 }
 
@@ -81,7 +74,7 @@ impl CpuRenderer {
     /// When it cannot be numbered.
     pub fn new(model: &Arc<Model>) -> Result<Self, RenderError> {
         let start = Instant::now();
-        let grid = Grid::new(model, None)?;
+        let grid = Grid::new(model)?;
         let acceleration = grid.compact.acceleration_time;
         Ok(Self {
             model: model.clone(),
@@ -90,10 +83,12 @@ impl CpuRenderer {
                 acceleration,
             },
             grid,
-            shown: None,
-            tables: None,
-            boundary: None,
-            surfaces: None,
+            counter: RevisionCounter::default(),
+            revisions: Revisions::default(),
+            tables: Kept::default(),
+            boundary: Kept::default(),
+            surfaces: Kept::default(),
+            surface_tree: SurfaceTree::default(),
         })
     }
 
@@ -101,21 +96,15 @@ impl CpuRenderer {
         let start = Instant::now();
         let strategy = supported(view)?;
         self.prepare(view)?;
-        if !self.tables.as_ref().is_some_and(|t| t.are_of(view)) {
-            self.tables = None;
-        }
-        let tables = self.tables.get_or_insert_with(|| Tables::new(view));
-        let shown = shown_grid(&self.model, view.shown.ghosts.as_ref());
-        let boundary = match self.boundary.take() {
-            Some(known) => known,
-            None => face_numbers(shown, &shown.boundary_faces(&view.shown.drawn))?,
-        };
-        let boundary = &*self.boundary.insert(boundary);
-        let surfaces = match self.surfaces.take().filter(|s| s.are_of(view)) {
-            Some(known) => known,
-            None => ShownSurfaces::new(&self.model, view)?,
-        };
-        let surfaces = &self.surfaces.insert(surfaces).faces;
+        let (model, now) = (&self.model, self.revisions);
+        let tables = self.tables.update(now.transfer, || Ok(Tables::new(view)))?;
+        let boundary = self.boundary.update(now.drawn, || {
+            let (grid, drawn) = view.shown.cells.in_grid(model);
+            face_numbers(grid, &grid.boundary_faces(drawn))
+        })?;
+        let surfaces = self
+            .surfaces
+            .update(now.surfaces, || SurfaceFaces::new(model, view))?;
         let scene = Scene {
             frame: FrameOfRays::new(frame_uniform(&self.grid.compact.facts, view)),
             grid: &self.grid,
@@ -180,29 +169,15 @@ impl Renderer for CpuRenderer {
     }
 
     fn prepare(&mut self, view: &View) -> Result<(), RenderError> {
-        let model = shown_grid(&self.model, view.shown.ghosts.as_ref());
-        let wanted = Shown {
-            field: view.shown.field.clone(),
-            drawn: view.shown.drawn.clone(),
-            interpolation: view.shown.interpolation,
-            ghosts: view.shown.ghosts.clone(),
-        };
-        let known = self.shown.as_ref();
-        if known == Some(&wanted) {
-            return Ok(());
+        let cells = &view.shown.cells;
+        let wanted = self.counter.of(view);
+        if self.revisions.grid != wanted.grid {
+            self.grid = Grid::of(&self.model, cells)?;
         }
-        let ghosts_now = known.and_then(|s| s.ghosts.as_ref());
-        if ghosts_now != wanted.ghosts.as_ref() {
-            let is_ghost = wanted.ghosts.as_ref().map(|g| g.is_ghost.as_slice());
-            self.grid = Grid::new(model, is_ghost)?;
-            self.boundary = None;
+        if self.revisions.values != wanted.values {
+            self.grid.show(&self.model, cells);
         }
-        if known.is_none_or(|s| s.drawn != wanted.drawn) {
-            self.boundary = None;
-        }
-        self.grid
-            .show(model, &wanted.field, &wanted.drawn, wanted.interpolation);
-        self.shown = Some(wanted);
+        self.revisions = wanted;
         Ok(())
     }
 
@@ -239,6 +214,15 @@ impl Renderer for CpuRenderer {
                 value: f64::from(cell.value(inside)),
             })
         };
-        Ok(points.iter().map(locate).collect())
+        Ok(points.par_iter().map(locate).collect())
+    }
+
+    fn look(&mut self, view: &View, at: DVec2) -> Result<Option<LineOfSight>, RenderError> {
+        let sighting = Sighting::through(&self.model, view, at, &mut self.surface_tree);
+        let Some(sighting) = sighting else {
+            return Ok(None);
+        };
+        let located = self.locate(view, &sighting.points())?;
+        Ok(Some(sighting.located(&located)))
     }
 }

@@ -3,16 +3,12 @@
 
 use glam::{Vec3A, Vec4, Vec4Swizzles};
 
-use crate::image::Blending;
 use crate::render::plan::layout::{LUT_SIZE, per_unit};
 use crate::render::plan::transfer::{transfer_integrals, transfer_table};
-use crate::transfer::TransferFunction;
 use crate::view::View;
 
 /// The transfer function's tables, for one transfer function and blending.
 pub struct Tables {
-    transfer: TransferFunction,
-    blending: Blending,
     /// Color, as it is blended, and extinction at equal distances over the range.
     table: Vec<Vec4>,
     /// Integrals over the position of extinction times color, and of extinction.
@@ -25,16 +21,9 @@ impl Tables {
         let table = transfer_table(view);
         let vectors = |entries: &[[f32; 4]]| entries.iter().map(|e| Vec4::from(*e)).collect();
         Self {
-            transfer: view.style.transfer.clone(),
-            blending: view.style.blending,
             integrals: vectors(&transfer_integrals(&table)),
             table: vectors(&table),
         }
-    }
-
-    /// True where they are those of a view.
-    pub fn are_of(&self, view: &View) -> bool {
-        self.transfer == view.style.transfer && self.blending == view.style.blending
     }
 }
 

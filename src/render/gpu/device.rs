@@ -3,7 +3,7 @@
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
 use super::bind_groups::{Parameters, SharedLayouts};
-use crate::render::RenderError;
+use crate::render::{AdapterFacts, RenderError};
 
 /// The first error of what was recorded or submitted, until someone asks.
 #[derive(Debug, Default)]
@@ -46,7 +46,7 @@ pub struct Gpu {
 }
 
 impl Gpu {
-    /// Opens the best adapter (discrete, integrated, virtual, software), or the best one whose name
+    /// Opens the best adapter (discrete, integrated, virtual, software) that can be used, or the best one whose name
     /// contains `wanted`, whatever the letter case.
     ///
     /// # Errors
@@ -75,19 +75,11 @@ impl Gpu {
             reason,
         };
         let offered = adapter.limits();
-        let needed = match parameters {
-            Parameters::Uniform => 17,
-            Parameters::Storage => 23,
-        };
-        if offered.max_storage_buffers_per_shader_stage < needed {
-            return Err(unsuitable(format!(
-                "it offers {} storage buffers per shader stage and {needed} are needed; install a Vulkan driver (on Debian the package mesa-vulkan-drivers)",
-                offered.max_storage_buffers_per_shader_stage
-            )));
+        let needed = storage_buffers(parameters);
+        if let Some(reason) = lacking(adapter, parameters) {
+            return Err(unsuitable(reason));
         }
         let limits = wgpu::Limits {
-            // Eight arrays of the grid, two transfer tables, emitters and their
-            // sections, counters, ray states, a strategy's own; where they are storage, parameters.
             max_storage_buffers_per_shader_stage: needed,
             // Depth lists and values of large models are single arrays: take what there is.
             max_storage_buffer_binding_size: offered.max_storage_buffer_binding_size,
@@ -332,12 +324,75 @@ impl Gpu {
     }
 }
 
-/// The adapter that [`Gpu::new`] opens.
-fn best_adapter(wanted: Option<&str>) -> Result<wgpu::Adapter, RenderError> {
+/// Storage buffers that a shader stage needs: eight arrays of the grid, two transfer tables, emitters and their
+/// sections, counters, ray states, a strategy's own; where they are storage, parameters.
+fn storage_buffers(parameters: Parameters) -> u32 {
+    match parameters {
+        Parameters::Uniform => 17,
+        Parameters::Storage => 23,
+    }
+}
+
+/// What an adapter lacks, and what to do; `None` where it has what is needed.
+fn lacking(adapter: &wgpu::Adapter, parameters: Parameters) -> Option<String> {
+    let offered = adapter.limits().max_storage_buffers_per_shader_stage;
+    let needed = storage_buffers(parameters);
+    (offered < needed).then(|| {
+        format!(
+            "it offers {offered} storage buffers per shader stage and {needed} are needed; install a Vulkan driver (on Debian the package mesa-vulkan-drivers)"
+        )
+    })
+}
+
+/// All adapters, the best one first.
+pub fn adapters() -> Vec<AdapterFacts> {
+    let facts = |adapter: &wgpu::Adapter| {
+        let (info, limits) = (adapter.get_info(), adapter.limits());
+        let parameters = parameters_for(&info);
+        let buffer = limits.max_buffer_size;
+        AdapterFacts {
+            kind: match info.device_type {
+                wgpu::DeviceType::DiscreteGpu => "discrete GPU",
+                wgpu::DeviceType::IntegratedGpu => "integrated GPU",
+                wgpu::DeviceType::VirtualGpu => "virtual GPU",
+                wgpu::DeviceType::Cpu => "software",
+                wgpu::DeviceType::Other => "other",
+            },
+            backend: info.backend.to_str(),
+            driver: format!("{} {}", info.driver, info.driver_info)
+                .trim()
+                .to_owned(),
+            most_bytes: limits.max_storage_buffer_binding_size.min(buffer),
+            most_texels: [
+                limits.max_texture_dimension_2d,
+                limits.max_texture_dimension_3d,
+            ],
+            lacking: match parameters {
+                Ok(parameters) => lacking(adapter, parameters),
+                Err(error) => Some(error.to_string()),
+            },
+            name: info.name,
+        }
+    };
+    ranked().iter().map(facts).collect()
+}
+
+/// All adapters: those that can be used first, and the best ones of these.
+fn ranked() -> Vec<wgpu::Adapter> {
     let instance =
         wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
     let mut adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::all()));
-    adapters.sort_by_key(|a| rank(a.get_info().device_type));
+    adapters.sort_by_cached_key(|adapter| {
+        let info = adapter.get_info();
+        let is_lacking = parameters_for(&info).is_ok_and(|p| lacking(adapter, p).is_some());
+        (is_lacking, rank(info.device_type))
+    });
+    adapters
+}
+
+/// The adapter that [`Gpu::new`] opens.
+fn best_adapter(wanted: Option<&str>) -> Result<wgpu::Adapter, RenderError> {
+    let mut adapters = ranked();
     let names: Vec<String> = adapters.iter().map(|a| a.get_info().name).collect();
     let matches =
         |name: &str| wanted.is_none_or(|w| name.to_lowercase().contains(&w.to_lowercase()));

@@ -14,7 +14,6 @@ use crate::render::RenderError;
 use crate::render::plan::layout::{
     BlurInfo, MAX_CLIP_PLANES, Slab, WORK_GAUSSIAN, WORK_MEAN, WORK_VALUES,
 };
-use crate::transfer::TransferFunction;
 use crate::view::voxels::Shape;
 
 /// What a pyramid is made from.
@@ -22,8 +21,8 @@ use crate::view::voxels::Shape;
 pub struct PyramidSource<'a> {
     /// Values, in packed voxels; shaders find them in bind group 2.
     pub values: &'a Volume,
-    /// Number of their filling.
-    pub number: u64,
+    /// See [`crate::render::revisions::Revisions::extinction`].
+    pub revision: u64,
     /// Transfer-function position of a value: offset, and factor on the part of the range.
     pub position: [f32; 2],
     /// Standard deviation of the finest level in world space.
@@ -44,58 +43,19 @@ pub struct PyramidSource<'a> {
 pub struct Pyramid {
     /// Optical depth of a length of one standard deviation of the finest level, level by level.
     pub volume: Volume,
-    of: Of,
-}
-
-#[derive(Clone, PartialEq)]
-struct Of {
-    size: [u32; 3],
-    values: u64,
-    position: [f32; 2],
-    sigma: f64,
-    ghost: f32,
-    clip_planes: [[f32; 4]; MAX_CLIP_PLANES],
-    clip_count: u32,
-    extent: DVec3,
-    transfer: TransferFunction,
-}
-
-impl Of {
-    fn new(source: &PyramidSource<'_>, transfer: &TransferFunction) -> Self {
-        Self {
-            size: source.values.shape.size,
-            values: source.number,
-            position: source.position,
-            sigma: source.sigma,
-            ghost: source.ghost,
-            clip_planes: source.clip_planes,
-            clip_count: source.clip_count,
-            extent: source.extent,
-            transfer: transfer.clone(),
-        }
-    }
+    /// See [`crate::render::revisions::Revisions::extinction`].
+    pub revision: u64,
 }
 
 impl Pyramid {
-    /// True where it is what would be made.
-    pub fn is_of(&self, source: &PyramidSource<'_>, transfer: &TransferFunction) -> bool {
-        self.of == Of::new(source, transfer)
-    }
-
-    fn new(
-        gpu: &Gpu,
-        shape: Shape,
-        source: &PyramidSource<'_>,
-        transfer: &TransferFunction,
-        before: Option<Self>,
-    ) -> Self {
+    fn new(gpu: &Gpu, shape: Shape, source: &PyramidSource<'_>, before: Option<Self>) -> Self {
         let volume = match before.filter(|p| p.volume.shape == shape) {
             Some(before) => before.volume,
             None => Volume::new(gpu, shape),
         };
         Self {
             volume,
-            of: Of::new(source, transfer),
+            revision: source.revision,
         }
     }
 
@@ -172,13 +132,12 @@ impl Blurs {
         &mut self,
         slabs: &mut Slabs<'_>,
         source: &PyramidSource<'_>,
-        transfer: &TransferFunction,
         group: &wgpu::BindGroup,
         before: Option<Pyramid>,
     ) -> Result<Pyramid, RenderError> {
         let size = source.values.shape.size;
         let shape = Shape::single(size, MOST_LEVELS);
-        let made = Pyramid::new(slabs.gpu, shape, source, transfer, before);
+        let made = Pyramid::new(slabs.gpu, shape, source, before);
         let mut below = Volume::new(slabs.gpu, Shape::single(size, 1));
         self.opacities(slabs, source, group, &below).await?;
         for level in 0..shape.levels {
@@ -207,12 +166,11 @@ impl Blurs {
         &mut self,
         slabs: &mut Slabs<'_>,
         source: &PyramidSource<'_>,
-        transfer: &TransferFunction,
         group: &wgpu::BindGroup,
         before: Option<Pyramid>,
     ) -> Result<Pyramid, RenderError> {
         let shape = Shape::single(source.values.shape.size, 1);
-        let made = Pyramid::new(slabs.gpu, shape, source, transfer, before);
+        let made = Pyramid::new(slabs.gpu, shape, source, before);
         self.opacities(slabs, source, group, &made.volume).await?;
         Ok(made)
     }

@@ -27,8 +27,8 @@ pub(super) const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Uint;
 /// Faces by number on the device.
 #[derive(Clone)]
 pub struct FaceList {
-    /// Version of the drawn cells that the list was made of.
-    pub drawn: u64,
+    /// Of the drawn cells that the list was made of.
+    pub revision: u64,
     /// `(column * nk + layer) * 6 + face` of each.
     pub numbers: wgpu::Buffer,
     /// How many there are.
@@ -42,7 +42,7 @@ impl FaceList {
     /// When it exceeds what the adapter holds.
     pub fn new(gpu: &Gpu, grid: &GpuGrid, numbers: &[u32]) -> Result<Self, RenderError> {
         Ok(Self {
-            drawn: grid.versions.drawn,
+            revision: grid.revisions.drawn,
             numbers: gpu.storage("faces", numbers)?,
             count: numbers.len() as u32,
         })
@@ -72,7 +72,10 @@ impl BoundaryFaces {
         grid: &GpuGrid,
         drawn: &[bool],
     ) -> Result<&FaceList, RenderError> {
-        let known = self.list.take().filter(|l| l.drawn == grid.versions.drawn);
+        let known = self
+            .list
+            .take()
+            .filter(|l| l.revision == grid.revisions.drawn);
         let list = match known {
             Some(known) => known,
             None => FaceList::new(
@@ -123,7 +126,7 @@ impl FaceRaster {
     /// `margin` is how far, in world space, the next entry of a peel may lie before the end of the
     /// last one.
     pub fn update(&mut self, gpu: &Gpu, faces: Option<&FaceList>, margin: f32) {
-        let is_of = |b: &Bound, f: &FaceList| b.list.drawn == f.drawn && b.margin == margin;
+        let is_of = |b: &Bound, f: &FaceList| b.list.revision == f.revision && b.margin == margin;
         let known = self.bound.take();
         self.bound = faces.map(|faces| match known.filter(|b| is_of(b, faces)) {
             Some(known) => known,

@@ -2,10 +2,11 @@
 
 use super::device::Gpu;
 use super::pipeline::flag;
-use crate::model::{CellField, Grid};
-use crate::render::plan::{CompactGrid, GridFacts, drawn_words, values};
+use crate::model::Grid;
+use crate::render::plan::{CompactGrid, GridFacts, drawn_words, ghost_words, values};
+use crate::render::revisions::Revisions;
 use crate::render::{DeviceBytes, RenderError};
-use crate::scene::Interpolation;
+use crate::view::ShownCells;
 
 /// What is constant in shaders that locate points in a grid.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -26,23 +27,14 @@ impl Constants {
     }
 }
 
-/// Counts up with each change, so that what is made from the grid knows when it is stale.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct Versions {
-    /// Of the drawn cells.
-    pub drawn: u64,
-    /// Of the values.
-    pub values: u64,
-}
-
 /// A grid on the device, with the field and selection that are shown now.
 pub struct GpuGrid {
     /// What is true of it as a whole.
     pub facts: GridFacts,
     /// Time that building the acceleration grid took.
     pub acceleration_time: std::time::Duration,
-    /// Which selection and which values are on the device.
-    pub versions: Versions,
+    /// Those of what is on the device.
+    pub revisions: Revisions,
     info: wgpu::Buffer,
     pillars: wgpu::Buffer,
     column_lists: wgpu::Buffer,
@@ -69,7 +61,7 @@ impl GpuGrid {
         Ok(Self {
             facts: compact.facts,
             acceleration_time: compact.acceleration_time,
-            versions: Versions::default(),
+            revisions: Revisions::default(),
             drawn_words: Vec::new(),
             info: gpu.uniform("grid info", &compact.info),
             pillars: gpu.storage("pillars", &compact.pillars)?,
@@ -84,48 +76,32 @@ impl GpuGrid {
         })
     }
 
-    /// Uploads another form of the grid in place of this one: with inactive cells as ghosts (by active
-    /// index of `grid`), or without.
+    /// Uploads the grid that rays pass in a view of the case's grid `model`: with its inactive cells as ghosts, or
+    /// without.
     ///
     /// # Errors
     /// As [`Self::new`].
-    pub fn remade(
-        &self,
-        gpu: &Gpu,
-        grid: &Grid,
-        is_ghost: Option<&[bool]>,
-    ) -> Result<Self, RenderError> {
+    pub fn of(gpu: &Gpu, model: &Grid, cells: &ShownCells) -> Result<Self, RenderError> {
+        let (grid, _) = cells.in_grid(model);
         let mut made = Self::new(gpu, grid)?;
-        made.versions.drawn = self.versions.drawn + 1;
-        made.versions.values = self.versions.values + 1;
-        if let Some(is_ghost) = is_ghost {
-            let words = drawn_words(grid, is_ghost);
-            let bits: Vec<u32> = words.iter().map(|w| w[0]).collect();
-            made.ghost_cells = Some(gpu.storage("ghost cells", &bits)?);
+        if let Some(words) = ghost_words(model, cells) {
+            made.ghost_cells = Some(gpu.storage("ghost cells", &words)?);
         }
         Ok(made)
     }
 
-    /// Puts the values of a field on the device, for the cells that `drawn` (by active index) names.
+    /// Puts the drawn cells and their values on the device; `model` is the case's grid.
     ///
     /// # Errors
     /// When the values exceed what the adapter holds.
-    pub fn show(
-        &mut self,
-        gpu: &Gpu,
-        grid: &Grid,
-        field: &CellField,
-        drawn: &[bool],
-        interpolation: Interpolation,
-    ) -> Result<(), RenderError> {
+    pub fn show(&mut self, gpu: &Gpu, model: &Grid, cells: &ShownCells) -> Result<(), RenderError> {
+        let (grid, drawn) = cells.in_grid(model);
         let words = drawn_words(grid, drawn);
         if words != self.drawn_words {
             self.drawn_cells = gpu.storage("drawn cells", &words)?;
             self.drawn_words = words;
-            self.versions.drawn += 1;
         }
-        self.versions.values += 1;
-        self.values = gpu.storage("values", &values(grid, field, drawn, interpolation))?;
+        self.values = gpu.storage("values", &values(model, cells))?;
         Ok(())
     }
 

@@ -11,7 +11,7 @@ use glam::{DVec3, Vec3};
 use super::cones::ConeTable;
 use super::device::Gpu;
 use super::extinction::{Blurs, Pyramid};
-use super::grid_upload::{GpuGrid, Versions};
+use super::grid_upload::GpuGrid;
 use super::pipeline::{Pipeline, flag};
 use super::resample::Resampler;
 use super::slabs::Slabs;
@@ -135,7 +135,7 @@ pub struct Illumination {
 
 /// The volume of values that extinction is made from.
 struct Field {
-    versions: Versions,
+    revision: u64,
     /// Values at both ends of the range that is stored.
     range: [f64; 2],
     volume: Volume,
@@ -158,9 +158,7 @@ struct Lit {
 
 struct Gradients {
     volume: Volume,
-    field: u64,
-    scale: [f32; 3],
-    position_scale: f32,
+    revision: u64,
 }
 
 /// The emitters of a view: the viewer, then the lights.
@@ -242,7 +240,7 @@ impl Illumination {
         self.upload(gpu, grid, view, &emitters)?;
         self.illuminate(gpu, view, tables, &emitters, progress)
             .await?;
-        self.slope(gpu, view, tables, progress).await?;
+        self.slope(gpu, grid, view, tables, progress).await?;
         self.times.volumes = start.elapsed();
         Ok(())
     }
@@ -261,24 +259,29 @@ impl Illumination {
         };
         let before = self.field.take();
         let before = before.filter(|f| f.volume.shape == shape);
-        if before.as_ref().is_some_and(|f| f.versions == grid.versions) {
+        if before
+            .as_ref()
+            .is_some_and(|f| f.revision == grid.revisions.values)
+        {
             self.field = before;
             return Ok(());
         }
         check_size(gpu, shape.size)?;
         let volume = before.map_or_else(|| Volume::new(gpu, shape), |f| f.volume);
-        let range = view
-            .shown
-            .field
-            .statistics()
-            .map_or([0.0, 1.0], |s| [s.min, s.max]);
+        let range = view.shown.cells.value_range().unwrap_or([0.0, 1.0]);
         let mut slabs = Slabs::new(gpu, &mut self.pace, progress);
         self.resampler
-            .fill(&mut slabs, grid, &volume, range, view.shown.interpolation)
+            .fill(
+                &mut slabs,
+                grid,
+                &volume,
+                range,
+                view.shown.cells.interpolation,
+            )
             .await?;
         self.made.fields += 1;
         self.field = Some(Field {
-            versions: grid.versions,
+            revision: grid.revisions.values,
             range,
             volume,
         });
@@ -299,7 +302,7 @@ impl Illumination {
         };
         let source = super::extinction::PyramidSource {
             values: &field.volume,
-            number: self.made.fields,
+            revision: grid.revisions.extinction,
             position: position(view, field.range),
             sigma: view.style.lighting.sigma(),
             ghost: ghost(view)[3],
@@ -309,29 +312,22 @@ impl Illumination {
             extent: view.style.lighting.extent,
         };
         let shading = Shading::of(&view.style.lighting);
-        let is_stale = |made: &Option<Pyramid>| {
-            !made
-                .as_ref()
-                .is_some_and(|p| p.is_of(&source, &view.style.transfer))
-        };
+        let is_stale =
+            |made: &Option<Pyramid>| made.as_ref().is_none_or(|p| p.revision != source.revision);
         let group = self.bind(gpu, tables);
         let mut slabs = Slabs::new(gpu, &mut self.pace, progress);
         if !shading.casts_rays() {
             self.opacities = None;
         } else if is_stale(&self.opacities) {
             let before = self.opacities.take();
-            let made =
-                self.blurs
-                    .make_sharp(&mut slabs, &source, &view.style.transfer, &group, before);
+            let made = self.blurs.make_sharp(&mut slabs, &source, &group, before);
             self.opacities = Some(made.await?);
         }
         if !shading.traces_cones() {
             self.pyramid = None;
         } else if is_stale(&self.pyramid) {
             let before = self.pyramid.take();
-            let made = self
-                .blurs
-                .make(&mut slabs, &source, &view.style.transfer, &group, before);
+            let made = self.blurs.make(&mut slabs, &source, &group, before);
             self.pyramid = Some(made.await?);
             self.made.pyramids += 1;
         }
@@ -441,16 +437,17 @@ impl Illumination {
     async fn slope(
         &mut self,
         gpu: &Gpu,
+        grid: &GpuGrid,
         view: &View,
         tables: &TransferTables,
         progress: &Progress,
     ) -> Result<(), RenderError> {
-        let (Some(field), true) = (&self.field, view.style.lighting.blinn_phong) else {
+        let (Some(_), true) = (&self.field, view.style.lighting.blinn_phong) else {
             self.gradients = None;
             return Ok(());
         };
         // Values that are constant in a cell have no gradient.
-        if view.shown.interpolation == crate::scene::Interpolation::Cell {
+        if view.shown.cells.interpolation == crate::scene::Interpolation::Cell {
             self.gradients = None;
             return Ok(());
         }
@@ -458,15 +455,9 @@ impl Illumination {
             voxel: Voxel::Quad,
             ..Shape::single(view.style.lighting.light_size(), 1)
         };
-        let scale = view.style.lighting.extent.as_vec3().to_array();
-        let [_, position_scale] = position(view, field.range);
-        let is_known = self.gradients.as_ref().is_some_and(|g| {
-            g.volume.shape == shape
-                && g.field == self.made.fields
-                && g.scale == scale
-                && g.position_scale == position_scale
-        });
-        if is_known {
+        let revision = grid.revisions.gradients;
+        let known = self.gradients.as_ref();
+        if known.is_some_and(|g| g.revision == revision) {
             return Ok(());
         }
         self.gradients = None;
@@ -481,12 +472,7 @@ impl Illumination {
         volume
             .make_level(&mut slabs, 0, GRADIENT_WORK, &dispatch)
             .await?;
-        self.gradients = Some(Gradients {
-            volume,
-            field: self.made.fields,
-            scale,
-            position_scale,
-        });
+        self.gradients = Some(Gradients { volume, revision });
         Ok(())
     }
 

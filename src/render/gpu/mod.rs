@@ -28,7 +28,7 @@ pub mod volume;
 pub use device::Gpu;
 pub use executor::GpuExecutor;
 pub use frame::{Drawing, FrameRenderer};
-pub use grid_upload::{GpuGrid, Versions};
+pub use grid_upload::GpuGrid;
 pub use pipeline::{Pipeline, RasterPipeline, flag};
 pub use renderer::GpuRenderer;
 pub use round::{Place, Round};

@@ -3,9 +3,9 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
-use crate::model::{CellField, Grid};
+use crate::model::Grid;
 use crate::render::gpu::faces::{BoundaryFaces, FaceList};
 use crate::render::gpu::illumination::Illumination;
 use crate::render::gpu::probe::Probe;
@@ -15,10 +15,11 @@ use crate::render::gpu::surfaces::SurfacePainter;
 use crate::render::gpu::transfer_tables::TransferTables;
 use crate::render::gpu::{Drawing, FrameRenderer, Gpu, GpuGrid, strategies};
 use crate::render::job::{Job, Progress};
+use crate::render::line_of_sight::{LineOfSight, Sighting, SurfaceTree};
+use crate::render::revisions::RevisionCounter;
 use crate::render::{DeviceBytes, Frame, Located, RenderError, Renderer, SetupTimes};
-use crate::scene::{Interpolation, StrategyKind};
+use crate::scene::StrategyKind;
 use crate::view::View;
-use crate::view::ghosts::{Ghosts, shown_grid};
 
 /// Makes images of one grid.
 pub struct GpuRenderer {
@@ -37,16 +38,9 @@ pub struct GpuRenderer {
     solid: Option<Solid>,
     /// Made when points are first located.
     probe: Option<Probe>,
-    shown: Option<OnDevice>,
-}
-
-/// The field and selection that are on the device.
-#[derive(Clone, PartialEq)]
-struct OnDevice {
-    field: Arc<CellField>,
-    drawn: Arc<Vec<bool>>,
-    interpolation: Interpolation,
-    ghosts: Option<Arc<Ghosts>>,
+    /// Faces of surfaces that were looked at.
+    surface_tree: SurfaceTree,
+    revisions: RevisionCounter,
 }
 
 impl GpuRenderer {
@@ -75,7 +69,8 @@ impl GpuRenderer {
             strategies: Vec::new(),
             solid: None,
             probe: None,
-            shown: None,
+            surface_tree: SurfaceTree::default(),
+            revisions: RevisionCounter::default(),
         })
     }
 
@@ -104,10 +99,11 @@ impl GpuRenderer {
             surfaces,
             ..
         } = self;
-        let (of_case, grid) = (&**model, shown_grid(model, view.shown.ghosts.as_ref()));
-        let tables = match tables.take().filter(|t| t.are_of(view)) {
+        let (of_case, (grid, drawn)) = (&**model, view.shown.cells.in_grid(model));
+        let revisions = on_device.revisions;
+        let tables = match tables.take().filter(|t| t.revision == revisions.transfer) {
             Some(known) => tables.insert(known),
-            None => tables.insert(TransferTables::new(gpu, view)?),
+            None => tables.insert(TransferTables::new(gpu, view, revisions.transfer)?),
         };
         light
             .update(gpu, on_device, view, tables, &progress)
@@ -117,7 +113,7 @@ impl GpuRenderer {
             false => solid(gpu, &mut self.solid)?,
         };
         let faces = match strategy.draws_faces() || SurfacePainter::shares_faces(view) {
-            true => Some(faces.update(gpu, grid, on_device, &view.shown.drawn)?),
+            true => Some(faces.update(gpu, grid, on_device, drawn)?),
             false => None,
         };
         let mut surfaces = surfaces_of(gpu, surfaces, view)?;
@@ -171,29 +167,15 @@ impl Renderer for GpuRenderer {
     }
 
     fn prepare(&mut self, view: &View) -> Result<(), RenderError> {
-        let grid = shown_grid(&self.model, view.shown.ghosts.as_ref());
-        let wanted = OnDevice {
-            field: view.shown.field.clone(),
-            drawn: view.shown.drawn.clone(),
-            interpolation: view.shown.interpolation,
-            ghosts: view.shown.ghosts.clone(),
-        };
-        let ghosts_now = self.shown.as_ref().and_then(|s| s.ghosts.as_ref());
-        if ghosts_now != wanted.ghosts.as_ref() {
-            let is_ghost = wanted.ghosts.as_ref().map(|g| g.is_ghost.as_slice());
-            self.grid = self.grid.remade(&self.gpu, grid, is_ghost)?;
+        let (gpu, model, cells) = (&self.gpu, &self.model, &view.shown.cells);
+        let (held, wanted) = (self.grid.revisions, self.revisions.of(view));
+        if held.grid != wanted.grid {
+            self.grid = GpuGrid::of(gpu, model, cells)?;
         }
-        if self.shown.as_ref() != Some(&wanted) {
-            let OnDevice {
-                field,
-                drawn,
-                interpolation,
-                ..
-            } = &wanted;
-            self.grid
-                .show(&self.gpu, grid, field, drawn, *interpolation)?;
-            self.shown = Some(wanted);
+        if held.values != wanted.values {
+            self.grid.show(gpu, model, cells)?;
         }
+        self.grid.revisions = wanted;
         Ok(())
     }
 
@@ -207,7 +189,7 @@ impl Renderer for GpuRenderer {
         points: &[DVec3],
     ) -> Result<Vec<Option<Located>>, RenderError> {
         self.prepare(view)?;
-        let grid = shown_grid(&self.model, view.shown.ghosts.as_ref());
+        let (grid, _) = view.shown.cells.in_grid(&self.model);
         let probe = match self.probe.take().filter(|p| p.fits(&self.grid)) {
             Some(known) => self.probe.insert(known),
             None => self.probe.insert(Probe::new(&self.gpu, &self.grid)?),
@@ -219,8 +201,17 @@ impl Renderer for GpuRenderer {
             &self.grid,
             grid,
             &points,
-            view.shown.interpolation,
+            view.shown.cells.interpolation,
         )
+    }
+
+    fn look(&mut self, view: &View, at: DVec2) -> Result<Option<LineOfSight>, RenderError> {
+        let sighting = Sighting::through(&self.model, view, at, &mut self.surface_tree);
+        let Some(sighting) = sighting else {
+            return Ok(None);
+        };
+        let located = self.locate(view, &sighting.points())?;
+        Ok(Some(sighting.located(&located)))
     }
 }
 

@@ -6,7 +6,6 @@
 //! place among those of the pixel by its distance.
 
 use std::ops::Range;
-use std::sync::Arc;
 
 use super::device::Gpu;
 use super::faces::{self, FORMAT, FaceList, FaceTarget};
@@ -54,11 +53,7 @@ pub struct SurfacePainter {
 
 /// The surfaces that are shown.
 struct ShownSurfaces {
-    surfaces: Surfaces,
-    /// See [`View::chosen_faults`].
-    chosen: Option<Arc<[bool]>>,
-    /// Version of the drawn cells.
-    drawn: u64,
+    revision: u64,
     hull: Option<FaceList>,
     /// Faces that are sheets by themselves.
     sheets: Option<FaceList>,
@@ -89,7 +84,7 @@ impl SurfacePainter {
 
     /// True where the boundary faces of all drawn cells are the hull.
     pub fn shares_faces(view: &View) -> bool {
-        view.style.surfaces.has_hull() && view.shown.ghosts.is_none()
+        view.style.surfaces.has_hull() && view.shown.cells.ghosts.is_none()
     }
 
     /// Brings up to date what is shown of `model` (the case's grid). `boundary` are the boundary faces of all
@@ -114,12 +109,7 @@ impl SurfacePainter {
             self.paint = Pipeline::variant(gpu, "paint", "main", &constants)?;
             self.look = look;
         }
-        let is_known = |s: &ShownSurfaces| {
-            let kinds = |s: Surfaces| (s.hull, s.faults);
-            s.drawn == grid.versions.drawn
-                && kinds(s.surfaces) == kinds(view.style.surfaces)
-                && s.chosen == view.shown.chosen_faults
-        };
+        let is_known = |s: &ShownSurfaces| s.revision == grid.revisions.surfaces;
         let shown = match self.shown.take().filter(is_known) {
             Some(known) => known,
             None => ShownSurfaces::new(gpu, model, grid, view, boundary)?,
@@ -262,9 +252,7 @@ impl ShownSurfaces {
             _ => Some(FaceList::new(gpu, grid, &numbers)?),
         };
         Ok(Self {
-            surfaces,
-            chosen: view.shown.chosen_faults.clone(),
-            drawn: grid.versions.drawn,
+            revision: grid.revisions.surfaces,
             hull,
             sheets,
             fault_faces: gpu.storage("fault faces", &numbers)?,

@@ -1,16 +1,14 @@
 //! The transfer function on the device.
 
 use super::device::Gpu;
-use crate::image::Blending;
 use crate::render::RenderError;
 use crate::render::plan::transfer::{transfer_integrals, transfer_table};
-use crate::transfer::TransferFunction;
 use crate::view::View;
 
 /// Its table and the integrals over it, for one transfer function and blending.
 pub struct TransferTables {
-    transfer: TransferFunction,
-    blending: Blending,
+    /// See [`crate::render::revisions::Revisions::transfer`].
+    pub revision: u64,
     /// Color, as it is blended, and extinction at equal distances over the range.
     pub table: wgpu::Buffer,
     /// Integrals over the position of extinction times color, and of extinction.
@@ -22,18 +20,12 @@ impl TransferTables {
     ///
     /// # Errors
     /// When the device refuses.
-    pub fn new(gpu: &Gpu, view: &View) -> Result<Self, RenderError> {
+    pub fn new(gpu: &Gpu, view: &View, revision: u64) -> Result<Self, RenderError> {
         let table = transfer_table(view);
         Ok(Self {
             integrals: gpu.storage("transfer integrals", &transfer_integrals(&table))?,
             table: gpu.storage("transfer table", &table)?,
-            transfer: view.style.transfer.clone(),
-            blending: view.style.blending,
+            revision,
         })
-    }
-
-    /// True where they are those of a view.
-    pub fn are_of(&self, view: &View) -> bool {
-        self.transfer == view.style.transfer && self.blending == view.style.blending
     }
 }

@@ -1,7 +1,8 @@
 //! What is shown of a grid: bits of the drawn cells, and values by cell or by vertex.
 
-use crate::model::{CellField, Grid, Ijk, VertexField};
+use crate::model::{Grid, Ijk, VertexField};
 use crate::scene::Interpolation;
+use crate::view::ShownCells;
 
 /// Slots column by column, layers fastest: bits of the drawn cells (by active index) and the count before each
 /// word.
@@ -21,26 +22,30 @@ pub fn drawn_words(grid: &Grid, drawn: &[bool]) -> Vec<[u32; 2]> {
     words
 }
 
-/// The values of a field: one for each drawn cell in the order of slots, or one for each entry of the depth lists.
-/// None is NaN.
-pub fn values(
-    grid: &Grid,
-    field: &CellField,
-    drawn: &[bool],
-    interpolation: Interpolation,
-) -> Vec<f32> {
-    match interpolation {
-        Interpolation::Cell => column_major(grid, field, drawn),
+/// One bit for each slot: the ghosts among the cells that rays meet; `None` where no ghosts are shown.
+pub fn ghost_words(model: &Grid, cells: &ShownCells) -> Option<Vec<u32>> {
+    cells.ghosts.as_ref()?;
+    let (grid, _) = cells.in_grid(model);
+    let all = grid.active_cells().iter();
+    let is_ghost: Vec<bool> = all.map(|c| model.active_index(*c).is_none()).collect();
+    Some(drawn_words(grid, &is_ghost).iter().map(|w| w[0]).collect())
+}
+
+/// The values of what is shown of the case's grid `model`: one for each cell that rays meet, in the order of slots,
+/// or one for each entry of the depth lists. None is NaN.
+pub fn values(model: &Grid, cells: &ShownCells) -> Vec<f32> {
+    match cells.interpolation {
+        Interpolation::Cell => column_major(model, cells),
         // Entries that no drawn cell touches are never read.
         Interpolation::Vertex => {
-            let vertices = VertexField::new(grid, field);
-            vertices.values().iter().map(|v| or_zero(*v)).collect()
+            VertexField::of(model, &cells.field, cells.valued()).into_defined()
         }
     }
 }
 
-/// Values of the drawn cells in slot order.
-fn column_major(grid: &Grid, field: &CellField, drawn: &[bool]) -> Vec<f32> {
+/// Values in the order of slots; ghosts have none.
+fn column_major(model: &Grid, cells: &ShownCells) -> Vec<f32> {
+    let (grid, drawn) = cells.in_grid(model);
     let dims = grid.dims();
     let mut values = Vec::new();
     for column in 0..dims.columns() {
@@ -50,18 +55,12 @@ fn column_major(grid: &Grid, field: &CellField, drawn: &[bool]) -> Vec<f32> {
                 j: column / dims.ni,
                 k,
             };
-            if let Some(active) = grid.active_index(dims.cell(ijk)) {
-                let active = active.0 as usize;
-                if drawn.get(active) == Some(&true) {
-                    // Ghosts have none.
-                    values.push(or_zero(field.values()[active]));
-                }
+            let cell = dims.cell(ijk);
+            let active = grid.active_index(cell).map(|a| a.0 as usize);
+            if active.is_some_and(|a| drawn.get(a) == Some(&true)) {
+                values.push(cells.field.value(model, cell).unwrap_or(0.0));
             }
         }
     }
     values
-}
-
-fn or_zero(value: f32) -> f32 {
-    if value.is_nan() { 0.0 } else { value }
 }

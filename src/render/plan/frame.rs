@@ -40,7 +40,7 @@ pub fn frame_uniform(grid: &GridFacts, view: &View) -> Frame {
         grid_from_world_y: f32s(linear.y_axis),
         height: view.size[1],
         grid_from_world_z: f32s(linear.z_axis),
-        interpolation: layout::interpolation(view.shown.interpolation),
+        interpolation: layout::interpolation(view.shown.cells.interpolation),
         box_low: f32s(grid.bounds[0]),
         clip_count: view.shown.clip.len() as u32,
         box_high: f32s(grid.bounds[1]),

@@ -11,5 +11,5 @@ pub mod layout;
 pub mod surfaces;
 pub mod transfer;
 
-pub use cells::{drawn_words, values};
+pub use cells::{drawn_words, ghost_words, values};
 pub use compact_grid::{CompactGrid, GridFacts};

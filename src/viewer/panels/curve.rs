@@ -113,18 +113,23 @@ fn bins(ui: &Ui, id: Id, view: &View) -> Arc<[u32]> {
     let range = view.style.transfer.range;
     let known: Option<Counted> = ui.data(|d| d.get_temp(id));
     let is_same = |c: &Counted| {
-        std::ptr::eq(c.field.as_ptr(), Arc::as_ptr(&view.shown.field))
-            && std::ptr::eq(c.drawn.as_ptr(), Arc::as_ptr(&view.shown.drawn))
+        std::ptr::eq(c.field.as_ptr(), Arc::as_ptr(&view.shown.cells.field))
+            && std::ptr::eq(c.drawn.as_ptr(), Arc::as_ptr(&view.shown.cells.drawn))
             && c.range == range
     };
     if let Some(known) = known.filter(is_same) {
         return known.bins;
     }
     let counted = Counted {
-        field: Arc::downgrade(&view.shown.field),
-        drawn: Arc::downgrade(&view.shown.drawn),
+        field: Arc::downgrade(&view.shown.cells.field),
+        drawn: Arc::downgrade(&view.shown.cells.drawn),
         range,
-        bins: count(view.shown.field.values(), &view.shown.drawn, range).into(),
+        bins: count(
+            view.shown.cells.field.values(),
+            &view.shown.cells.drawn,
+            range,
+        )
+        .into(),
     };
     let bins = counted.bins.clone();
     ui.data_mut(|d| d.insert_temp(id, counted));

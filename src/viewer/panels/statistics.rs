@@ -48,8 +48,8 @@ fn values(ui: &mut Ui, about: &PanelContext<'_>, picture: &Picture) {
     let view = &picture.view;
     // Counted again only where values or cells are others.
     let of = (
-        Arc::downgrade(&view.shown.field),
-        Arc::downgrade(&view.shown.drawn),
+        Arc::downgrade(&view.shown.cells.field),
+        Arc::downgrade(&view.shown.cells.drawn),
     );
     let id = ui.scope_id().with("summary");
     let known: Option<(Counted, Option<Summary>)> = ui.data(|d| d.get_temp(id));
@@ -103,9 +103,5 @@ fn summary(about: &PanelContext<'_>, view: &View) -> Option<Summary> {
         .ok()?;
     let weights = about.case.field("PORV", 0).ok();
     let weights = weights.as_ref().map(|w| w.values());
-    Summary::of(
-        field.values(),
-        &view.drawn_active(&about.case.grid),
-        weights,
-    )
+    Summary::of(field.values(), &view.shown.cells.drawn, weights)
 }

@@ -9,7 +9,6 @@ use crate::scene::transfer::BANDS;
 use crate::scene::{ColorSpec, Coloring, OpacitySpec, RangeSpec, ScaleSpec, TransferSpec};
 use crate::transfer::function::color_at;
 use crate::transfer::{boundaries, presets};
-use crate::view::ghosts::shown_grid;
 use crate::view::look::look_of;
 use crate::viewer::action::Action;
 use crate::viewer::overlay;
@@ -104,9 +103,9 @@ fn opacities(ui: &mut Ui, about: &PanelContext<'_>, spec: &mut TransferSpec) {
 /// Positions of the smallest and largest value of the step shown.
 fn extent(about: &PanelContext<'_>) -> [f64; 2] {
     let view = about.picture.map(|p| &p.view);
-    let found = view.and_then(|v| Some((v.shown.field.statistics()?, &v.style.transfer)));
-    found.map_or([0.0, 1.0], |(values, transfer)| {
-        [values.min, values.max].map(|v| transfer.position(v))
+    let found = view.and_then(|v| Some((v.shown.cells.value_range()?, &v.style.transfer)));
+    found.map_or([0.0, 1.0], |(ends, transfer)| {
+        ends.map(|v| transfer.position(v))
     })
 }
 
@@ -126,8 +125,12 @@ fn over([low, high]: [f64; 2], curve: &[[f64; 2]]) -> Vec<[f64; 2]> {
 /// Peaks at the boundaries in what is shown.
 fn found_in(about: &PanelContext<'_>) -> Option<Vec<[f64; 2]>> {
     let view = &about.picture?.view;
-    let grid = shown_grid(&about.case.grid, view.shown.ghosts.as_ref());
-    let found = boundaries::find(&derivatives::samples(grid, &view.shown.field));
+    let samples = derivatives::samples(
+        &about.case.grid,
+        &view.shown.cells.field,
+        view.shown.cells.valued(),
+    );
+    let found = boundaries::find(&samples);
     let curve = boundaries::curve(&found, view.style.transfer.range)?;
     Some(
         curve

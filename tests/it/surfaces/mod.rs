@@ -267,7 +267,7 @@ fn scenes_say_what_is_shown() {
     };
     let view = cells("");
     assert_eq!(view.style.surfaces, CELLS);
-    assert_eq!(view.shown.interpolation, Interpolation::Cell);
+    assert_eq!(view.shown.cells.interpolation, Interpolation::Cell);
     assert!(view.shown.clip[0].opaque);
     let without_edges = Surfaces {
         cell_edges: false,

@@ -103,7 +103,7 @@ impl RenderStrategy for Libc {
         Box::pin(async move {
             let variant = Variant {
                 settings: what.view.sampling.libc,
-                interpolation: what.view.shown.interpolation,
+                interpolation: what.view.shown.cells.interpolation,
                 common: Common::of(what),
             };
             if variant != self.variant {

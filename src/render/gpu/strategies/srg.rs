@@ -14,7 +14,7 @@ use crate::render::gpu::slabs::Slabs;
 use crate::render::gpu::strategy::{Common, Preparation, RenderStrategy};
 use crate::render::gpu::tiles::Pace;
 use crate::render::gpu::volume::Volume;
-use crate::render::gpu::{Gpu, Pipeline, Place, Round, Versions, flag};
+use crate::render::gpu::{Gpu, Pipeline, Place, Round, flag};
 use crate::render::job::Work;
 use crate::render::plan::layout::RAY_STATE;
 use crate::render::{DeviceBytes, RenderError};
@@ -41,7 +41,8 @@ pub struct Srg {
 
 /// The volume with its pyramids, and what they were made from.
 struct Filled {
-    versions: Versions,
+    /// Of the values.
+    revision: u64,
     /// Values that are stored as 0 and 1.
     range: [f64; 2],
     volume: Volume,
@@ -86,11 +87,17 @@ fn useful(view: &View) -> SrgSettings {
         .opacity
         .iter()
         .any(|point| point.1 == 0.0);
-    let hidden = view.shown.drawn.iter().filter(|drawn| !**drawn).count();
+    let hidden = view
+        .shown
+        .cells
+        .drawn
+        .iter()
+        .filter(|drawn| !**drawn)
+        .count();
     SrgSettings {
         skip_empty: view.sampling.srg.skip_empty
-            && view.shown.ghosts.is_none()
-            && (is_clear || 10 * hidden > view.shown.drawn.len()),
+            && view.shown.cells.ghosts.is_none()
+            && (is_clear || 10 * hidden > view.shown.cells.drawn.len()),
         ..view.sampling.srg
     }
 }
@@ -172,24 +179,23 @@ impl Srg {
     /// Fills the volume anew where values, cells or shape have changed.
     async fn fill(&mut self, what: &Preparation<'_>, shape: Shape) -> Result<(), RenderError> {
         let filled = self.filled.take().filter(|f| f.volume.shape == shape);
-        let versions = what.grid.versions;
-        if filled.as_ref().is_some_and(|f| f.versions == versions) {
+        let revision = what.grid.revisions.values;
+        if filled.as_ref().is_some_and(|f| f.revision == revision) {
             self.filled = filled;
             return Ok(());
         }
         let volume = filled.map_or_else(|| Volume::new(what.gpu, shape), |f| f.volume);
-        let statistics = what.view.shown.field.statistics();
-        let range = statistics.map_or([0.0, 1.0], |s| [s.min, s.max]);
+        let range = what.view.shown.cells.value_range().unwrap_or([0.0, 1.0]);
         let bricks = Bricks::unused(what.gpu, shape.size);
         let mut slabs = slabs(what, &mut self.pace);
-        let interpolation = what.view.shown.interpolation;
+        let interpolation = what.view.shown.cells.interpolation;
         self.resampler
             .fill(&mut slabs, what.grid, &volume, range, interpolation)
             .await?;
         self.pyramids.average(&mut slabs, &volume, &bricks).await?;
         self.fills += 1;
         self.filled = Some(Filled {
-            versions,
+            revision,
             range,
             volume,
             bricks,
@@ -271,7 +277,7 @@ impl RenderStrategy for Srg {
             self.faces.update(what.gpu, what.faces, 0.0);
             let budget = settings.budget_bytes();
             let limit = what.gpu.device.limits().max_texture_dimension_3d;
-            let ghosts = view.shown.ghosts.is_some();
+            let ghosts = view.shown.cells.ghosts.is_some();
             let shape = shape(what.model.dims(), &settings, ghosts, budget, limit);
             self.fill(what, shape).await?;
             self.classify(what, &settings).await

@@ -9,16 +9,18 @@ use crate::view::View;
 /// Samples of a ray, at most; where a picture has more, these lie farther apart.
 const MOST_SAMPLES: f64 = 20_000.0;
 
-/// A ray in world space, its direction of unit length.
+/// A ray in world space.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Ray {
+pub struct Ray {
+    /// The eye, or in parallel a point of the plane through it.
     pub origin: DVec3,
+    /// Of unit length.
     pub direction: DVec3,
 }
 
 /// The part of a ray on which samples lie: within the model's box and on the kept side of all clip planes.
 #[derive(Debug, Clone)]
-pub(super) struct Span {
+pub struct Span {
     /// Sample `n` lies at `(n + 1/2) * step`.
     pub samples: Range<u64>,
     /// Distance from one to the next.
@@ -27,6 +29,13 @@ pub(super) struct Span {
     pub starts_inside: bool,
     /// Distance of the opaque clip plane through which it starts, if it does.
     pub section: Option<f64>,
+}
+
+impl Span {
+    /// Distance of a sample.
+    pub fn distance(&self, number: u64) -> f64 {
+        (number as f64 + 0.5) * self.step
+    }
 }
 
 impl Ray {
@@ -61,22 +70,6 @@ impl Ray {
             leave = leave.min(a.max(b));
         }
         [enter, leave]
-    }
-
-    /// Distance of a triangle (Moller and Trumbore 1997); `None` where the ray misses it.
-    pub fn meets(&self, [a, b, c]: [DVec3; 3]) -> Option<f64> {
-        let (ab, ac) = (b - a, c - a);
-        let across = self.direction.cross(ac);
-        let volume = ab.dot(across);
-        if volume == 0.0 {
-            return None;
-        }
-        let from_a = self.origin - a;
-        let u = from_a.dot(across) / volume;
-        let other = from_a.cross(ab);
-        let v = self.direction.dot(other) / volume;
-        let distance = ac.dot(other) / volume;
-        (u >= 0.0 && v >= 0.0 && u + v <= 1.0 && distance > 0.0).then_some(distance)
     }
 
     /// Where samples of a view lie on the ray; `None` where it misses all that is kept.
@@ -115,10 +108,4 @@ impl Ray {
             section: section.filter(|_| starts_inside),
         })
     }
-}
-
-/// True on the kept side of every clip plane.
-pub(super) fn is_kept(view: &View, point: DVec3) -> bool {
-    let mut planes = view.shown.clip.iter();
-    planes.all(|plane| (point - plane.point).dot(plane.normal) >= 0.0)
 }

@@ -1,0 +1,101 @@
+//! What a change of a view makes stale: the one place that says so.
+//!
+//! What is kept from one image to the next holds the revision that it was made of, and is made anew where that has
+//! counted up. Camera, size, sampling and colors of lights are in no revision: they are told anew with each image.
+//! A light volume is made anew with the extinction, and where its own emitter has changed; what is compiled, where
+//! its constants have.
+
+use crate::view::View;
+
+/// Numbers that count up with each change of what a view shows of one grid, and never fall: what a canceled update
+/// has dropped is stale for good.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Revisions {
+    /// The cells that rays can meet: inactive ones, or none of them. The grid and its acceleration.
+    pub grid: u64,
+    /// The drawn cells. Their bits, and lists of boundary faces.
+    pub drawn: u64,
+    /// Values. Those at cells or vertices, and volumes that are resampled from them.
+    pub values: u64,
+    /// Colors and opacities. The tables of the transfer function.
+    pub transfer: u64,
+    /// The faces that are hull or faults. Their lists.
+    pub surfaces: u64,
+    /// Opacity at points of space. The extinction pyramid, and all light volumes.
+    pub extinction: u64,
+    /// Slopes of values at points of space. The volume of gradients.
+    pub gradients: u64,
+}
+
+/// Follows the views of one grid.
+#[derive(Debug, Default)]
+pub struct RevisionCounter {
+    last: Option<View>,
+    now: Revisions,
+}
+
+impl RevisionCounter {
+    /// The revisions of a view, the next one in a row.
+    pub fn of(&mut self, view: &View) -> Revisions {
+        let changes = |differs: fn(&View, &View) -> bool| {
+            self.last.as_ref().is_none_or(|last| differs(last, view))
+        };
+        // Without ghosts the grid is there before the first view.
+        let had_ghosts = self.last.as_ref().is_some_and(has_ghosts);
+        let grid = had_ghosts != has_ghosts(view);
+        let drawn = grid || changes(|a, b| a.shown.cells.drawn != b.shown.cells.drawn);
+        let values = drawn || changes(|a, b| !a.shown.cells.is_same(&b.shown.cells));
+        let transfer = changes(|a, b| colors(a) != colors(b));
+        let surfaces = drawn || changes(|a, b| surfaces(a) != surfaces(b));
+        let space = changes(|a, b| space(a) != space(b));
+        let extinction = values || space || changes(|a, b| opacities(a) != opacities(b));
+        let gradients = values || space || changes(|a, b| range(a) != range(b));
+        for (revision, changes) in [
+            (&mut self.now.grid, grid),
+            (&mut self.now.drawn, drawn),
+            (&mut self.now.values, values),
+            (&mut self.now.transfer, transfer),
+            (&mut self.now.surfaces, surfaces),
+            (&mut self.now.extinction, extinction),
+            (&mut self.now.gradients, gradients),
+        ] {
+            *revision += u64::from(changes);
+        }
+        self.last = Some(view.clone());
+        self.now
+    }
+}
+
+fn has_ghosts(view: &View) -> bool {
+    view.shown.cells.ghosts.is_some()
+}
+
+fn colors(view: &View) -> impl PartialEq {
+    (&view.style.transfer, view.style.blending)
+}
+
+fn surfaces(view: &View) -> impl PartialEq {
+    let shown = view.style.surfaces;
+    (
+        shown.hull,
+        shown.faults,
+        &view.shown.named_faults,
+        &view.shown.chosen_faults,
+    )
+}
+
+/// Light's own space, and what of it is kept.
+fn space(view: &View) -> impl PartialEq {
+    let lighting = &view.style.lighting;
+    let size = (lighting.size(), lighting.light_size(), lighting.extent);
+    (size, view.world.vertical_exaggeration, &view.shown.clip)
+}
+
+fn opacities(view: &View) -> impl PartialEq {
+    let transfer = &view.style.transfer;
+    (&transfer.opacity, transfer.reference_length, range(view))
+}
+
+fn range(view: &View) -> impl PartialEq {
+    view.style.transfer.range
+}
