@@ -13,6 +13,7 @@ use super::grid::{Grid, all_coincide};
 use super::locate::{Query, is_odd, locate};
 use super::tally::Tally;
 use super::thorough::encloses;
+use crate::render::plan::layout::COLUMN_FLAG;
 
 const TOPOLOGICAL_LIMIT: u32 = 6;
 /// Newton steps below this end the iteration while marching; the error left is of its square.
@@ -94,7 +95,7 @@ impl<'a> Track<'a> {
         if n >= self.ray.count {
             return None;
         }
-        if !(is_next && self.follow(n)) {
+        if !(is_next && self.follow(n) && !self.layers_cross()) {
             // The last sample of which it is known where it lies.
             let mut known = if is_next { n - 1.0 } else { f32::MIN };
             loop {
@@ -112,6 +113,12 @@ impl<'a> Track<'a> {
         }
         self.arrive();
         Some(self.stretch(n))
+    }
+
+    /// True where layers of the current column cross: a point of several cells belongs to the first of them, so that
+    /// each sample has to be located.
+    fn layers_cross(&self) -> bool {
+        self.grid.lists(self.cell.column)[0] & COLUMN_FLAG != 0
     }
 
     /// Counts the cell where the ray has come into it.
@@ -137,7 +144,10 @@ impl<'a> Track<'a> {
             from_rate,
             to_rate: from_rate,
         };
-        let left = self.ray.count - 1.0 - n;
+        let left = match self.layers_cross() {
+            true => 0.0,
+            false => self.ray.count - 1.0 - n,
+        };
         let mut ahead = steps_inside(from, from_rate).min(left);
         for _ in 0..2 {
             if ahead < 1.0 {
@@ -222,16 +232,16 @@ impl<'a> Track<'a> {
         let passed = boundary.until(n);
         let may_hold = |p: &&Passage| p.far >= n || (p.turn > 0 && p.far >= known);
         let before = (self.last.is_some() && self.gap == 0.0).then_some(self.cell);
-        let mut in_doubt = false;
-        // Where layers cross, a point of several cells belongs to the first of them.
-        if !self.grid.compact.facts.layers_cross {
+        let mut in_doubt = self.last.is_some() && self.gap == 0.0 && self.layers_cross();
+        if !in_doubt {
             for passage in passed.iter().rev().filter(may_hold).take(MOST_TRIED) {
                 let FacePlace { column, layer, .. } = FacePlace::of(passage.face, self.grid.nk());
                 self.cell = Cell::load(self.grid, column, layer);
-                if self.walk(n, Vec3A::splat(0.5), true) {
+                let found = self.walk(n, Vec3A::splat(0.5), true);
+                if found && !self.layers_cross() {
                     return 0.0;
                 }
-                in_doubt |= !self.solution.sure;
+                in_doubt |= found || !self.solution.sure;
             }
         }
         if !in_doubt
