@@ -196,7 +196,7 @@ impl Search<'_> {
                 low = middle + 1;
             }
         }
-        self.from_layer(column, low.min(last), uv, weights)
+        self.near_layer(column, low.min(last), uv, weights)
     }
 
     /// Pillar position at the point's depth, relative to the point.
@@ -232,7 +232,7 @@ impl Search<'_> {
     }
 
     /// Newton in `start` and, where the result lies above or below, in the layers there.
-    fn from_layer(&mut self, column: u32, start: u32, uv: Vec2, weights: Vec4) -> bool {
+    fn near_layer(&mut self, column: u32, start: u32, uv: Vec2, weights: Vec4) -> bool {
         let grid = self.grid;
         let lists = grid.lists(column);
         let margin = Grid::column_margin(lists);

@@ -33,19 +33,19 @@ impl RayFrame {
     }
 
     /// A corner relative to the frame's origin, in grid space.
-    pub fn from_origin(&self, pillar: &Pillar, depth: f32) -> Vec3A {
+    pub fn relative(&self, pillar: &Pillar, depth: f32) -> Vec3A {
         let xy = (pillar.at - self.origin.truncate()) + (pillar.low_bits + pillar.slope * depth);
         xy.extend(depth - self.origin.z).into()
     }
 
     /// A corner: two coordinates across the ray and the distance along it.
     pub fn project(&self, pillar: &Pillar, depth: f32) -> Vec3A {
-        self.projected(self.from_origin(pillar, depth))
+        self.projected(self.relative(pillar, depth))
     }
 
     /// A point relative to the frame's origin: two coordinates across the ray and the distance along it.
-    pub fn projected(&self, from_origin: Vec3A) -> Vec3A {
-        self.turned(from_origin) + self.t_origin * Vec3A::Z
+    pub fn projected(&self, relative: Vec3A) -> Vec3A {
+        self.turned(relative) + self.t_origin * Vec3A::Z
     }
 
     /// A displacement: two coordinates across the ray and the distance along it.

@@ -323,7 +323,7 @@ fn spot_on(grid: &Grid, place: FacePlace, r: &RayFrame, steps: [Vec3A; 2]) -> Sp
         let corner = face_corner(place.side, n);
         let of_column = (corner & 3) as usize;
         let entry = Grid::list_entry(lists[of_column], place.layer, corner >> 2);
-        r.from_origin(&grid.pillar(numbers[of_column]), grid.depth(entry))
+        r.relative(&grid.pillar(numbers[of_column]), grid.depth(entry))
     });
     let q = corners.map(|corner| r.projected(corner));
     // The ray is in triangle 0 1 3 where it lies on the same side of the diagonal as corner 1.
