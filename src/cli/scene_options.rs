@@ -58,7 +58,8 @@ pub struct SceneOptions {
     /// Threads of the CPU work.
     #[arg(long)]
     threads: Option<usize>,
-    /// Part of the name of the GPU adapter to use.
+    /// Part of the name of the GPU adapter to use, or cpu; by default the best GPU, or without one the CPU. The
+    /// variable STRATARAY_ADAPTER does the same, also for the window.
     #[arg(long)]
     adapter: Option<String>,
     #[command(flatten)]
@@ -188,8 +189,12 @@ pub fn open_executor(
     let executor = render::executor(adapter)?;
     let info = executor.info();
     if info.is_software {
+        let why = match &info.problem {
+            Some(problem) => format!(" ({problem})"),
+            None => String::new(),
+        };
         reporter.note(&format!(
-            "no GPU is used: {} computes on the CPU",
+            "no GPU is used{why}: images are made by {}",
             info.adapter
         ));
     }
