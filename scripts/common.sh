@@ -20,8 +20,15 @@ need_packages() {
     DEBIAN_FRONTEND=noninteractive "${root[@]}" apt-get install -y -qq --no-install-recommends "${wanted[@]}"
 }
 
-# What windows under X11 load while they run.
+# The Vulkan loader and Mesa's drivers, one of which computes on the CPU where there is no GPU. Images need none.
+need_driver() {
+    command -v dpkg-query >/dev/null || return 0
+    need_packages libvulkan1 mesa-vulkan-drivers
+}
+
+# What windows under X11 load while they run, and what draws them.
 need_window() {
+    need_driver
     command -v dpkg-query >/dev/null || return 0
     need_packages libxcursor1 libxi6 libxkbcommon-x11-0 "$@"
 }
@@ -32,9 +39,8 @@ set_up() {
     fi
     command -v cargo >/dev/null || missing "the Rust toolchain is missing: install it from https://rustup.rs"
     if command -v dpkg-query >/dev/null; then
-        # A linker and the C library's files, the Vulkan loader, and Mesa's drivers, one of which
-        # computes on the CPU where there is no GPU.
-        need_packages gcc libc6-dev libvulkan1 mesa-vulkan-drivers
+        # A linker and the C library's files.
+        need_packages gcc libc6-dev
     else
         command -v cc >/dev/null || missing "a C linker (gcc or clang) is missing"
     fi

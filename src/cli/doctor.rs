@@ -23,6 +23,14 @@ struct Machine {
     display: Option<String>,
 }
 
+impl Machine {
+    /// The adapter that is used where none is asked for; `None` where the processor is.
+    fn default_adapter(&self) -> Option<&AdapterFacts> {
+        let best = self.adapters.first()?;
+        (best.lacking.is_none() && best.kind != "software").then_some(best)
+    }
+}
+
 pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let machine = Machine {
         adapters: adapters(),
@@ -53,15 +61,15 @@ fn display() -> Option<String> {
 /// What to do about what is missing, a sentence each.
 fn advice(machine: &Machine) -> Vec<&'static str> {
     let mut advice = Vec::new();
-    let usable = machine.adapters.iter().find(|a| a.lacking.is_none());
-    match usable {
-        None => advice.push(
-            "Install a Vulkan driver: the one of the graphics card's maker, or on Debian and Ubuntu the package mesa-vulkan-drivers, which also has one in software.",
-        ),
-        Some(best) if best.kind == "software" => advice.push(
-            "There is no GPU that can be used, so images are made on the processor. If there is one, install its Vulkan driver.",
-        ),
-        Some(_) => {}
+    if machine.default_adapter().is_none() {
+        advice.push(
+            "There is no GPU that can be used, so images are made on the processor. If there is one, install its Vulkan driver: the one of its maker, or on Debian and Ubuntu the package mesa-vulkan-drivers.",
+        );
+    }
+    if machine.adapters.is_empty() {
+        advice.push(
+            "There is no graphics driver at all, so the window cannot draw; install the package mesa-vulkan-drivers, which also has one in software, or use the other commands.",
+        );
     }
     if machine.display.is_none() {
         advice.push(
@@ -73,11 +81,13 @@ fn advice(machine: &Machine) -> Vec<&'static str> {
 
 fn text(machine: &Machine) -> String {
     let mut lines = vec![format!("strataray {}", env!("CARGO_PKG_VERSION"))];
-    let mut is_taken = true;
+    let by_default = machine.default_adapter().map(std::ptr::from_ref);
     for adapter in &machine.adapters {
         let state = match &adapter.lacking {
             Some(reason) => format!("cannot be used: {reason}"),
-            None if std::mem::take(&mut is_taken) => "used by default".into(),
+            None if by_default.is_some_and(|d| std::ptr::eq(d, adapter)) => {
+                "used by default".into()
+            }
             None => format!("used with --adapter \"{}\"", adapter.name),
         };
         lines.push(format!(
@@ -100,7 +110,11 @@ fn text(machine: &Machine) -> String {
     if machine.adapters.is_empty() {
         lines.push("adapter   none".into());
     }
-    lines.push(format!("processor {} threads", machine.threads));
+    let state = match by_default {
+        None => "used by default",
+        Some(_) => "used with --adapter cpu",
+    };
+    lines.push(format!("processor {} threads, {state}", machine.threads));
     let display = machine.display.as_deref().unwrap_or("none");
     lines.push(format!("display   {display}"));
     lines.push(String::new());
@@ -128,6 +142,7 @@ fn facts(machine: &Machine) -> Value {
     json!({
         "version": env!("CARGO_PKG_VERSION"),
         "adapters": machine.adapters.iter().map(adapter).collect::<Vec<_>>(),
+        "default": machine.default_adapter().map_or("cpu", |a| a.name.as_str()),
         "threads": machine.threads,
         "display": machine.display,
         "advice": advice(machine),
@@ -167,6 +182,8 @@ mod tests {
         assert!(told.find("Card") < default && default < told.find("llvmpipe"));
         assert!(told.contains("cannot be used: it is old") && told.contains("is needed is there"));
         assert_eq!(facts(&machine)["adapters"][2]["usable"], false);
+        assert_eq!(facts(&machine)["default"], "Card");
+        assert!(told.contains("2 threads, used with --adapter cpu"));
     }
 
     #[test]
@@ -176,9 +193,11 @@ mod tests {
             threads: 2,
             display: None,
         };
-        assert_eq!(advice(&machine).len(), 2);
+        assert_eq!(advice(&machine).len(), 3);
         assert!(text(&machine).contains("mesa-vulkan-drivers"));
         machine.adapters = vec![adapter("llvmpipe", "software", None)];
-        assert!(text(&machine).contains("made on the processor"));
+        assert_eq!(advice(&machine).len(), 2);
+        assert!(text(&machine).contains("2 threads, used by default"));
+        assert_eq!(facts(&machine)["default"], "cpu");
     }
 }

@@ -58,7 +58,8 @@ pub struct SceneOptions {
     /// Threads of the CPU work.
     #[arg(long)]
     threads: Option<usize>,
-    /// Part of the name of the GPU adapter to use.
+    /// Part of the name of the GPU adapter to use, or cpu; by default the best GPU, or without one the CPU. The
+    /// variable STRATARAY_ADAPTER does the same, also for the window.
     #[arg(long)]
     adapter: Option<String>,
     #[command(flatten)]
@@ -176,16 +177,28 @@ impl SceneOptions {
 
     /// Opens what makes the images, and says where it is no GPU.
     pub fn open_executor(&self, reporter: &Reporter) -> anyhow::Result<Arc<dyn Executor>> {
-        let executor = render::executor(self.adapter.as_deref())?;
-        let info = executor.info();
-        if info.is_software {
-            reporter.note(&format!(
-                "no GPU is used: {} computes on the CPU",
-                info.adapter
-            ));
-        }
-        Ok(executor)
+        open_executor(self.adapter.as_deref(), reporter)
     }
+}
+
+/// Opens what makes the images, by a part of its adapter's name where one is given, and says where it is no GPU.
+pub fn open_executor(
+    adapter: Option<&str>,
+    reporter: &Reporter,
+) -> anyhow::Result<Arc<dyn Executor>> {
+    let executor = render::executor(adapter)?;
+    let info = executor.info();
+    if info.is_software {
+        let why = match &info.problem {
+            Some(problem) => format!(" ({problem})"),
+            None => String::new(),
+        };
+        reporter.note(&format!(
+            "no GPU is used{why}: images are made by {}",
+            info.adapter
+        ));
+    }
+    Ok(executor)
 }
 
 impl AddedFiles {
@@ -204,7 +217,11 @@ pub fn open_case(path: &Path, reporter: &Reporter) -> anyhow::Result<Case> {
     AddedFiles { with: Vec::new() }.open_case(path, reporter)
 }
 
-fn lighting_preset(name: &str) -> Result<LightingSpec, String> {
+/// The preset of light that has a name.
+///
+/// # Errors
+/// What there is, where none has it.
+pub fn lighting_preset(name: &str) -> Result<LightingSpec, String> {
     let names = || PRESETS.map(|(name, _)| name).join(", ");
     LightingSpec::preset(name).ok_or_else(|| format!("there are {}", names()))
 }

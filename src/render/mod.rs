@@ -2,7 +2,7 @@
 //!
 //! An [`Executor`] is a device, or the like of one. It makes a [`Renderer`] for a grid, which holds what it needs of
 //! that. An image is a [`Job`]: it is advanced until a deadline or run to its end, and dropped where nobody wants
-//! it any more. Whoever shows, saves, compares, times or picks uses these alone.
+//! it anymore. Whoever shows, saves, compares, times or picks uses these alone.
 
 mod adapters;
 pub mod cpu;
@@ -20,6 +20,7 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3};
 
 pub use adapters::AdapterFacts;
+pub use cpu::CpuExecutor;
 pub use error::RenderError;
 pub use job::Job;
 pub use line_of_sight::{LineOfSight, SurfacePoint};
@@ -37,6 +38,8 @@ pub struct ExecutorInfo {
     pub adapter: String,
     /// The adapter is a program on the CPU.
     pub is_software: bool,
+    /// Why a GPU that is there is not used instead.
+    pub problem: Option<String>,
 }
 
 /// A device, or the like of one.
@@ -125,15 +128,25 @@ pub struct SetupTimes {
     pub acceleration: std::time::Duration,
 }
 
-/// Opens the best executor, or the best one whose adapter's name contains `adapter`, whatever the letter case; `cpu`
-/// is the one without an adapter.
+/// Names the adapter that is opened where nobody asks for another one, as `--adapter` does.
+pub const ADAPTER: &str = "STRATARAY_ADAPTER";
+
+/// Opens what makes images: where `adapter` is given, or else the variable [`ADAPTER`], the best adapter whose name
+/// contains that, whatever the letter case, `cpu` being the CPU itself; otherwise the best GPU, and where there is none
+/// the CPU.
 ///
 /// # Errors
-/// When there is no (such) adapter, or it lacks a limit.
+/// When there is no such adapter, or it lacks a limit.
 pub fn executor(adapter: Option<&str>) -> Result<Arc<dyn Executor>, RenderError> {
-    match adapter {
-        Some(name) if name.eq_ignore_ascii_case("cpu") => Ok(Arc::new(cpu::CpuExecutor)),
-        adapter => by_adapter(adapter),
+    let variable = std::env::var(ADAPTER).ok().filter(|name| !name.is_empty());
+    match adapter.or(variable.as_deref()) {
+        Some(name) if name.eq_ignore_ascii_case("cpu") => Ok(Arc::new(CpuExecutor::default())),
+        Some(name) => by_name(name),
+        None => Ok(match best_gpu() {
+            Ok(Some(gpu)) => gpu,
+            Ok(None) => Arc::new(CpuExecutor::default()),
+            Err(error) => Arc::new(CpuExecutor::instead_of(&error)),
+        }),
     }
 }
 
@@ -145,18 +158,20 @@ pub fn adapters() -> Vec<AdapterFacts> {
     Vec::new()
 }
 
-#[cfg(feature = "gpu")]
-fn by_adapter(adapter: Option<&str>) -> Result<Arc<dyn Executor>, RenderError> {
-    Ok(Arc::new(gpu::GpuExecutor::new(adapter)?))
+/// The best GPU; `None` where there is none but in software, which the CPU does better by itself.
+fn best_gpu() -> Result<Option<Arc<dyn Executor>>, RenderError> {
+    #[cfg(feature = "gpu")]
+    return Ok(gpu::GpuExecutor::hardware()?.map(|gpu| Arc::new(gpu) as Arc<dyn Executor>));
+    #[cfg(not(feature = "gpu"))]
+    Ok(None)
 }
 
-#[cfg(not(feature = "gpu"))]
-fn by_adapter(adapter: Option<&str>) -> Result<Arc<dyn Executor>, RenderError> {
-    match adapter {
-        None => Ok(Arc::new(cpu::CpuExecutor)),
-        Some(name) => Err(RenderError::NoSuchAdapter {
-            wanted: name.to_owned(),
-            known: "cpu".to_owned(),
-        }),
-    }
+fn by_name(name: &str) -> Result<Arc<dyn Executor>, RenderError> {
+    #[cfg(feature = "gpu")]
+    return Ok(Arc::new(gpu::GpuExecutor::new(Some(name))?));
+    #[cfg(not(feature = "gpu"))]
+    Err(RenderError::NoSuchAdapter {
+        wanted: name.to_owned(),
+        known: "cpu".to_owned(),
+    })
 }

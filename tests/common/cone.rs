@@ -6,7 +6,7 @@ use glam::{DVec2, DVec3};
 use serde_json::{Value, json};
 use strataray::case::Case;
 use strataray::render::gpu::GpuRenderer;
-use strataray::render::gpu::cones::ConeTable;
+use strataray::render::plan::cones::ConeTable;
 use strataray::scene::{CameraSpec, ExplicitCamera, Projection, Scene};
 use strataray::view::lighting::Cone;
 

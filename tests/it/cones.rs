@@ -4,7 +4,7 @@ use crate::common;
 use crate::common::cone::{Model, Traced};
 use glam::DVec3;
 use serde_json::json;
-use strataray::render::gpu::cones::ConeTable;
+use strataray::render::plan::cones::ConeTable;
 
 /// Half floats of transmittances, and the optical depth behind which cones end.
 const HALVES: f64 = 0.0008;

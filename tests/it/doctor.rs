@@ -3,6 +3,7 @@
 use std::process::Command;
 
 use serde_json::Value;
+use strataray::render;
 
 use crate::common;
 
@@ -26,6 +27,11 @@ fn the_default_adapter_is_the_one_that_makes_images() {
     assert_eq!(usable["name"], gpu.info.name.as_str());
     assert_eq!(usable["backend"], gpu.info.backend.to_str());
     assert!(usable["max_array_bytes"].as_u64().unwrap() >= 128 << 20);
+    let taken = render::executor(None).unwrap().info();
+    match facts["default"].as_str() {
+        Some("cpu") => assert!(gpu.is_software() && taken.executor == "cpu"),
+        name => assert!(taken.adapter.starts_with(name.unwrap())),
+    }
 }
 
 #[test]

@@ -22,7 +22,7 @@ use strataray::view::{self, View};
 const STRATEGIES: [StrategyKind; 2] = [StrategyKind::Plts, StrategyKind::Libc];
 
 fn cpu() -> Arc<dyn Executor> {
-    Arc::new(CpuExecutor)
+    Arc::new(CpuExecutor::default())
 }
 
 /// All that there are.

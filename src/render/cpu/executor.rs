@@ -7,8 +7,20 @@ use crate::model::Grid;
 use crate::render::{Executor, ExecutorInfo, RenderError, Renderer};
 
 /// The threads of this process.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct CpuExecutor;
+#[derive(Debug, Clone, Default)]
+pub struct CpuExecutor {
+    /// Why it stands in for a GPU.
+    problem: Option<String>,
+}
+
+impl CpuExecutor {
+    /// In place of a GPU that could not be opened.
+    pub fn instead_of(error: &RenderError) -> Self {
+        Self {
+            problem: Some(error.to_string()),
+        }
+    }
+}
 
 impl Executor for CpuExecutor {
     fn info(&self) -> ExecutorInfo {
@@ -18,6 +30,7 @@ impl Executor for CpuExecutor {
             executor: "cpu",
             adapter: format!("cpu ({threads} thread{plural})"),
             is_software: true,
+            problem: self.problem.clone(),
         }
     }
 

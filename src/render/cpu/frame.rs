@@ -196,6 +196,24 @@ struct Clipped {
 }
 
 impl Ray {
+    /// Samples straight down from a point, so many of them `spacing` apart.
+    pub fn down(from: Vec3A, spacing: f32, count: f32) -> Self {
+        let advance = spacing * Vec3A::Z;
+        Self {
+            base: from,
+            advance,
+            first: 0.0,
+            count,
+            origin: from,
+            direction: Vec3A::Z,
+            enter: 0.0,
+            leave: spacing * count,
+            cut: None,
+            opaque_cut: false,
+            starts_inside: true,
+        }
+    }
+
     /// Place of a sample.
     pub fn sample(&self, n: f32) -> Vec3A {
         self.base + n * self.advance

@@ -340,11 +340,12 @@ impl Walk<'_> {
                 return;
             }
             if is_ghost {
-                let entry = scene.shading.shade_entry(scene.ghost, true);
+                let middle = ray.at(0.5 * (from + to));
+                let entry = scene.shading.shade_entry(scene.ghost, middle, true);
                 sum.absorb(entry, entry.w * (to - from));
             } else {
                 let segment = self.segment(t, uvw);
-                tally.samples += integrate_segment(scene, &segment, sum, from, to);
+                tally.samples += integrate_segment(scene, ray, &segment, sum, [from, to]);
             }
             return;
         }
@@ -358,23 +359,26 @@ impl Walk<'_> {
         if count <= 0.0 {
             return;
         }
-        if is_ghost || scene.grid.interpolation == Interpolation::Cell {
-            let entry = match is_ghost {
-                true => scene.ghost,
-                false => scene
-                    .transfer
-                    .of(scene.grid.cell_value(self.column, self.layer)),
-            };
-            let entry = scene.shading.shade_entry(entry, is_ghost);
+        let even = match (is_ghost, scene.grid.interpolation) {
+            (true, _) => Some(scene.ghost),
+            (false, Interpolation::Vertex) => None,
+            (false, Interpolation::Cell) => {
+                let value = scene.grid.cell_value(self.column, self.layer);
+                Some(scene.transfer.of(value))
+            }
+        };
+        if let Some(entry) = even.filter(|_| !scene.shading.varies(is_ghost)) {
+            let entry = scene.shading.shade_entry(entry, ray.base, is_ghost);
             scene.transfer.accumulate_many(sum, entry, count);
             tally.samples += count as u64;
             return;
         }
-        let segment = self.segment(t, uvw);
+        let segment = even.is_none().then(|| self.segment(t, uvw));
         let mut n = first;
         while n < end && scene.transfer.is_open(sum) {
-            let entry = scene.transfer.of(segment.value(ray.distance(step, n)));
-            let entry = scene.shading.shade_entry(entry, false);
+            let value = |s: &Segment| scene.transfer.of(s.value(ray.distance(step, n)));
+            let entry = even.or(segment.as_ref().map(value)).unwrap_or_default();
+            let entry = scene.shading.shade_entry(entry, ray.sample(n), is_ghost);
             scene.transfer.accumulate(sum, entry);
             n += 1.0;
             tally.samples += 1;
@@ -635,10 +639,10 @@ impl Segment {
 /// and color over its values are differences of integrals. Returns their number.
 fn integrate_segment(
     scene: &Scene<'_>,
+    ray: &Ray,
     segment: &Segment,
     sum: &mut Accumulated,
-    from: f32,
-    to: f32,
+    [from, to]: [f32; 2],
 ) -> u64 {
     let transfer = &scene.transfer;
     let length = to - from;
@@ -659,7 +663,10 @@ fn integrate_segment(
         let value = segment.value(from + length * done / pieces);
         let mean = transfer.mean(before, value);
         let color = Vec3A::from_vec4(mean) / mean.w.max(1e-30);
-        let entry = scene.shading.shade_entry(color.extend(mean.w), false);
+        let middle = ray.at(from + length * (done - 0.5) / pieces);
+        let entry = scene
+            .shading
+            .shade_entry(color.extend(mean.w), middle, false);
         sum.absorb(entry, mean.w * length / pieces);
         before = value;
     }

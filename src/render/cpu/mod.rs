@@ -3,18 +3,28 @@
 
 mod boundary;
 mod cell;
+mod cone_rays;
+mod cones;
 mod edges;
 mod executor;
+mod extinction;
 mod facing;
 mod frame;
 mod grid;
+mod illuminate;
+mod illumination;
+mod kept;
 mod libc;
+mod light;
 mod locate;
 mod picture;
+mod pieces;
 mod plts;
 mod projection;
+mod random;
 mod raster;
 mod renderer;
+mod resample;
 mod scene;
 mod section;
 mod shading;
@@ -23,5 +33,6 @@ mod tally;
 mod thorough;
 mod topology;
 mod transfer;
+mod volume;
 
 pub use executor::CpuExecutor;

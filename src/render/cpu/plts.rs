@@ -39,12 +39,20 @@ pub fn cast(
             (false, Interpolation::Cell) => Some(scene.transfer.of(cell.k0.w)),
             (false, Interpolation::Vertex) => None,
         };
+        let varies = scene.shading.varies(is_ghost);
         let samples = match entry {
-            Some(entry) => {
-                let shaded = scene.shading.shade_entry(entry, is_ghost);
+            Some(entry) if !varies => {
+                let shaded = scene.shading.shade_entry(entry, ray.base, is_ghost);
                 even(scene, ray, &stretch, shaded, layers, sum)
             }
-            None => varied(scene, ray, &stretch, &track, layers, sum),
+            Some(entry) => each(scene, ray, &stretch, layers, sum, |n| {
+                let place = ray.sample(n);
+                scene.shading.shade_entry(entry, place, is_ghost)
+            }),
+            None => each(scene, ray, &stretch, layers, sum, |n| {
+                let entry = scene.transfer.of(track.cell().value(stretch.parameters(n)));
+                scene.shading.shade_entry(entry, ray.sample(n), false)
+            }),
         };
         track.tally.samples += samples as u64;
         n = stretch.first + stretch.more + 1.0;
@@ -76,23 +84,20 @@ fn even(
     done
 }
 
-/// Adds samples by their values; returns how many were needed.
-fn varied(
+/// Adds samples one by one, by their colors and extinctions; returns how many were needed.
+fn each(
     scene: &Scene<'_>,
     ray: &Ray,
     stretch: &Stretch,
-    track: &Track<'_>,
     layers: &mut Layers,
     sum: &mut Accumulated,
+    entry: impl Fn(f32) -> Vec4,
 ) -> f32 {
     let mut done = 0.0;
     while done <= stretch.more && scene.transfer.is_open(sum) {
         let n = stretch.first + done;
         layers.blend_until(sum, ray.distance(scene.frame.numbers.step, n));
-        let entry = scene.transfer.of(track.cell().value(stretch.parameters(n)));
-        scene
-            .transfer
-            .accumulate(sum, scene.shading.shade_entry(entry, false));
+        scene.transfer.accumulate(sum, entry(n));
         done += 1.0;
     }
     done

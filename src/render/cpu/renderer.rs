@@ -8,6 +8,8 @@ use rayon::prelude::*;
 
 use super::frame::Frame as FrameOfRays;
 use super::grid::Grid;
+use super::illumination::{Illumination, Source};
+use super::kept::Kept;
 use super::locate::{Query, locate};
 use super::picture::{Picture, Strategy};
 use super::scene::Scene;
@@ -20,7 +22,7 @@ use crate::render::line_of_sight::{LineOfSight, Sighting, SurfaceTree};
 use crate::render::plan::faces::face_numbers;
 use crate::render::plan::frame::{frame_uniform, ghost};
 use crate::render::revisions::{RevisionCounter, Revisions};
-use crate::render::{DeviceBytes, Frame, LightTimes, Located, RenderError, Renderer, SetupTimes};
+use crate::render::{DeviceBytes, Frame, Located, RenderError, Renderer, SetupTimes};
 use crate::scene::StrategyKind;
 use crate::view::View;
 
@@ -37,34 +39,12 @@ pub struct CpuRenderer {
     /// Those of what the grid shows.
     revisions: Revisions,
     tables: Kept<Tables>,
+    light: Illumination,
     /// Boundary faces of the drawn cells, once a ray needs them.
     boundary: Kept<Vec<u32>>,
     surfaces: Kept<SurfaceFaces>,
     /// Faces of surfaces that were looked at.
     surface_tree: SurfaceTree,
-}
-
-/// Something that is made anew where its revision has counted up.
-struct Kept<T>(Option<(u64, T)>);
-
-impl<T> Default for Kept<T> {
-    fn default() -> Self {
-        Self(None)
-    }
-}
-
-impl<T> Kept<T> {
-    fn update(
-        &mut self,
-        revision: u64,
-        make: impl FnOnce() -> Result<T, RenderError>,
-    ) -> Result<&T, RenderError> {
-        let kept = match self.0.take().filter(|(of, _)| *of == revision) {
-            Some(known) => known,
-            None => (revision, make()?),
-        };
-        Ok(&self.0.insert(kept).1)
-    }
 }
 
 impl CpuRenderer {
@@ -86,6 +66,7 @@ impl CpuRenderer {
             counter: RevisionCounter::default(),
             revisions: Revisions::default(),
             tables: Kept::default(),
+            light: Illumination::default(),
             boundary: Kept::default(),
             surfaces: Kept::default(),
             surface_tree: SurfaceTree::default(),
@@ -98,6 +79,13 @@ impl CpuRenderer {
         self.prepare(view)?;
         let (model, now) = (&self.model, self.revisions);
         let tables = self.tables.update(now.transfer, || Ok(Tables::new(view)))?;
+        let source = Source {
+            grid: &self.grid,
+            revisions: now,
+            view,
+            tables,
+        };
+        self.light.update(&source, &progress).await;
         let boundary = self.boundary.update(now.drawn, || {
             let (grid, drawn) = view.shown.cells.in_grid(model);
             face_numbers(grid, &grid.boundary_faces(drawn))
@@ -110,7 +98,7 @@ impl CpuRenderer {
             grid: &self.grid,
             transfer: Transfer::new(tables, view),
             ghost: Vec4::from(ghost(view)),
-            shading: Shading::of(&view.style.lighting),
+            shading: Shading::new(&view.style.lighting, self.light.light()),
             surfaces: view.style.surfaces,
         };
         let prepare = start.elapsed();
@@ -127,10 +115,11 @@ impl CpuRenderer {
             image,
             stats,
             prepare,
-            light: LightTimes::default(),
+            light: self.light.times,
             bytes: self.grid.bytes()
                 + DeviceBytes {
                     geometry: 4 * lists as u64,
+                    lighting: self.light.bytes(),
                     targets: stats.target_bytes,
                     ..DeviceBytes::default()
                 },
@@ -143,12 +132,6 @@ impl CpuRenderer {
 /// # Errors
 /// When the view asks for what there is not.
 fn supported(view: &View) -> Result<Strategy, RenderError> {
-    let lighting = &view.style.lighting;
-    if lighting.occlusion.is_some() || !lighting.lights.is_empty() {
-        return Err(RenderError::Unsupported {
-            what: "occlusion and lights",
-        });
-    }
     match view.sampling.strategy {
         _ if !view.casts_rays() => Ok(Strategy::Solid),
         StrategyKind::Plts => Ok(Strategy::Plts),

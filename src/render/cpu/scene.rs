@@ -19,7 +19,7 @@ pub struct Scene<'a> {
     /// Color and extinction of inactive cells.
     pub ghost: Vec4,
     /// Light.
-    pub shading: Shading,
+    pub shading: Shading<'a>,
     /// Which surfaces are shown.
     pub surfaces: Surfaces,
 }

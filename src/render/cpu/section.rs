@@ -17,8 +17,9 @@ pub fn section_color(scene: &Scene<'_>, ray: &Ray, tally: &mut Tally) -> Vec4 {
     let Some(cut) = ray.cut.filter(|_| ray.opaque_cut) else {
         return Vec4::ZERO;
     };
+    let point = ray.at(ray.enter);
     let query = Query {
-        point: ray.at(ray.enter),
+        point,
         low_bits: Vec3A::ZERO,
         enough: SECTION_ENOUGH,
     };
@@ -33,7 +34,7 @@ pub fn section_color(scene: &Scene<'_>, ray: &Ray, tally: &mut Tally) -> Vec4 {
     let normal = Vec3A::from_vec4(scene.frame.clip_planes[cut]);
     let own = Vec3A::from_vec4(scene.transfer.of(cell.evaluate(inside).w));
     let lamp = scene.shading.headlight(&scene.frame, normal, ray.direction);
-    let color = scene.shading.shade(lamp * own, false);
+    let color = scene.shading.shade(lamp * own, point, false);
     if !scene.surfaces.cell_edges {
         return color.extend(1.0);
     }

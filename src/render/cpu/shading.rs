@@ -1,41 +1,54 @@
 //! What light makes of a sample's color (`Lighting` in view/lighting.rs says how).
-//! The twin of `shaders/shared/shading.wgsl`, as far as light comes from everywhere.
+//! The twin of `shaders/shared/shading.wgsl`.
 
 use glam::{Vec3A, Vec4};
 
 use super::frame::Frame;
-use crate::view::lighting::Lighting;
+use super::light::{Light, smoothstep};
+use crate::render::plan::layout::LIGHT_OFF;
+use crate::view::lighting::{GRADIENT_FADE, Lighting, SHININESS, SPECULAR};
 use crate::view::surfaces::HEADLIGHT_AMBIENT;
 
 /// How samples are shaded.
-pub struct Shading {
-    ambient: f32,
+pub struct Shading<'a> {
     /// Only inactive cells are shaded.
     exact_colors: bool,
+    /// `None` where nothing is shaded.
+    light: Option<Light<'a>>,
 }
 
-impl Shading {
-    /// That of a view.
-    pub fn of(lighting: &Lighting) -> Self {
-        let is_on = lighting.exact_colors || lighting.blinn_phong;
+impl<'a> Shading<'a> {
+    /// That of a view, whose light is there where something is shaded.
+    pub fn new(lighting: &Lighting, light: Option<Light<'a>>) -> Self {
         Self {
-            ambient: if is_on { lighting.ambient as f32 } else { 1.0 },
             exact_colors: lighting.exact_colors,
+            light,
         }
     }
 
-    /// Color of a sample.
-    pub fn shade(&self, color: Vec3A, is_ghost: bool) -> Vec3A {
-        match self.exact_colors && !is_ghost {
-            true => color,
-            false => self.ambient * color,
+    /// True where the color of a sample depends on where it is.
+    pub fn varies(&self, is_ghost: bool) -> bool {
+        let by_place =
+            |light: &Light<'_>| light.shading.lights || light.shading.occlusion != LIGHT_OFF;
+        self.light.as_ref().is_some_and(by_place) && (is_ghost || !self.exact_colors)
+    }
+
+    /// Color of a sample at a point of grid space relative to the origin.
+    pub fn shade(&self, color: Vec3A, point: Vec3A, is_ghost: bool) -> Vec3A {
+        match &self.light {
+            Some(light) if is_ghost || !self.exact_colors => shaded(light, color, point, is_ghost),
+            _ => color,
         }
     }
 
-    /// Color and extinction of a sample, its color shaded.
-    pub fn shade_entry(&self, entry: Vec4, is_ghost: bool) -> Vec4 {
-        self.shade(Vec3A::from_vec4(entry), is_ghost)
-            .extend(entry.w)
+    /// Color and extinction of a sample, its color shaded where it is seen.
+    pub fn shade_entry(&self, entry: Vec4, point: Vec3A, is_ghost: bool) -> Vec4 {
+        match entry.w > 0.0 {
+            true => self
+                .shade(Vec3A::from_vec4(entry), point, is_ghost)
+                .extend(entry.w),
+            false => entry,
+        }
     }
 
     /// What the lamp beside the viewer leaves of the color of a surface (`Surfaces` in view/surfaces.rs says how), by
@@ -53,6 +66,53 @@ impl Shading {
         let ambient = HEADLIGHT_AMBIENT as f32;
         ambient + (1.0 - ambient) * (lit / world_length(frame, normal)).clamp(0.0, 1.0)
     }
+}
+
+fn shaded(light: &Light<'_>, color: Vec3A, point: Vec3A, is_ghost: bool) -> Vec3A {
+    let (info, modes) = (&light.info, light.shading);
+    let p = light.place(point);
+    let [viewer, lamps @ ..] = light.lamps else {
+        return color;
+    };
+    let mut sum = Vec3A::splat(info.ambient);
+    if modes.occlusion != LIGHT_OFF {
+        let occluded = 1.0 - light.transmittance(modes.occlusion, viewer, p);
+        sum *= 1.0 - info.strength * occluded;
+    }
+    let mut highlight = Vec3A::ZERO;
+    let (normal, counts) = match is_ghost {
+        true => (Vec3A::ZERO, 0.0),
+        false => surface_at(light, p),
+    };
+    for lamp in lamps {
+        let (way, _) = lamp.toward(p);
+        let mut arriving = lamp.arriving(way);
+        if modes.shadows != LIGHT_OFF {
+            arriving *= light.transmittance(modes.shadows, lamp, p);
+        }
+        if counts == 0.0 {
+            sum += arriving;
+            continue;
+        }
+        let half_way = (way + viewer.toward(p).0 + Vec3A::splat(1e-6)).normalize();
+        sum += (1.0 - counts + counts * normal.dot(way).abs()) * arriving;
+        let shine = normal.dot(half_way).abs().powf(SHININESS as f32);
+        highlight += SPECULAR as f32 * counts * shine * arriving;
+    }
+    color * sum + highlight
+}
+
+/// Unit gradient of the field, and how much it counts.
+fn surface_at(light: &Light<'_>, p: Vec3A) -> (Vec3A, f32) {
+    let Some(gradients) = light.gradients else {
+        return (Vec3A::ZERO, 0.0);
+    };
+    let sampled = gradients.sample(p / Vec3A::from(light.info.size));
+    let gradient = Vec3A::from_vec4(sampled) / sampled.w.max(1e-3);
+    let size = gradient.length();
+    let fade = GRADIENT_FADE.map(|v| v as f32);
+    let counts = smoothstep(fade, size * light.info.gradient_scale);
+    (gradient / size.max(1e-9), counts)
 }
 
 /// Cosine between a surface's normal of any length and sense and a ray: both of grid space.

@@ -239,7 +239,7 @@ impl<'a> Painter<'a> {
             false => fault.unwrap_or(Vec3A::ZERO),
         };
         // A sheet carries no number, as ghosts do.
-        let lit = scene.shading.shade(color, !is_hull);
+        let lit = scene.shading.shade(color, here, !is_hull);
         let color = match scene.surfaces.cell_edges {
             true => {
                 let steps = [spot.right, spot.down].map(|step| step.extend(0.0).into());

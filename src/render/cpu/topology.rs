@@ -29,7 +29,8 @@ const MOST_BENT: f32 = 0.2;
 pub struct Track<'a> {
     grid: &'a Grid,
     ray: &'a Ray,
-    boundary: &'a Boundary,
+    /// Where it passes the boundary; `None` where nothing is known of that, and all is searched.
+    boundary: Option<&'a Boundary>,
     /// The cell of the current sample, and where in it that is.
     cell: Cell,
     solution: Solution,
@@ -72,9 +73,17 @@ impl<'a> Track<'a> {
     /// A ray before its first sample.
     pub fn new(grid: &'a Grid, ray: &'a Ray, boundary: &'a Boundary, tally: &'a mut Tally) -> Self {
         Self {
+            boundary: Some(boundary),
+            ..Self::through(grid, ray, tally)
+        }
+    }
+
+    /// A ray of which nothing is known, before its first sample.
+    pub fn through(grid: &'a Grid, ray: &'a Ray, tally: &'a mut Tally) -> Self {
+        Self {
             grid,
             ray,
-            boundary,
+            boundary: None,
             cell: Cell::default(),
             solution: Solution::default(),
             rate: Vec3A::ZERO,
@@ -228,11 +237,13 @@ impl<'a> Track<'a> {
     /// lies in no cell, so do as many samples as are returned, this one included; else 0.
     fn find(&mut self, n: f32, known: f32) -> f32 {
         let point = self.ray.sample(n);
-        let boundary = self.boundary;
+        let before = (self.last.is_some() && self.gap == 0.0).then_some(self.cell);
+        let Some(boundary) = self.boundary else {
+            return self.search(point, before);
+        };
         let passed = boundary.until(n);
         let may_hold = |p: &&Passage| p.far >= n || (p.turn > 0 && p.far >= known);
-        let before = (self.last.is_some() && self.gap == 0.0).then_some(self.cell);
-        let mut in_doubt = self.last.is_some() && self.gap == 0.0 && self.layers_cross();
+        let mut in_doubt = before.is_some() && self.layers_cross();
         if !in_doubt {
             for passage in passed.iter().rev().filter(may_hold).take(MOST_TRIED) {
                 let FacePlace { column, layer, .. } = FacePlace::of(passage.face, self.grid.nk());
@@ -250,6 +261,11 @@ impl<'a> Track<'a> {
         {
             return boundary.next(n).map_or(f32::MAX, |next| next - n);
         }
+        self.search(point, before)
+    }
+
+    /// Searches for the cell of a sample; `before` is that of the one before it. Returns as [`Self::find`].
+    fn search(&mut self, point: Vec3A, before: Option<Cell>) -> f32 {
         let query = Query {
             point,
             low_bits: Vec3A::ZERO,

@@ -25,6 +25,11 @@ impl Tables {
             table: vectors(&table),
         }
     }
+
+    /// Color and extinction at a position, whatever is seen of insides.
+    pub fn at(&self, position: f32) -> Vec4 {
+        between(&self.table, position.clamp(0.0, 1.0))
+    }
 }
 
 /// What rays make of values.

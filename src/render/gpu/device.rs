@@ -57,6 +57,20 @@ impl Gpu {
         Self::open(&adapter, parameters)
     }
 
+    /// Opens the best adapter that is no program on the CPU; `None` where there is none that can be used.
+    ///
+    /// # Errors
+    /// When the driver refuses, or [`PARAMETERS`] has an unknown value.
+    pub fn hardware() -> Result<Option<Self>, RenderError> {
+        let Some(best) = ranked().into_iter().next() else {
+            return Ok(None);
+        };
+        let info = best.get_info();
+        let parameters = parameters_for(&info)?;
+        let is_usable = !is_software(&info) && lacking(&best, parameters).is_none();
+        is_usable.then(|| Self::open(&best, parameters)).transpose()
+    }
+
     /// As [`Gpu::new`], with parameters read in a given way.
     ///
     /// # Errors

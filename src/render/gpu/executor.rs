@@ -19,6 +19,14 @@ impl GpuExecutor {
         Ok(Self(Arc::new(Gpu::new(adapter)?)))
     }
 
+    /// Opens the best adapter that is no program on the CPU; `None` where there is none that can be used.
+    ///
+    /// # Errors
+    /// When the driver refuses.
+    pub fn hardware() -> Result<Option<Self>, RenderError> {
+        Ok(Gpu::hardware()?.map(|gpu| Self(Arc::new(gpu))))
+    }
+
     /// The device.
     pub fn gpu(&self) -> &Arc<Gpu> {
         &self.0
@@ -37,6 +45,7 @@ impl Executor for GpuExecutor {
             executor: "gpu",
             adapter: self.0.describe(),
             is_software: self.0.is_software(),
+            problem: None,
         }
     }
 

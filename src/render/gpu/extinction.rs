@@ -4,39 +4,22 @@
 //! The paper blurs each level from the one below. Here it is blurred from means of the opacities: what a
 //! blur spreads beyond the box is kept nowhere, so that a thin model would all but vanish from upper levels.
 
-use glam::DVec3;
-
 use super::device::Gpu;
 use super::pipeline::{Pipeline, flag};
 use super::slabs::Slabs;
 use super::volume::Volume;
 use crate::render::RenderError;
-use crate::render::plan::layout::{
-    BlurInfo, MAX_CLIP_PLANES, Slab, WORK_GAUSSIAN, WORK_MEAN, WORK_VALUES,
-};
+use crate::render::plan::extinction::{Blur, Line, MOST_LEVELS};
+use crate::render::plan::layout::{Slab, WORK_GAUSSIAN, WORK_MEAN, WORK_VALUES};
 use crate::view::voxels::Shape;
 
 /// What a pyramid is made from.
 #[derive(Clone, Copy)]
-pub struct PyramidSource<'a> {
-    /// Values, in packed voxels; shaders find them in bind group 2.
-    pub values: &'a Volume,
+pub struct PyramidSource {
     /// See [`crate::render::revisions::Revisions::extinction`].
     pub revision: u64,
-    /// Transfer-function position of a value: offset, and factor on the part of the range.
-    pub position: [f32; 2],
-    /// Standard deviation of the finest level in world space.
-    pub sigma: f64,
-    /// Extinction of inactive cells.
-    pub ghost: f32,
-    /// Clip planes in grid space relative to the origin.
-    pub clip_planes: [[f32; 4]; MAX_CLIP_PLANES],
-    /// How many of them count.
-    pub clip_count: u32,
-    /// Box of the volume relative to the origin.
-    pub bounds: [DVec3; 2],
-    /// Its edges in world space.
-    pub extent: DVec3,
+    /// Opacities of values, which shaders find in bind group 2, and their blur.
+    pub blur: Blur,
 }
 
 /// The pyramid, and what it was made from.
@@ -48,7 +31,7 @@ pub struct Pyramid {
 }
 
 impl Pyramid {
-    fn new(gpu: &Gpu, shape: Shape, source: &PyramidSource<'_>, before: Option<Self>) -> Self {
+    fn new(gpu: &Gpu, shape: Shape, source: &PyramidSource, before: Option<Self>) -> Self {
         let volume = match before.filter(|p| p.volume.shape == shape) {
             Some(before) => before.volume,
             None => Volume::new(gpu, shape),
@@ -103,24 +86,12 @@ enum BlurFilter {
     Gaussian(u32),
 }
 
-/// Along which axis a pass blurs, how many voxels there are along it before and after, and how wide the
-/// Gaussian is, in voxels before.
-#[derive(Debug, Clone, Copy)]
-struct Line {
-    axis: u32,
-    counts: [u32; 2],
-    deviation: f64,
-}
-
 /// The shaders of the blur, compiled as they are asked for.
 #[derive(Default)]
 pub struct Blurs(Vec<(Pass, Pipeline)>);
 
 /// Loop iterations that a voxel of a pass costs, about.
 const BLUR_WORK: u64 = 8;
-/// Levels at most: 2^11 voxels along an axis have no more.
-const MOST_LEVELS: u32 = 12;
-
 impl Blurs {
     /// Makes a pyramid in the place of an existing one.
     ///
@@ -131,11 +102,11 @@ impl Blurs {
     pub async fn make(
         &mut self,
         slabs: &mut Slabs<'_>,
-        source: &PyramidSource<'_>,
+        source: &PyramidSource,
         group: &wgpu::BindGroup,
         before: Option<Pyramid>,
     ) -> Result<Pyramid, RenderError> {
-        let size = source.values.shape.size;
+        let size = source.blur.size;
         let shape = Shape::single(size, MOST_LEVELS);
         let made = Pyramid::new(slabs.gpu, shape, source, before);
         let mut below = Volume::new(slabs.gpu, Shape::single(size, 1));
@@ -165,11 +136,11 @@ impl Blurs {
     pub async fn make_sharp(
         &mut self,
         slabs: &mut Slabs<'_>,
-        source: &PyramidSource<'_>,
+        source: &PyramidSource,
         group: &wgpu::BindGroup,
         before: Option<Pyramid>,
     ) -> Result<Pyramid, RenderError> {
-        let shape = Shape::single(source.values.shape.size, 1);
+        let shape = Shape::single(source.blur.size, 1);
         let made = Pyramid::new(slabs.gpu, shape, source, before);
         self.opacities(slabs, source, group, &made.volume).await?;
         Ok(made)
@@ -179,14 +150,14 @@ impl Blurs {
     async fn opacities(
         &mut self,
         slabs: &mut Slabs<'_>,
-        source: &PyramidSource<'_>,
+        source: &PyramidSource,
         group: &wgpu::BindGroup,
         target: &Volume,
     ) -> Result<(), RenderError> {
         let pass = Pass {
             work: PassWork::Values,
             writes_depths: false,
-            clips: source.clip_count > 0,
+            clips: source.blur.clip_count > 0,
         };
         let line = Line {
             axis: 0,
@@ -203,7 +174,7 @@ impl Blurs {
     async fn filtered(
         &mut self,
         slabs: &mut Slabs<'_>,
-        source: &PyramidSource<'_>,
+        source: &PyramidSource,
         group: &wgpu::BindGroup,
         filter: BlurFilter,
         below: &Volume,
@@ -223,7 +194,7 @@ impl Blurs {
                 BlurFilter::Mean => (PassWork::Mean, 0.0),
                 BlurFilter::Gaussian(level) => (
                     PassWork::Gaussian,
-                    source.deviation(axis, before[axis], level),
+                    source.blur.deviation(axis, before[axis], level),
                 ),
             };
             let pass = Pass {
@@ -247,7 +218,7 @@ impl Blurs {
     async fn pass(
         &mut self,
         slabs: &mut Slabs<'_>,
-        source: &PyramidSource<'_>,
+        source: &PyramidSource,
         group: &wgpu::BindGroup,
         pass: Pass,
         line: Line,
@@ -255,7 +226,7 @@ impl Blurs {
         (target, level): (&Volume, u32),
     ) -> Result<(), RenderError> {
         let gpu = slabs.gpu;
-        let info = gpu.uniform("blur", &source.info(line));
+        let info = gpu.uniform("blur", &source.blur.info(line));
         let pipeline = self.pipeline(gpu, pass)?;
         let dispatch = |encoder: &mut wgpu::CommandEncoder, slab: &Slab, voxels: &wgpu::Buffer| {
             let slab_info = gpu.uniform("slab", slab);
@@ -287,38 +258,5 @@ impl Blurs {
             }
         };
         Ok(&self.0[at].1)
-    }
-}
-
-impl PyramidSource<'_> {
-    /// Width of the Gaussian along an axis that makes a level from means over all of the volume's voxels in
-    /// `count` parts, in these parts: variances add up, and a mean has one already.
-    fn deviation(&self, axis: usize, count: u32, level: u32) -> f64 {
-        let voxels = f64::from(self.values.shape.size[axis]);
-        let edge = self.extent[axis] / voxels;
-        let in_a_part = voxels / f64::from(count);
-        let wanted = (self.sigma * f64::from(level).exp2()).powi(2);
-        let had = (in_a_part.powi(2) - 1.0) / 12.0 * edge.powi(2);
-        (wanted - had).max(0.0).sqrt() / (in_a_part * edge)
-    }
-
-    fn info(&self, line: Line) -> BlurInfo {
-        let [low, high] = self.bounds;
-        let size = DVec3::from_array(self.values.shape.size.map(f64::from));
-        BlurInfo {
-            axis: line.axis,
-            source_count: line.counts[0],
-            made_count: line.counts[1],
-            deviation: line.deviation as f32,
-            box_low: low.as_vec3().to_array(),
-            position_low: self.position[0],
-            spacing: ((high - low) / size).as_vec3().to_array(),
-            position_scale: self.position[1],
-            sigma: self.sigma as f32,
-            ghost: self.ghost,
-            clip_count: self.clip_count,
-            reserved: 0,
-            clip_planes: self.clip_planes,
-        }
     }
 }

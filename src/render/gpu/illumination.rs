@@ -6,11 +6,8 @@
 
 use std::time::Instant;
 
-use glam::{DVec3, Vec3};
-
-use super::cones::ConeTable;
 use super::device::Gpu;
-use super::extinction::{Blurs, Pyramid};
+use super::extinction::{Blurs, Pyramid, PyramidSource};
 use super::grid_upload::GpuGrid;
 use super::pipeline::{Pipeline, flag};
 use super::resample::Resampler;
@@ -20,80 +17,12 @@ use super::transfer_tables::TransferTables;
 use super::volume::Volume;
 use crate::render::RenderError;
 use crate::render::job::Progress;
-use crate::render::plan::frame::{clip_planes, ghost};
-use crate::render::plan::layout::{self, Emitter, LightingInfo, Slab};
+use crate::render::plan::extinction::Blur;
+use crate::render::plan::layout::{Emitter, LightingInfo, Slab};
+use crate::render::plan::light::{Emitters, Shading};
 use crate::render::stats::LightTimes;
-use crate::scene::lighting::LightMode;
 use crate::view::View;
-use crate::view::lighting::{Cone, LightSource, Lighting, SPOT_EDGE};
 use crate::view::voxels::{Shape, Voxel};
-
-/// Options of the light that are constants of the strategies' pipelines.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct Shading {
-    occlusion: u32,
-    shadows: u32,
-    lights: bool,
-    blinn_phong: bool,
-    exact_colors: bool,
-}
-
-impl Shading {
-    /// What a view's lighting needs.
-    pub fn of(lighting: &Lighting) -> Self {
-        let lights = !lighting.lights.is_empty();
-        Self {
-            occlusion: lighting
-                .occlusion
-                .map_or(layout::LIGHT_OFF, |o| mode(o.mode)),
-            shadows: if lights {
-                mode(lighting.shadows)
-            } else {
-                layout::LIGHT_OFF
-            },
-            lights,
-            blinn_phong: lighting.blinn_phong,
-            exact_colors: lighting.exact_colors,
-        }
-    }
-
-    /// True where a sample's color depends on where it is.
-    pub fn is_on(self) -> bool {
-        self != Self::default()
-    }
-
-    /// True where samples cast rays over cones.
-    pub fn casts_rays(self) -> bool {
-        [self.occlusion, self.shadows].contains(&layout::LIGHT_RAYS)
-    }
-
-    /// True where cones are traced through the pyramid, at samples or before.
-    pub fn traces_cones(self) -> bool {
-        let modes = [self.occlusion, self.shadows];
-        modes.contains(&layout::LIGHT_IMAGE) || modes.contains(&layout::LIGHT_VOLUME)
-    }
-
-    /// Names and values of the shaders' `override` constants.
-    pub fn pairs(self) -> [(&'static str, f64); 6] {
-        [
-            ("LIT", flag(self.is_on())),
-            ("OCCLUSION", f64::from(self.occlusion)),
-            ("SHADOWS", f64::from(self.shadows)),
-            ("LIGHTS", flag(self.lights)),
-            ("BLINN_PHONG", flag(self.blinn_phong)),
-            ("EXACT_COLORS", flag(self.exact_colors)),
-        ]
-    }
-}
-
-fn mode(mode: LightMode) -> u32 {
-    match mode {
-        LightMode::Off => layout::LIGHT_OFF,
-        LightMode::Image => layout::LIGHT_IMAGE,
-        LightMode::Preilluminated => layout::LIGHT_VOLUME,
-        LightMode::MonteCarlo => layout::LIGHT_RAYS,
-    }
-}
 
 /// How often each part has been made. The numbers never fall, so that what was made from a part that a
 /// canceled update has dropped is stale for good.
@@ -161,17 +90,6 @@ struct Gradients {
     revision: u64,
 }
 
-/// The emitters of a view: the viewer, then the lights.
-struct Emitters {
-    emitters: Vec<Emitter>,
-    sections: Vec<[f32; 4]>,
-    /// Emitter of each light volume.
-    volumes: Vec<usize>,
-    work: u32,
-}
-
-/// Reach of the rays of a cone, and of a section of seven parts, in loop iterations.
-const SECTION_WORK: [u32; 3] = [1, 2, 4];
 /// Loop iterations of the rays over a cone, at most, on an adapter in software: llvmpipe ends a shader with
 /// 65,535 without a word, and eight rays side by side may all do theirs one after the other.
 const MOST_RAY_WORK: f64 = 7_500.0;
@@ -236,7 +154,8 @@ impl Illumination {
         self.blur(gpu, grid, view, tables, progress).await?;
         self.times.extinction = start.elapsed();
         let start = Instant::now();
-        let emitters = emitters(grid, view, gpu.is_software())?;
+        let emitters = Emitters::new(&grid.facts, view);
+        check_rays(gpu, view, &emitters)?;
         self.upload(gpu, grid, view, &emitters)?;
         self.illuminate(gpu, view, tables, &emitters, progress)
             .await?;
@@ -300,16 +219,9 @@ impl Illumination {
         let Some(field) = &self.field else {
             return Ok(());
         };
-        let source = super::extinction::PyramidSource {
-            values: &field.volume,
+        let source = PyramidSource {
             revision: grid.revisions.extinction,
-            position: position(view, field.range),
-            sigma: view.style.lighting.sigma(),
-            ghost: ghost(view)[3],
-            clip_planes: clip_planes(&grid.facts, view),
-            clip_count: view.shown.clip.len() as u32,
-            bounds: grid.facts.bounds,
-            extent: view.style.lighting.extent,
+            blur: Blur::new(&grid.facts, view, field.range),
         };
         let shading = Shading::of(&view.style.lighting);
         let is_stale =
@@ -342,32 +254,9 @@ impl Illumination {
         view: &View,
         emitters: &Emitters,
     ) -> Result<(), RenderError> {
-        let lighting = &view.style.lighting;
-        let space = LightSpace::new(grid, view);
         let range = self.field.as_ref().map_or([0.0, 1.0], |f| f.range);
-        let [position_low, position_scale] = position(view, range);
-        let info = LightingInfo {
-            box_low: space.low.as_vec3().to_array(),
-            sigma: space.sigma as f32,
-            scale: space.scale.as_vec3().to_array(),
-            strength: lighting.occlusion.map_or(0.0, |o| o.strength as f32),
-            size: (lighting.extent / space.sigma).as_vec3().to_array(),
-            ambient: lighting.ambient as f32,
-            light_size: lighting.light_size(),
-            volumes: emitters.volumes.len().max(1) as u32,
-            emitters: emitters.emitters.len() as u32,
-            levels: self.pyramid.as_ref().map_or(1, Pyramid::levels),
-            position_low,
-            position_scale,
-            rays: lighting.rays,
-            seed: lighting.seed,
-            step: Lighting::REFERENCE_STEP as f32,
-            gradient_scale: (view.style.transfer.reference_length / space.sigma) as f32,
-            work: emitters.work,
-            rays_gap: lighting.rays_gap as f32,
-            reserved0: 0,
-            reserved1: 0,
-        };
+        let levels = self.pyramid.as_ref().map_or(1, Pyramid::levels);
+        let info = emitters.info(&grid.facts, view, levels, range);
         self.info = gpu.uniform("lighting", &info);
         self.emitters = gpu.storage("emitters", &emitters.emitters)?;
         self.sections = gpu.storage("cone sections", &emitters.sections)?;
@@ -415,7 +304,7 @@ impl Illumination {
             let from = n as u32 * size[2];
             let which = gpu.uniform("emitter", &[at as u32, from, 0, 0]);
             let mut slabs = Slabs::new(gpu, &mut self.pace, progress);
-            let work = u64::from(cone_work(&emitter));
+            let work = u64::from(emitter.cone_work());
             let range = [from, from + size[2]];
             let illuminate = &self.illuminate;
             let dispatch = |encoder: &mut _, slab: &Slab, voxels: &wgpu::Buffer| {
@@ -579,227 +468,28 @@ fn check_size(gpu: &Gpu, size: [u32; 3]) -> Result<(), RenderError> {
     }
 }
 
-/// Transfer-function position of a value that is stored as a part of `range`: offset and factor.
-fn position(view: &View, range: [f64; 2]) -> [f32; 2] {
-    view.style.transfer.positions(range).map(|v| v as f32)
-}
-
-/// Lighting space: the grid's axes from the low corner of the box, in units of the finest level's standard
-/// deviation in world space.
-struct LightSpace {
-    low: DVec3,
-    scale: DVec3,
-    sigma: f64,
-}
-
-impl LightSpace {
-    fn new(grid: &GpuGrid, view: &View) -> Self {
-        let [low, high] = grid.facts.bounds;
-        let sigma = view.style.lighting.sigma();
-        let edges = (high - low).max(DVec3::splat(1e-6));
-        Self {
-            low,
-            scale: view.style.lighting.extent / edges / sigma,
-            sigma,
-        }
-    }
-
-    fn point(&self, grid: &GpuGrid, view: &View, world: DVec3) -> Vec3 {
-        let point = view.world.spaces.grid_from_world.transform_point3(world) - grid.facts.origin;
-        ((point - self.low) * self.scale).as_vec3()
-    }
-
-    fn direction(&self, view: &View, world: DVec3) -> Vec3 {
-        let direction = view.world.spaces.grid_from_world.matrix3 * world * self.scale;
-        direction.normalize_or(DVec3::Z).as_vec3()
+/// Tells where rays over cones would do too much for an adapter in software.
+fn check_rays(gpu: &Gpu, view: &View, emitters: &Emitters) -> Result<(), RenderError> {
+    let (steps, rays) = (emitters.ray_steps, view.style.lighting.rays);
+    match gpu.is_software() && steps * f64::from(rays) > MOST_RAY_WORK {
+        false => Ok(()),
+        true => Err(RenderError::Device(format!(
+            "lighting.rays: {rays} over cones of {steps:.0} steps are too many for a software adapter; use at most {:.0}, or a smaller volume or length",
+            (MOST_RAY_WORK / steps).floor().max(1.0)
+        ))),
     }
 }
 
-fn emitters(grid: &GpuGrid, view: &View, software: bool) -> Result<Emitters, RenderError> {
-    let lighting = &view.style.lighting;
-    let space = LightSpace::new(grid, view);
-    let mut all = Emitters {
-        emitters: Vec::new(),
-        sections: Vec::new(),
-        volumes: Vec::new(),
-        work: 0,
-    };
-    let occlusion = lighting.occlusion;
-    let off = LightMode::Off;
-    all.add(
-        Emitter::viewer(grid, view, &space),
-        occlusion.map_or(off, |o| o.mode),
-        occlusion.map(|o| o.cone),
-        lighting,
-        &space,
-        software,
-    )?;
-    for light in &lighting.lights {
-        let emitter = Emitter::at(
-            &light.source,
-            light.blended(view.style.blending),
-            grid,
-            view,
-            &space,
-        );
-        all.add(
-            emitter,
-            lighting.shadows,
-            Some(light.cone),
-            lighting,
-            &space,
-            software,
-        )?;
-    }
-    Ok(all)
-}
-
-impl Emitters {
-    fn add(
-        &mut self,
-        emitter: Emitter,
-        mode: LightMode,
-        cone: Option<Cone>,
-        lighting: &Lighting,
-        space: &LightSpace,
-        software: bool,
-    ) -> Result<(), RenderError> {
-        let mut emitter = emitter;
-        if let Some(cone) = cone.filter(|_| mode != LightMode::Off) {
-            let table = ConeTable::of(&cone, space.sigma);
-            emitter.first = self.sections.len() as u32;
-            [emitter.ones, emitter.threes, emitter.sevens] = table.by_parts();
-            emitter.tangent = cone.half_angle.tan() as f32;
-            emitter.cosine = cone.half_angle.cos() as f32;
-            emitter.length = (cone.length / space.sigma) as f32;
-            self.sections.extend(table.sections.iter().map(|s| {
-                [s.distance, f64::from(s.level), s.amplitude, s.weight].map(|v| v as f32)
-            }));
-            match mode {
-                LightMode::Off => {}
-                LightMode::Image => self.work += cone_work(&emitter),
-                LightMode::Preilluminated => {
-                    emitter.volume = self.volumes.len() as u32;
-                    self.volumes.push(self.emitters.len());
-                }
-                LightMode::MonteCarlo => {
-                    let steps = cone.length / space.sigma / Lighting::REFERENCE_STEP;
-                    let work = steps * f64::from(lighting.rays);
-                    if software && work > MOST_RAY_WORK {
-                        return Err(RenderError::Device(format!(
-                            "lighting.rays: {} over cones of {steps:.0} steps are too many for a software adapter; use at most {:.0}, or a smaller volume or length",
-                            lighting.rays,
-                            (MOST_RAY_WORK / steps).floor().max(1.0)
-                        )));
-                    }
-                    self.work += work as u32;
-                }
-            }
-        }
-        self.emitters.push(emitter);
-        Ok(())
-    }
-
-    /// The sections of an emitter.
-    fn of(&self, emitter: usize) -> &[[f32; 4]] {
-        let e = &self.emitters[emitter];
-        let first = e.first as usize;
-        &self.sections[first..first + (e.ones + e.threes + e.sevens) as usize]
-    }
-}
-
-/// Loop iterations of a cone, about.
-fn cone_work(emitter: &Emitter) -> u32 {
-    let counts = [emitter.ones, emitter.threes, emitter.sevens];
-    counts.iter().zip(SECTION_WORK).map(|(n, w)| n * w).sum()
-}
-
-/// Distance from which directional light comes, in the units of its space.
-const FAR: f32 = 1e30;
-
-impl Emitter {
-    /// The viewer: the eye, or what sees along the axis of a parallel camera. Nothing behind the plane of
-    /// that one is in the way; where all of the model is before it, moving it changes nothing.
-    fn viewer(grid: &GpuGrid, view: &View, space: &LightSpace) -> Self {
-        let camera = &view.camera;
-        if camera.parallel.is_none() {
-            let position = camera.eye;
-            return Self::at(
-                &LightSource::Point { position },
-                DVec3::ONE,
-                grid,
-                view,
-                space,
-            );
-        }
-        let toward = -camera.forward;
-        let viewer = Self::at(
-            &LightSource::Directional { toward },
-            DVec3::ONE,
-            grid,
-            view,
-            space,
-        );
-        let cuts = view.world.corners.iter().any(|c| camera.depth(*c) < 0.0);
-        let plane = cuts.then(|| space.point(grid, view, camera.eye).to_array());
-        Self {
-            axis: plane.unwrap_or(viewer.axis),
-            ..viewer
-        }
-    }
-
-    /// What cones to it depend on: color and a spot's own cone are applied to samples.
-    fn for_cones(self) -> Self {
-        let is_directional = self.kind == layout::EMITTER_DIRECTIONAL;
-        Self {
-            first: 0,
-            color: [0.0; 3],
-            axis: if is_directional { self.axis } else { [0.0; 3] },
-            cos_outer: 0.0,
-            cos_inner: 0.0,
-            ..self
-        }
-    }
-
-    fn at(
-        source: &LightSource,
-        color: DVec3,
-        grid: &GpuGrid,
-        view: &View,
-        space: &LightSpace,
-    ) -> Self {
-        let none: Self = bytemuck::Zeroable::zeroed();
-        let color = color.as_vec3().to_array();
-        match *source {
-            LightSource::Directional { toward } => {
-                let toward = space.direction(view, toward);
-                Self {
-                    kind: layout::EMITTER_DIRECTIONAL,
-                    at: toward.to_array(),
-                    axis: (FAR * toward).to_array(),
-                    color,
-                    ..none
-                }
-            }
-            LightSource::Point { position } => Self {
-                kind: layout::EMITTER_POINT,
-                at: space.point(grid, view, position).to_array(),
-                color,
-                ..none
-            },
-            LightSource::Spot {
-                position,
-                axis,
-                opening,
-            } => Self {
-                kind: layout::EMITTER_SPOT,
-                at: space.point(grid, view, position).to_array(),
-                axis: space.direction(view, axis).to_array(),
-                cos_outer: opening.cos() as f32,
-                cos_inner: (opening * (1.0 - SPOT_EDGE)).cos() as f32,
-                color,
-                ..none
-            },
-        }
+impl Shading {
+    /// Names and values of the shaders' `override` constants.
+    pub fn pairs(self) -> [(&'static str, f64); 6] {
+        [
+            ("LIT", flag(self.is_on())),
+            ("OCCLUSION", f64::from(self.occlusion)),
+            ("SHADOWS", f64::from(self.shadows)),
+            ("LIGHTS", flag(self.lights)),
+            ("BLINN_PHONG", flag(self.blinn_phong)),
+            ("EXACT_COLORS", flag(self.exact_colors)),
+        ]
     }
 }

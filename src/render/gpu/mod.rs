@@ -1,7 +1,6 @@
 //! Everything that owns a GPU object: device, shaders, the compact grid, frames and probes.
 
 pub mod bind_groups;
-pub mod cones;
 pub mod device;
 pub mod executor;
 pub mod extinction;

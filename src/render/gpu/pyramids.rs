@@ -3,39 +3,15 @@
 use super::device::Gpu;
 use super::pipeline::Pipeline;
 use crate::render::RenderError;
-use crate::render::plan::layout::{BRICK, BricksInfo, LUT_SIZE, Slab};
-use crate::render::plan::transfer::extinctions;
+use crate::render::plan::bricks::{Classifier, bricks_of_volume, levels, range_maxima, room};
+use crate::render::plan::layout::{BRICK, BricksInfo, Slab};
 
 use super::slabs::Slabs;
 use super::volume::Volume;
-use crate::transfer::TransferFunction;
 use crate::view::voxels::Voxel;
-
-/// Bytes of a part of the pyramid: range, presence, extinction.
-const PART_BYTES: u64 = 16;
-/// Levels of [`range_maxima`].
-const MAXIMA_LEVELS: u32 = LUT_SIZE.ilog2() + 1;
 
 /// Loop iterations that a voxel of an average costs, about: it covers two or three voxels along each axis.
 const AVERAGE_WORK: u64 = 16;
-
-/// What bricks are classified by; each negative for never.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Limits {
-    /// Largest extinction of what is passed at once.
-    pub empty: f64,
-    /// Largest range, as a part of the transfer function's, of what is passed in one step.
-    pub even: f64,
-    /// Largest extinction of what is sampled from the average pyramid.
-    pub thin: f64,
-}
-
-impl Limits {
-    /// True where nothing is ever classified.
-    pub fn are_never(&self) -> bool {
-        self.empty < 0.0 && self.even < 0.0 && self.thin < 0.0
-    }
-}
 
 /// Shaders that make the pyramids.
 pub struct PyramidMaker {
@@ -63,7 +39,7 @@ pub struct Bricks {
 impl Bricks {
     /// Room for the pyramid of a volume of so many voxels.
     pub fn new(gpu: &Gpu, size: [u32; 3]) -> Self {
-        Self::with_room(gpu, size, Self::room(size))
+        Self::with_room(gpu, size, room(size))
     }
 
     /// No pyramid: what shaders are bound to where they do not ask for it.
@@ -72,12 +48,7 @@ impl Bricks {
     }
 
     fn with_room(gpu: &Gpu, size: [u32; 3], [parts, passes, maxima]: [u64; 3]) -> Self {
-        let count = bricks_of(size);
-        let shape = BricksInfo {
-            count,
-            levels: levels(count).count() as u32,
-            ..bytemuck::Zeroable::zeroed()
-        };
+        let shape = bricks_of_volume(size);
         Self {
             info: gpu.uniform("bricks", &shape),
             shape,
@@ -85,22 +56,6 @@ impl Bricks {
             passes: gpu.scratch("passes", passes),
             maxima: gpu.scratch("range maxima", maxima),
         }
-    }
-
-    /// Bytes of the pyramid, of what is kept of each brick, and of the table of maxima.
-    fn room(size: [u32; 3]) -> [u64; 3] {
-        let number = |count: [u32; 3]| count.map(u64::from).iter().product::<u64>();
-        let count = bricks_of(size);
-        [
-            PART_BYTES * levels(count).map(number).sum::<u64>(),
-            4 * number(count),
-            u64::from(4 * MAXIMA_LEVELS * LUT_SIZE),
-        ]
-    }
-
-    /// Bytes that a pyramid of so many voxels takes.
-    pub fn most_bytes(size: [u32; 3]) -> u64 {
-        Self::room(size).iter().sum()
     }
 
     /// Bytes that it takes.
@@ -117,31 +72,6 @@ impl Bricks {
 
 /// Bytes of a buffer that is only there to be bound.
 const UNUSED_BYTES: u64 = 16;
-
-fn bricks_of(size: [u32; 3]) -> [u32; 3] {
-    size.map(|n| n.div_ceil(BRICK))
-}
-
-/// Parts along each axis, level by level, up to the one that is the whole.
-fn levels(bricks: [u32; 3]) -> impl Iterator<Item = [u32; 3]> {
-    std::iter::successors(Some(bricks), |size| {
-        (*size != [1; 3]).then(|| size.map(|n| n.div_ceil(2)))
-    })
-}
-
-/// Largest extinctions of a table: entry n of level l is that of 2^l entries from n on.
-fn range_maxima(transfer: &TransferFunction) -> Vec<f32> {
-    let entries = extinctions(transfer);
-    let wider = |(level, below): &(u32, Vec<f32>)| {
-        let half = 1 << level;
-        let maximum = |n: usize| below[n].max(*below.get(n + half).unwrap_or(&0.0));
-        Some((level + 1, (0..below.len()).map(maximum).collect()))
-    };
-    std::iter::successors(Some((0, entries)), wider)
-        .take(MAXIMA_LEVELS as usize)
-        .flat_map(|(_, level)| level)
-        .collect()
-}
 
 impl PyramidMaker {
     /// Compiles the shaders.
@@ -257,7 +187,7 @@ impl PyramidMaker {
         bricks: &Bricks,
         by: &Classifier<'_>,
     ) -> Result<(), RenderError> {
-        let info = by.info(volume, bricks);
+        let info = by.info(bricks.shape, volume.shape.levels - 1);
         gpu.queue
             .write_buffer(&bricks.info, 0, bytemuck::bytes_of(&info));
         if by.limits.are_never() {
@@ -297,72 +227,4 @@ struct What<'a> {
     volume: &'a wgpu::TextureView,
     voxels: &'a wgpu::Buffer,
     size: [u32; 3],
-}
-
-/// What bricks are classified by.
-#[derive(Debug, Clone, Copy)]
-pub struct Classifier<'a> {
-    /// Value to color and extinction.
-    pub transfer: &'a TransferFunction,
-    /// The values that are stored as 0 and 1.
-    pub range: [f64; 2],
-    /// Values are divided by presence when they are sampled.
-    pub weighted: bool,
-    /// What is special.
-    pub limits: Limits,
-}
-
-impl Classifier<'_> {
-    fn info(&self, volume: &Volume, bricks: &Bricks) -> BricksInfo {
-        let [low, scale] = self.transfer.positions(self.range);
-        let limits = self.limits;
-        BricksInfo {
-            position_low: low as f32,
-            position_scale: scale as f32,
-            empty: limits.empty as f32,
-            even: limits.even as f32,
-            thin: limits.thin as f32,
-            averages: volume.shape.levels - 1,
-            ..bricks.shape
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn range_maxima_are_those_of_every_range() {
-        let transfer = TransferFunction {
-            color: vec![(0.0, [1.0; 3])],
-            opacity: vec![(0.0, 0.3), (0.4, 0.0), (0.7, 0.9), (1.0, 0.1)],
-            range: [0.0, 1.0],
-            scale: crate::transfer::Scale::Linear,
-            bands: None,
-            reference_length: 1.0,
-        };
-        let entries = extinctions(&transfer);
-        let maxima = range_maxima(&transfer);
-        let mut random = fastrand::Rng::with_seed(3);
-        let mut unlike_first = 0;
-        for _ in 0..2000 {
-            let first = random.usize(0..entries.len());
-            let last = random.usize(first..entries.len());
-            let level = (last - first + 1).ilog2() as usize;
-            let at = |n: usize| maxima[level * entries.len() + n];
-            let found = at(first).max(at(last + 1 - (1 << level)));
-            let expected = entries[first..=last].iter().copied().fold(0.0, f32::max);
-            assert_eq!(found, expected, "{first} {last}");
-            unlike_first += usize::from(found != entries[first]);
-        }
-        assert!(unlike_first > 500);
-    }
-
-    #[test]
-    fn levels_end_with_the_whole() {
-        let found: Vec<_> = levels([5, 1, 3]).collect();
-        assert_eq!(found, [[5, 1, 3], [3, 1, 2], [2, 1, 1], [1, 1, 1]]);
-        assert_eq!(levels([1; 3]).count(), 1);
-    }
 }

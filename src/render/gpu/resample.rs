@@ -6,7 +6,8 @@ use super::pipeline::{Pipeline, flag};
 use super::slabs::Slabs;
 use super::volume::Volume;
 use crate::render::RenderError;
-use crate::render::plan::layout::{self, VolumeInfo};
+use crate::render::plan::layout;
+use crate::render::plan::volume::volume_info;
 use crate::scene::Interpolation;
 
 /// Loop iterations that a voxel costs, about: bins, column, Newton's method.
@@ -58,7 +59,7 @@ impl Resampler {
             self.fill = compile(gpu, constants, self.packed)?;
             self.constants = constants;
         }
-        let info = volume_info(grid, volume.shape.size, range, interpolation);
+        let info = volume_info(&grid.facts, volume.shape.size, range, interpolation);
         gpu.queue
             .write_buffer(&volume.info, 0, bytemuck::bytes_of(&info));
         let grid = grid.bind(gpu);
@@ -85,24 +86,4 @@ fn compile(gpu: &Gpu, constants: Constants, packed: bool) -> Result<Pipeline, Re
     let own = [("PACKED", flag(packed))];
     let constants: Vec<_> = own.into_iter().chain(constants.pairs()).collect();
     Pipeline::variant(gpu, "resample", "fill", &constants)
-}
-
-fn volume_info(
-    grid: &GpuGrid,
-    size: [u32; 3],
-    range: [f64; 2],
-    interpolation: Interpolation,
-) -> VolumeInfo {
-    let [from, to] = grid.facts.bounds;
-    VolumeInfo {
-        box_low: from.as_vec3().to_array(),
-        value_low: range[0] as f32,
-        box_extent: (to - from)
-            .max(glam::DVec3::splat(1e-6))
-            .as_vec3()
-            .to_array(),
-        value_scale: layout::per_unit(range),
-        size,
-        interpolation: layout::interpolation(interpolation),
-    }
 }

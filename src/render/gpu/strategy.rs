@@ -3,9 +3,9 @@
 use crate::model::Grid;
 use crate::render::DeviceBytes;
 use crate::render::gpu::faces::FaceList;
-use crate::render::gpu::illumination::Shading;
 use crate::render::gpu::{Gpu, GpuGrid, Round, grid_upload, surfaces};
 use crate::render::job::{Progress, Work};
+use crate::render::plan::light::Shading;
 use crate::view::{Surfaces, View};
 
 /// What a strategy prepares from.

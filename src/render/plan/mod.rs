@@ -1,15 +1,21 @@
 //! What every executor starts from, made without a device: the grid in compact form, the numbers of a frame,
-//! transfer tables, and lists of faces.
+//! transfer tables, lists of faces, and what light and volumes are made of.
 
 mod accel;
+pub mod bricks;
 mod cells;
 pub mod columns;
 mod compact_grid;
+pub mod cones;
+pub mod extinction;
 pub mod faces;
 pub mod frame;
 pub mod layout;
+pub mod light;
+pub mod srg;
 pub mod surfaces;
 pub mod transfer;
+pub mod volume;
 
 pub use cells::{drawn_words, ghost_words, values};
 pub use compact_grid::{CompactGrid, GridFacts};

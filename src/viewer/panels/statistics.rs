@@ -27,7 +27,7 @@ pub fn show(ui: &mut Ui, about: &PanelContext<'_>, _actions: &mut Vec<Action>) {
         ("Preparation", ms(picture.prepare)),
         ("Light", ms(light.field + light.extinction + light.volumes)),
         ("Samples", picture.stats.samples.to_string()),
-        ("On the GPU", format!("{megabytes:.1} MB")),
+        ("On the device", format!("{megabytes:.1} MB")),
         ("Lost rays", picture.stats.lost_rays.to_string()),
         ("Lost samples", picture.stats.lost_samples.to_string()),
     ];

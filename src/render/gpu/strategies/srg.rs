@@ -6,9 +6,8 @@
 //! or drawn cells change. Faults and thin layers are blurred by about a voxel. Pyramids over the volume
 //! shorten the way (volumetric-ray-tracing survey, 8).
 
-use crate::model::Dims;
 use crate::render::gpu::faces::{FaceMode, FaceRaster, FaceTarget};
-use crate::render::gpu::pyramids::{Bricks, Classifier, Limits, PyramidMaker};
+use crate::render::gpu::pyramids::{Bricks, PyramidMaker};
 use crate::render::gpu::resample::Resampler;
 use crate::render::gpu::slabs::Slabs;
 use crate::render::gpu::strategy::{Common, Preparation, RenderStrategy};
@@ -16,11 +15,12 @@ use crate::render::gpu::tiles::Pace;
 use crate::render::gpu::volume::Volume;
 use crate::render::gpu::{Gpu, Pipeline, Place, Round, flag};
 use crate::render::job::Work;
+use crate::render::plan::bricks::{Classifier, Limits};
 use crate::render::plan::layout::RAY_STATE;
+use crate::render::plan::srg::{limits, shape, useful};
 use crate::render::{DeviceBytes, RenderError};
 use crate::scene::SrgSettings;
 use crate::transfer::TransferFunction;
-use crate::view::View;
 use crate::view::voxels::Shape;
 
 /// The strategy with its compiled shaders, and the volume.
@@ -49,68 +49,6 @@ struct Filled {
     bricks: Bricks,
     /// What the bricks are classified for.
     classified: Option<(TransferFunction, Limits, bool)>,
-}
-
-/// The volume of the wanted factor, or the largest one within a budget of bytes; no axis has more voxels
-/// than `limit`.
-fn shape(dims: Dims, settings: &SrgSettings, ghosts: bool, budget: u64, limit: u32) -> Shape {
-    let most = |factor| {
-        let shape = Shape::of(dims, factor, ghosts);
-        Shape {
-            size: shape.size.map(|n| n.min(limit)),
-            ..shape
-        }
-    };
-    let factor = settings.factor.unwrap_or_else(|| {
-        let mut factor = (budget as f64 / dims.cells() as f64).cbrt();
-        // Room for all pyramids is left, used or not, so that switches do not change the resolution.
-        let bytes = |most: Shape| most.bytes() + Bricks::most_bytes(most.size);
-        while bytes(most(factor)) > budget && most(factor).size != [1; 3] {
-            factor *= 0.99;
-        }
-        factor
-    });
-    let most = most(factor);
-    Shape {
-        levels: if settings.thin > 0.0 { most.levels } else { 1 },
-        ..most
-    }
-}
-
-/// The settings, without those that cannot gain: nothing is passed at once where the transfer function
-/// shows every value and next to no cell is hidden, or ghosts fill the gaps. There asking the bricks made
-/// frames in software up to 29 % slower.
-fn useful(view: &View) -> SrgSettings {
-    let is_clear = view
-        .style
-        .transfer
-        .opacity
-        .iter()
-        .any(|point| point.1 == 0.0);
-    let hidden = view
-        .shown
-        .cells
-        .drawn
-        .iter()
-        .filter(|drawn| !**drawn)
-        .count();
-    SrgSettings {
-        skip_empty: view.sampling.srg.skip_empty
-            && view.shown.cells.ghosts.is_none()
-            && (is_clear || 10 * hidden > view.shown.cells.drawn.len()),
-        ..view.sampling.srg
-    }
-}
-
-/// Limits of the bricks' classes at a sampling step.
-fn limits(settings: &SrgSettings, step: f64) -> Limits {
-    let limit = |is_on, value| if is_on { value } else { -1.0 };
-    Limits {
-        empty: limit(settings.skip_empty, 0.0),
-        even: limit(settings.even > 0.0, settings.even),
-        // From a sample's opacity to extinction.
-        thin: limit(settings.thin > 0.0, -(-settings.thin).ln_1p() / step),
-    }
 }
 
 /// Options that are constants of the pipelines.

@@ -1,0 +1,247 @@
+//! Light for the rays, kept from image to image: what is made follows the scene, as on the GPU. A volume of values
+//! follows cells and values; the pyramid follows that, transfer function and clip planes; a light volume follows the
+//! pyramid and its emitter, which for occlusion is the camera (campagnolo-2021, 3.3.3).
+
+use std::time::Instant;
+
+use glam::{Vec3A, Vec4};
+
+use super::cone_rays::ConeRays;
+use super::cones::Cones;
+use super::extinction::{Pyramid, opacities};
+use super::grid::Grid;
+use super::illuminate::{gradients, light_volume};
+use super::kept::Kept;
+use super::light::{Lamp, Light};
+use super::resample::Resampler;
+use super::transfer::Tables;
+use super::volume::Voxels;
+use crate::render::LightTimes;
+use crate::render::job::Progress;
+use crate::render::plan::extinction::Blur;
+use crate::render::plan::layout::{Emitter, LightingInfo};
+use crate::render::plan::light::{Emitters, Shading};
+use crate::render::revisions::Revisions;
+use crate::scene::Interpolation;
+use crate::view::View;
+
+/// Makes light and keeps it up to date.
+#[derive(Default)]
+pub struct Illumination {
+    field: Kept<Field>,
+    /// Opacities of a unit of length without any blur, for rays over cones.
+    opacities: Kept<Voxels<f32>>,
+    pyramid: Kept<Pyramid>,
+    /// One for each emitter whose light is found before the rays.
+    volumes: Vec<LightVolume>,
+    gradients: Kept<Voxels<Vec4>>,
+    lamps: Vec<Lamp>,
+    /// What is shaded, and by which numbers.
+    numbers: Option<(Shading, LightingInfo)>,
+    /// What the last update took.
+    pub times: LightTimes,
+}
+
+/// The volume of values that extinction is made from.
+struct Field {
+    /// Values at both ends of the range that is stored.
+    range: [f64; 2],
+    voxels: Voxels<u16>,
+}
+
+/// Transmittances of the cones to an emitter.
+struct LightVolume {
+    lit: Lit,
+    voxels: Voxels<f32>,
+}
+
+/// What a light volume is made from.
+#[derive(Clone, PartialEq)]
+struct Lit {
+    /// Revision of the pyramid.
+    extinction: u64,
+    size: [u32; 3],
+    emitter: Emitter,
+    sections: Vec<[f32; 4]>,
+}
+
+/// What light is made of.
+pub struct Source<'a> {
+    /// The grid with its values.
+    pub grid: &'a Grid,
+    /// Those of the view.
+    pub revisions: Revisions,
+    /// What is looked at.
+    pub view: &'a View,
+    /// Of the transfer function.
+    pub tables: &'a Tables,
+}
+
+impl Illumination {
+    /// Brings the light of a view up to date.
+    pub async fn update(&mut self, source: &Source<'_>, progress: &Progress) {
+        self.times = LightTimes::default();
+        let lighting = &source.view.style.lighting;
+        let shading = Shading::of(lighting);
+        if !shading.is_on() {
+            *self = Self::default();
+            return;
+        }
+        let start = Instant::now();
+        // Values that are constant in a cell have no gradient.
+        let slopes = shading.blinn_phong && source.grid.interpolation == Interpolation::Vertex;
+        self.fill(source, shading, slopes, progress).await;
+        self.times.field = start.elapsed();
+        let start = Instant::now();
+        self.blur(source, shading, progress).await;
+        self.times.extinction = start.elapsed();
+        let start = Instant::now();
+        let emitters = Emitters::new(&source.grid.compact.facts, source.view);
+        self.lamps = Lamp::all(&emitters);
+        let range = self.field.get().map_or([0.0, 1.0], |f| f.range);
+        let levels = self.pyramid.get().map_or(1, |p| p.0.len() as u32);
+        let facts = &source.grid.compact.facts;
+        let info = emitters.info(facts, source.view, levels, range);
+        self.illuminate(source, &emitters, &info, progress).await;
+        self.slope(source, &info, slopes, progress).await;
+        self.times.volumes = start.elapsed();
+        self.numbers = Some((shading, info));
+    }
+
+    /// Fills the volume of values where it is asked for, and cells, values or sizes have changed.
+    async fn fill(
+        &mut self,
+        source: &Source<'_>,
+        shading: Shading,
+        slopes: bool,
+        progress: &Progress,
+    ) {
+        let size = source.view.style.lighting.size();
+        let is_used = slopes || shading.casts_rays() || shading.traces_cones();
+        let fits = |f: &Field| f.voxels.size == size.map(|n| n as usize);
+        if !is_used || !self.field.get().is_some_and(fits) {
+            self.field.forget();
+        }
+        let revision = source.revisions.values;
+        if !is_used || self.field.is_of(revision) {
+            return;
+        }
+        self.field.forget();
+        let cells = &source.view.shown.cells;
+        let range = cells.value_range().unwrap_or([0.0, 1.0]);
+        let resampler = Resampler::new(source.grid, size, range);
+        let voxels = resampler.packed(progress).await;
+        self.field.keep(revision, Field { range, voxels });
+    }
+
+    /// Makes the pyramid where the values, the transfer function or the clip planes have changed.
+    async fn blur(&mut self, source: &Source<'_>, shading: Shading, progress: &Progress) {
+        let revision = source.revisions.extinction;
+        if !shading.casts_rays() {
+            self.opacities.forget();
+        }
+        if !shading.traces_cones() {
+            self.pyramid.forget();
+        }
+        let wants_rays = shading.casts_rays() && !self.opacities.is_of(revision);
+        let wants_cones = shading.traces_cones() && !self.pyramid.is_of(revision);
+        let Some(field) = self.field.get().filter(|_| wants_rays || wants_cones) else {
+            return;
+        };
+        let blur = Blur::new(&source.grid.compact.facts, source.view, field.range);
+        let made = opacities(&field.voxels, &blur, source.tables, progress).await;
+        if wants_cones {
+            self.pyramid.forget();
+            let pyramid = Pyramid::new(&made, &blur, progress).await;
+            self.pyramid.keep(revision, pyramid);
+        }
+        if wants_rays {
+            self.opacities.keep(revision, made);
+        }
+    }
+
+    /// Makes the light volumes whose emitter or pyramid has changed.
+    async fn illuminate(
+        &mut self,
+        source: &Source<'_>,
+        emitters: &Emitters,
+        info: &LightingInfo,
+        progress: &Progress,
+    ) {
+        self.volumes.truncate(emitters.volumes.len());
+        let Some(pyramid) = self.pyramid.get() else {
+            self.volumes.clear();
+            return;
+        };
+        let size = info.light_size;
+        let cones = Cones::new(pyramid, info);
+        for (n, &at) in emitters.volumes.iter().enumerate() {
+            let lit = Lit {
+                extinction: source.revisions.extinction,
+                size,
+                emitter: emitters.emitters[at].for_cones(),
+                sections: emitters.of(at).to_vec(),
+            };
+            if self.volumes.get(n).is_some_and(|v| v.lit == lit) {
+                continue;
+            }
+            let voxels = light_volume(&cones, &self.lamps[at], size, progress).await;
+            let made = LightVolume { lit, voxels };
+            match self.volumes.get_mut(n) {
+                Some(volume) => *volume = made,
+                None => self.volumes.push(made),
+            }
+        }
+    }
+
+    /// Makes the gradients where highlights need them.
+    async fn slope(
+        &mut self,
+        source: &Source<'_>,
+        info: &LightingInfo,
+        slopes: bool,
+        progress: &Progress,
+    ) {
+        let revision = source.revisions.gradients;
+        let Some(field) = self.field.get().filter(|_| slopes) else {
+            self.gradients.forget();
+            return;
+        };
+        if !self.gradients.is_of(revision) {
+            self.gradients.forget();
+            let made = gradients(&field.voxels, info, progress).await;
+            self.gradients.keep(revision, made);
+        }
+    }
+
+    /// The light as the last update has left it; `None` where nothing is shaded.
+    pub fn light(&self) -> Option<Light<'_>> {
+        let (shading, info) = self.numbers?;
+        let rays = |opacities| ConeRays {
+            opacities,
+            size: Vec3A::from(info.size),
+            rays: info.rays,
+            seed: info.seed,
+            step: info.step,
+            gap: info.rays_gap,
+        };
+        Some(Light {
+            shading,
+            cones: self.pyramid.get().map(|p| Cones::new(p, &info)),
+            rays: self.opacities.get().map(rays),
+            info,
+            lamps: &self.lamps,
+            volumes: self.volumes.iter().map(|v| &v.voxels).collect(),
+            gradients: self.gradients.get(),
+        })
+    }
+
+    /// Bytes of all volumes.
+    pub fn bytes(&self) -> u64 {
+        self.field.get().map_or(0, |f| f.voxels.bytes())
+            + self.opacities.get().map_or(0, Voxels::bytes)
+            + self.pyramid.get().map_or(0, Pyramid::bytes)
+            + self.volumes.iter().map(|v| v.voxels.bytes()).sum::<u64>()
+            + self.gradients.get().map_or(0, Voxels::bytes)
+    }
+}

@@ -1,0 +1,307 @@
+//! Light without a device: where it is found, its space, the viewer and the lights with the sections of their cones.
+
+use glam::{DVec3, Vec3};
+
+use super::compact_grid::GridFacts;
+use super::cones::ConeTable;
+use super::layout::{self, Emitter, LightingInfo};
+use crate::scene::lighting::LightMode;
+use crate::view::View;
+use crate::view::lighting::{Cone, LightSource, Lighting, SPOT_EDGE};
+
+/// How samples are shaded.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Shading {
+    /// Where occlusion is found: one of the `LIGHT` constants.
+    pub occlusion: u32,
+    /// The same of the lights' shadows.
+    pub shadows: u32,
+    /// There are lights.
+    pub lights: bool,
+    /// They make highlights and shade by the gradient.
+    pub blinn_phong: bool,
+    /// Only inactive cells are shaded.
+    pub exact_colors: bool,
+}
+
+impl Shading {
+    /// What a view's lighting needs.
+    pub fn of(lighting: &Lighting) -> Self {
+        let lights = !lighting.lights.is_empty();
+        Self {
+            occlusion: lighting
+                .occlusion
+                .map_or(layout::LIGHT_OFF, |o| mode(o.mode)),
+            shadows: if lights {
+                mode(lighting.shadows)
+            } else {
+                layout::LIGHT_OFF
+            },
+            lights,
+            blinn_phong: lighting.blinn_phong,
+            exact_colors: lighting.exact_colors,
+        }
+    }
+
+    /// True where a sample's color depends on where it is.
+    pub fn is_on(self) -> bool {
+        self != Self::default()
+    }
+
+    /// True where samples cast rays over cones.
+    pub fn casts_rays(self) -> bool {
+        [self.occlusion, self.shadows].contains(&layout::LIGHT_RAYS)
+    }
+
+    /// True where cones are traced through the pyramid, at samples or before.
+    pub fn traces_cones(self) -> bool {
+        let modes = [self.occlusion, self.shadows];
+        modes.contains(&layout::LIGHT_IMAGE) || modes.contains(&layout::LIGHT_VOLUME)
+    }
+}
+
+fn mode(mode: LightMode) -> u32 {
+    match mode {
+        LightMode::Off => layout::LIGHT_OFF,
+        LightMode::Image => layout::LIGHT_IMAGE,
+        LightMode::Preilluminated => layout::LIGHT_VOLUME,
+        LightMode::MonteCarlo => layout::LIGHT_RAYS,
+    }
+}
+
+/// Transfer-function position of a value that is stored as a part of `range`: offset and factor.
+pub fn position(view: &View, range: [f64; 2]) -> [f32; 2] {
+    view.style.transfer.positions(range).map(|v| v as f32)
+}
+
+/// Lighting space: the grid's axes from the low corner of the box, in units of the finest level's standard
+/// deviation in world space.
+struct LightSpace<'a> {
+    grid: &'a GridFacts,
+    view: &'a View,
+    scale: DVec3,
+    sigma: f64,
+}
+
+impl<'a> LightSpace<'a> {
+    fn new(grid: &'a GridFacts, view: &'a View) -> Self {
+        let [low, high] = grid.bounds;
+        let sigma = view.style.lighting.sigma();
+        let edges = (high - low).max(DVec3::splat(1e-6));
+        Self {
+            grid,
+            view,
+            scale: view.style.lighting.extent / edges / sigma,
+            sigma,
+        }
+    }
+
+    fn point(&self, world: DVec3) -> Vec3 {
+        let to_grid = &self.view.world.spaces.grid_from_world;
+        let point = to_grid.transform_point3(world) - self.grid.origin;
+        ((point - self.grid.bounds[0]) * self.scale).as_vec3()
+    }
+
+    fn direction(&self, world: DVec3) -> Vec3 {
+        let direction = self.view.world.spaces.grid_from_world.matrix3 * world * self.scale;
+        direction.normalize_or(DVec3::Z).as_vec3()
+    }
+}
+
+/// The emitters of a view: the viewer, then the lights.
+pub struct Emitters {
+    /// All of them.
+    pub emitters: Vec<Emitter>,
+    /// Sections of their cones: distance from the tip, level of the pyramid, amplitude times attenuation, weight.
+    pub sections: Vec<[f32; 4]>,
+    /// Emitter of each light volume.
+    pub volumes: Vec<usize>,
+    /// Loop iterations that the light of a sample costs, about.
+    pub work: u32,
+    /// Samples of a ray over the longest of the cones over which rays are cast.
+    pub ray_steps: f64,
+}
+
+/// Reach of the rays of a cone, and of a section of seven parts, in loop iterations.
+const SECTION_WORK: [u32; 3] = [1, 2, 4];
+
+impl Emitters {
+    /// Those of a view of a grid.
+    pub fn new(grid: &GridFacts, view: &View) -> Self {
+        let lighting = &view.style.lighting;
+        let space = LightSpace::new(grid, view);
+        let mut all = Self {
+            emitters: Vec::new(),
+            sections: Vec::new(),
+            volumes: Vec::new(),
+            work: 0,
+            ray_steps: 0.0,
+        };
+        let viewer = Emitter::viewer(&space);
+        let occlusion = lighting.occlusion;
+        let mode = occlusion.map_or(LightMode::Off, |o| o.mode);
+        all.add(viewer, mode, occlusion.map(|o| o.cone), &space);
+        for light in &lighting.lights {
+            let color = light.blended(view.style.blending);
+            let emitter = Emitter::at(&light.source, color, &space);
+            all.add(emitter, lighting.shadows, Some(light.cone), &space);
+        }
+        all
+    }
+
+    fn add(
+        &mut self,
+        mut emitter: Emitter,
+        mode: LightMode,
+        cone: Option<Cone>,
+        space: &LightSpace<'_>,
+    ) {
+        if let Some(cone) = cone.filter(|_| mode != LightMode::Off) {
+            let table = ConeTable::of(&cone, space.sigma);
+            emitter.first = self.sections.len() as u32;
+            [emitter.ones, emitter.threes, emitter.sevens] = table.by_parts();
+            emitter.tangent = cone.half_angle.tan() as f32;
+            emitter.cosine = cone.half_angle.cos() as f32;
+            emitter.length = (cone.length / space.sigma) as f32;
+            self.sections.extend(table.sections.iter().map(|s| {
+                [s.distance, f64::from(s.level), s.amplitude, s.weight].map(|v| v as f32)
+            }));
+            match mode {
+                LightMode::Off => {}
+                LightMode::Image => self.work += emitter.cone_work(),
+                LightMode::Preilluminated => {
+                    emitter.volume = self.volumes.len() as u32;
+                    self.volumes.push(self.emitters.len());
+                }
+                LightMode::MonteCarlo => {
+                    let steps = cone.length / space.sigma / Lighting::REFERENCE_STEP;
+                    self.ray_steps = self.ray_steps.max(steps);
+                    self.work += (steps * f64::from(space.view.style.lighting.rays)) as u32;
+                }
+            }
+        }
+        self.emitters.push(emitter);
+    }
+
+    /// The sections of an emitter.
+    pub fn of(&self, emitter: usize) -> &[[f32; 4]] {
+        let e = &self.emitters[emitter];
+        let first = e.first as usize;
+        &self.sections[first..first + (e.ones + e.threes + e.sevens) as usize]
+    }
+
+    /// The numbers of the lighting of a view, whose extinction pyramid has so many levels, and whose volume of values
+    /// has those of `range` as 0 and 1.
+    pub fn info(
+        &self,
+        grid: &GridFacts,
+        view: &View,
+        levels: u32,
+        range: [f64; 2],
+    ) -> LightingInfo {
+        let lighting = &view.style.lighting;
+        let space = LightSpace::new(grid, view);
+        let [position_low, position_scale] = position(view, range);
+        LightingInfo {
+            box_low: grid.bounds[0].as_vec3().to_array(),
+            sigma: space.sigma as f32,
+            scale: space.scale.as_vec3().to_array(),
+            strength: lighting.occlusion.map_or(0.0, |o| o.strength as f32),
+            size: (lighting.extent / space.sigma).as_vec3().to_array(),
+            ambient: lighting.ambient as f32,
+            light_size: lighting.light_size(),
+            volumes: self.volumes.len().max(1) as u32,
+            emitters: self.emitters.len() as u32,
+            levels,
+            position_low,
+            position_scale,
+            rays: lighting.rays,
+            seed: lighting.seed,
+            step: Lighting::REFERENCE_STEP as f32,
+            gradient_scale: (view.style.transfer.reference_length / space.sigma) as f32,
+            work: self.work,
+            rays_gap: lighting.rays_gap as f32,
+            reserved0: 0,
+            reserved1: 0,
+        }
+    }
+}
+
+/// Distance from which directional light comes, in the units of its space.
+const FAR: f32 = 1e30;
+
+impl Emitter {
+    /// The viewer: the eye, or what sees along the axis of a parallel camera. Nothing behind the plane of
+    /// that one is in the way; where all of the model is before it, moving it changes nothing.
+    fn viewer(space: &LightSpace<'_>) -> Self {
+        let camera = &space.view.camera;
+        if camera.parallel.is_none() {
+            let position = camera.eye;
+            return Self::at(&LightSource::Point { position }, DVec3::ONE, space);
+        }
+        let toward = -camera.forward;
+        let viewer = Self::at(&LightSource::Directional { toward }, DVec3::ONE, space);
+        let mut corners = space.view.world.corners.iter();
+        let cuts = corners.any(|c| camera.depth(*c) < 0.0);
+        let plane = cuts.then(|| space.point(camera.eye).to_array());
+        Self {
+            axis: plane.unwrap_or(viewer.axis),
+            ..viewer
+        }
+    }
+
+    /// Loop iterations of its cone, about.
+    pub fn cone_work(&self) -> u32 {
+        let counts = [self.ones, self.threes, self.sevens];
+        counts.iter().zip(SECTION_WORK).map(|(n, w)| n * w).sum()
+    }
+
+    /// What cones to it depend on: color and a spot's own cone are applied to samples.
+    pub fn for_cones(self) -> Self {
+        let is_directional = self.kind == layout::EMITTER_DIRECTIONAL;
+        Self {
+            first: 0,
+            color: [0.0; 3],
+            axis: if is_directional { self.axis } else { [0.0; 3] },
+            cos_outer: 0.0,
+            cos_inner: 0.0,
+            ..self
+        }
+    }
+
+    fn at(source: &LightSource, color: DVec3, space: &LightSpace<'_>) -> Self {
+        let none: Self = bytemuck::Zeroable::zeroed();
+        let color = color.as_vec3().to_array();
+        match *source {
+            LightSource::Directional { toward } => {
+                let toward = space.direction(toward);
+                Self {
+                    kind: layout::EMITTER_DIRECTIONAL,
+                    at: toward.to_array(),
+                    axis: (FAR * toward).to_array(),
+                    color,
+                    ..none
+                }
+            }
+            LightSource::Point { position } => Self {
+                kind: layout::EMITTER_POINT,
+                at: space.point(position).to_array(),
+                color,
+                ..none
+            },
+            LightSource::Spot {
+                position,
+                axis,
+                opening,
+            } => Self {
+                kind: layout::EMITTER_SPOT,
+                at: space.point(position).to_array(),
+                axis: space.direction(axis).to_array(),
+                cos_outer: opening.cos() as f32,
+                cos_inner: (opening * (1.0 - SPOT_EDGE)).cos() as f32,
+                color,
+                ..none
+            },
+        }
+    }
+}
