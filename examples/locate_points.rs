@@ -27,7 +27,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for ([_, _, depth], location) in points.iter().zip(found) {
         match location {
             Some(at) => println!("{depth:9.1}  cell {:?}  PORO {:.3}", at.cell, at.value),
-            None => println!("{depth:9.1}  no cell"),
+            None => println!("{depth:9.1}  no cell with a value"),
         }
     }
     Ok(())

@@ -1,4 +1,4 @@
-//! Prints the mean of a property over time, by active cell.
+//! Prints the mean of a property over the active cells at each step.
 //!
 //! `cargo run --release --example read_values -- samples/scissor/SCISSOR.EGRID SOIL`
 
@@ -14,12 +14,15 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let values = session.values(&property, &number.to_string())?;
         let known = values.active().iter().filter(|v| !v.is_nan());
         let (sum, count) = known.fold((0.0, 0), |(sum, n), v| (sum + f64::from(*v), n + 1));
-        println!(
-            "{}  {:.4} {}",
-            step.date,
-            sum / f64::from(count),
-            values.unit
-        );
+        match count {
+            0 => println!("{}  no values", step.date),
+            _ => println!(
+                "{}  {:.4} {}",
+                step.date,
+                sum / f64::from(count),
+                values.unit
+            ),
+        }
     }
     Ok(())
 }

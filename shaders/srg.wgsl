@@ -12,7 +12,7 @@
 
 // A clip plane has an opaque section.
 override SECTIONS: bool = false;
-// Values are divided by presence, so that they do not fade towards voxels that are absent.
+// Values are divided by presence, so that they do not fade toward voxels that are absent.
 override WEIGHTED: bool = true;
 // Rays ask the bricks how to pass them; else every sample is taken.
 override BY_BRICK: bool = true;

@@ -6,10 +6,10 @@
 //! use strataray::{Session, picture};
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
-//! let mut session = Session::open("REEK.EGRID")?;
+//! let mut session = Session::open("samples/scissor/SCISSOR.EGRID")?;
 //! let scene = session.scene(r#"{"property": "SOIL", "step": "last", "size": [1200, 800]}"#)?;
-//! let image = session.picture(&scene)?;
-//! picture::write_png("soil.png".as_ref(), image.size, &image.pixels)?;
+//! let made = session.picture(&scene)?;
+//! picture::write_png("soil.png".as_ref(), made.size, &made.pixels)?;
 //! # Ok(())
 //! # }
 //! ```
@@ -18,13 +18,13 @@
 //!
 //! | room | what |
 //! | --- | --- |
-//! | [`image`] | pictures as pixels, colors, and how far two pictures are apart |
+//! | [`image`] | images as pixels, colors, and how far two images are apart |
 //! | [`model`] | the corner-point grid: cells, topology, faults, fields; models by formula |
 //! | [`transfer`] | values to color and extinction |
 //! | [`mod@case`] | a model with its properties and steps; from files ([`case::load`]) and into them ([`case::save`]) |
 //! | [`scene`] | what a scene file says |
 //! | [`view`] | a scene resolved against a case: what is shown, from where, and how it looks |
-//! | [`render`] | from a view to an image, on the GPU or the CPU |
+//! | [`render`] | from a view to an image, on the GPU or on the CPU |
 //! | [`mod@reference`] | the same in plain f64 on the CPU: the truth that the others are measured against |
 //! | [`picking`] | what is seen at a place in the image |
 //! | [`picture`] | image files, legends, axes, films |

@@ -106,7 +106,7 @@ pub struct Location {
 }
 
 impl Session {
-    /// Opens a case by any of its files, or by its base name.
+    /// Opens a case by any of its files, by its base name, or by a folder with one EGRID file.
     ///
     /// # Errors
     /// When a file cannot be read.
@@ -127,7 +127,8 @@ impl Session {
         &self.case
     }
 
-    /// The values of a property at a step: a number from 0, a date such as `2001-06-30`, `first` or `last`.
+    /// The values of a property at a step: a number from 0, a date such as `2001-06-30`, `first` or `last`. Those of a
+    /// property that does not change with time are the same at all steps, and `step` is not looked at.
     ///
     /// # Errors
     /// When the case does not have them, or they cannot be read.
@@ -150,7 +151,8 @@ impl Session {
         self.case.field(property, step)
     }
 
-    /// Locates points, and gives the value there; `None` where a point lies in no active cell. Needs no device.
+    /// Locates points, and gives the value there; `None` where a point lies in no active cell, or in one without a
+    /// value. Needs no device. Each call builds a search tree: ask for all points at once.
     ///
     /// **Units**: easting and northing in map coordinates, depth positive down, in the grid's length unit.
     ///

@@ -9,7 +9,7 @@ use crate::error::{At, ErrorKind, ParseError};
 pub enum GridSource {
     /// A binary EGRID file.
     Egrid(PathBuf),
-    /// A text deck with COORD and ZCORN.
+    /// A text deck or grid file: corner-point or block-centered.
     Deck(PathBuf),
 }
 

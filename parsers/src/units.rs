@@ -40,8 +40,8 @@ impl LengthUnit {
         ["METRES", "FEET", "CM"][self as usize]
     }
 
-    /// Its length in metres.
-    pub fn metres(self) -> f64 {
+    /// Its length in meters.
+    pub fn meters(self) -> f64 {
         [1.0, 0.3048, 0.01][self as usize]
     }
 
@@ -110,8 +110,8 @@ impl UnitSystem {
         ][self as usize]
     }
 
-    /// Cubic metres of the unit of pore volumes: RM3, RB or RCC.
-    pub fn pore_volume_in_cubic_metres(self) -> f64 {
+    /// Cubic meters of the unit of pore volumes: RM3, RB or RCC.
+    pub fn pore_volume_in_cubic_meters(self) -> f64 {
         [1.0, 0.158_987_294_928, 1e-6, 1.0][self as usize]
     }
 }

@@ -215,7 +215,7 @@ fn err_faults() {
         &cell("FAULTS\nA 1 1 1 1 1 1 /\n/\n"),
         "TEST.GRDECL:8:1: FAULTS: expected 8 items",
     );
-    err(&cell("FAULTS\nA 2 1 1 1 1 1 X /\n/\n"), "runs backwards");
+    err(&cell("FAULTS\nA 2 1 1 1 1 1 X /\n/\n"), "runs backward");
     err(&cell("FAULTS\nA 0 1 1 1 1 1 X /\n/\n"), "found '0'");
     err(
         &cell("FAULTS\n'A 1 1 1 1 1 1 X /\n/\n"),
@@ -271,7 +271,7 @@ fn ok_reading_stops_before_summary_schedule_and_end() {
     }
 }
 
-/// A grid of 2 x 2 x 2 cells of a metre with `text` behind it.
+/// A grid of 2 x 2 x 2 cells of a meter with `text` behind it.
 fn cube(text: &str) -> String {
     let pillar = |n: usize| format!(" {} {} 0 {} {} 2", n % 3, n / 3, n % 3, n / 3);
     let coord: String = (0..9).map(pillar).collect();

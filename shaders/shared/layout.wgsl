@@ -257,7 +257,7 @@ const COINCIDENT: f32 = 1e-3;
 const BIN_IS_ODD: u32 = 0x80000000u;
 // Voxels along one side of a brick.
 const BRICK: u32 = 8u;
-// Voxels that a thread fills one after the other, downwards.
+// Voxels that a thread fills one after the other, downward.
 const RUN: u32 = 16u;
 // How rays pass a part of a volume.
 const PASS_PLAIN: u32 = 0u;

@@ -31,7 +31,7 @@ pub enum SaveError {
         /// Why.
         cause: io::Error,
     },
-    /// Whoever asked does not want it any more.
+    /// Whoever asked does not want it anymore.
     #[error("writing was canceled")]
     Canceled,
 }

@@ -11,14 +11,14 @@ static WORKING: AtomicBool = AtomicBool::new(false);
 static ASKED: AtomicBool = AtomicBool::new(false);
 
 /// Runs work that looks at [`asked`] often, and then cleans up and ends.
-pub fn cancellable<T>(work: impl FnOnce() -> T) -> T {
+pub fn cancelable<T>(work: impl FnOnce() -> T) -> T {
     WORKING.store(true, Relaxed);
     let result = work();
     WORKING.store(false, Relaxed);
     result
 }
 
-/// True once Ctrl-C was pressed during cancellable work. Pressed again it ends the program at once.
+/// True once Ctrl-C was pressed during cancelable work. Pressed again it ends the program at once.
 pub fn asked() -> bool {
     ASKED.load(Relaxed)
 }

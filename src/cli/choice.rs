@@ -52,9 +52,15 @@ pub const LIGHT_MODES: [NamedChoice<LightMode>; 4] = [
     ),
 ];
 
-pub const STRATEGIES: [NamedChoice<StrategyKind>; 3] = {
-    let [a, b, c] = StrategyKind::ALL;
-    [strategy(a), strategy(b), strategy(c)]
+pub const STRATEGIES: [NamedChoice<StrategyKind>; StrategyKind::ALL.len()] = {
+    let all = StrategyKind::ALL;
+    let mut choices = [strategy(all[0]); StrategyKind::ALL.len()];
+    let mut n = 1;
+    while n < all.len() {
+        choices[n] = strategy(all[n]);
+        n += 1;
+    }
+    choices
 };
 
 const fn strategy(kind: StrategyKind) -> NamedChoice<StrategyKind> {

@@ -56,7 +56,7 @@ impl Reporter {
             bar.set_position((1000.0 * fraction) as u64);
             !cancel::asked()
         };
-        let result = cancel::cancellable(|| work(&progress));
+        let result = cancel::cancelable(|| work(&progress));
         bar.finish_and_clear();
         result
     }

@@ -176,16 +176,24 @@ impl SceneOptions {
 
     /// Opens what makes the images, and says where it is no GPU.
     pub fn open_executor(&self, reporter: &Reporter) -> anyhow::Result<Arc<dyn Executor>> {
-        let executor = render::executor(self.adapter.as_deref())?;
-        let info = executor.info();
-        if info.is_software {
-            reporter.note(&format!(
-                "no GPU is used: {} computes on the CPU",
-                info.adapter
-            ));
-        }
-        Ok(executor)
+        open_executor(self.adapter.as_deref(), reporter)
     }
+}
+
+/// Opens what makes the images, by a part of its adapter's name where one is given, and says where it is no GPU.
+pub fn open_executor(
+    adapter: Option<&str>,
+    reporter: &Reporter,
+) -> anyhow::Result<Arc<dyn Executor>> {
+    let executor = render::executor(adapter)?;
+    let info = executor.info();
+    if info.is_software {
+        reporter.note(&format!(
+            "no GPU is used: {} computes on the CPU",
+            info.adapter
+        ));
+    }
+    Ok(executor)
 }
 
 impl AddedFiles {
@@ -204,7 +212,11 @@ pub fn open_case(path: &Path, reporter: &Reporter) -> anyhow::Result<Case> {
     AddedFiles { with: Vec::new() }.open_case(path, reporter)
 }
 
-fn lighting_preset(name: &str) -> Result<LightingSpec, String> {
+/// The preset of light that has a name.
+///
+/// # Errors
+/// What there is, where none has it.
+pub fn lighting_preset(name: &str) -> Result<LightingSpec, String> {
     let names = || PRESETS.map(|(name, _)| name).join(", ");
     LightingSpec::preset(name).ok_or_else(|| format!("there are {}", names()))
 }

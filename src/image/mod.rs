@@ -1,4 +1,4 @@
-//! Pictures as pixels, the numbers in which their colors are blended, and how far two of them are apart.
+//! Images as pixels, the numbers in which their colors are blended, and how far two of them are apart.
 
 mod blending;
 pub mod color;
@@ -8,7 +8,7 @@ use std::borrow::Cow;
 
 pub use blending::Blending;
 
-/// A picture without background, alpha premultiplied.
+/// An image without background, alpha premultiplied.
 ///
 /// **Shape**: `pixels[y * width + x]`, the top row first.
 #[derive(Debug, Clone, PartialEq)]
@@ -22,7 +22,7 @@ pub struct Image {
 }
 
 impl Image {
-    /// The picture over a background (sRGB, 0..1), blended as the picture is, as 8-bit sRGB.
+    /// The image over a background (sRGB, 0..1), blended as the image is, as 8-bit sRGB.
     pub fn over_background_8bit(&self, background: [f64; 3]) -> Vec<[u8; 3]> {
         let background = self.blending.of_srgb(background);
         let encode = |p: &[f32; 4]| {
@@ -52,7 +52,7 @@ impl Image {
     }
 }
 
-/// A picture in 8-bit sRGB.
+/// An image in 8-bit sRGB.
 ///
 /// **Shape**: `pixels[y * width + x]`, the top row first.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -64,13 +64,13 @@ pub struct Rgb8 {
 }
 
 impl Rgb8 {
-    /// A picture of one color.
+    /// An image of one color.
     pub fn filled(size: [u32; 2], color: [u8; 3]) -> Self {
         let pixels = vec![color; size[0] as usize * size[1] as usize];
         Self { size, pixels }
     }
 
-    /// This picture at most `widest` pixels wide; where it was wider, each pixel is the mean of those
+    /// This image at most `widest` pixels wide; where it was wider, each pixel is the mean of those
     /// that it covers.
     #[must_use]
     pub fn shrunk(&self, widest: u32) -> Self {
@@ -89,7 +89,7 @@ impl Rgb8 {
         }
     }
 
-    /// Copies another picture into this one, its upper left corner at `at`; what would lie outside
+    /// Copies another image into this one, its upper left corner at `at`; what would lie outside
     /// is left out.
     pub fn paste(&mut self, other: &Self, at: [u32; 2]) {
         let [width, other_width] = [self.size[0], other.size[0]].map(|w| w as usize);

@@ -205,7 +205,7 @@ mod tests {
     use super::*;
     use crate::model::{Dims, GridInput};
 
-    /// Two columns of two layers; the second displaced downwards by `throw`.
+    /// Two columns of two layers; the second displaced downward by `throw`.
     fn stack(throw: f64) -> Grid {
         let mut coord = Vec::new();
         for j in 0..2 {

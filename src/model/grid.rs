@@ -8,7 +8,7 @@
 //! ```text
 //! corner numbers of a cell          depth list of a column corner
 //!        4----5    z = depth          touching layers: D0 D1 D2 .. Dnk        (nk+1)
-//!       /|   /|    grows downwards    with gaps:       T0 B0 T1 B1 .. Tnk Bnk (2 nk)
+//!       /|   /|    grows downward    with gaps:       T0 B0 T1 B1 .. Tnk Bnk (2 nk)
 //!      6----7 |
 //!      | 0--|-1    corner = di + 2 dj + 4 dk
 //!      |/   |/     (drawn upside down: 0..3 is the top face)
@@ -245,7 +245,7 @@ impl Grid {
         &self.active_cells
     }
 
-    /// The active cells of a column (`i + ni * j`), downwards.
+    /// The active cells of a column (`i + ni * j`), downward.
     pub fn active_in_column(&self, column: usize) -> impl Iterator<Item = Ijk> + '_ {
         let (i, j) = (column % self.dims.ni, column / self.dims.ni);
         let layers = (0..self.dims.nk).map(move |k| Ijk { i, j, k });

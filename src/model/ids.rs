@@ -68,7 +68,7 @@ pub struct CellIndex(pub u32);
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct ActiveIndex(pub u32);
 
-/// Zero-based position of a cell; k grows downwards.
+/// Zero-based position of a cell; k grows downward.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Ijk {
     /// Along i.

@@ -11,17 +11,17 @@ pub const COINCIDENT: f64 = 1e-3;
 /// A face of a cell, by the neighbor behind it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Face {
-    /// Towards smaller i.
+    /// Toward smaller i.
     IMinus,
-    /// Towards larger i.
+    /// Toward larger i.
     IPlus,
-    /// Towards smaller j.
+    /// Toward smaller j.
     JMinus,
-    /// Towards larger j.
+    /// Toward larger j.
     JPlus,
-    /// Towards smaller k, upwards.
+    /// Toward smaller k, upward.
     KMinus,
-    /// Towards larger k, downwards.
+    /// Toward larger k, downward.
     KPlus,
 }
 

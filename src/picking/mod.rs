@@ -1,7 +1,7 @@
-//! What is seen at a place in the picture, and all that lies before and behind it.
+//! What is seen at a place in the image, and all that lies before and behind it.
 //!
 //! # The rule
-//! The ray through the place takes the same samples as the picture, with the same interpolation, transfer
+//! The ray through the place takes the same samples as the image, with the same interpolation, transfer
 //! function, clip planes and early termination, and meets the same surfaces. Each sample of extinction `tau` and
 //! length `h` adds `t (1 - exp(-tau h))` to the pixel, `t` being the transmittance before it, and each surface
 //! `t` times its opacity. What all of them add, without light, divided by their opacity, is the color of the
@@ -39,7 +39,7 @@ const LEAST_OPACITY: f64 = 0.02;
 /// Part of a pixel that a fault's sheet has to contribute to be read there.
 const LEAST_SHEET: f64 = 0.02;
 
-/// What is seen at a place in the picture.
+/// What is seen at a place in the image.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Pick {
     /// The property whose values are told.
@@ -48,7 +48,7 @@ pub struct Pick {
     pub step: usize,
     /// The drawn cells that the ray through the place meets, nearest first, each once.
     pub cells: Vec<CellOnRay>,
-    /// What is seen; `None` where the picture shows nothing but background there.
+    /// What is seen; `None` where the image shows nothing but background there.
     pub hit: Option<Hit>,
     /// The nearest fault that is seen there, by itself or through the cells.
     pub fault: Option<Fault>,
@@ -158,7 +158,7 @@ impl Pick {
     }
 }
 
-/// What is seen at a place in the picture (0 to 1, right and down) of a view of the case whose grid the renderer has.
+/// What is seen at a place in the image (0 to 1, right and down) of a view of the case whose grid the renderer has.
 ///
 /// # Errors
 /// When the renderer reports an error, or the values cannot be read.

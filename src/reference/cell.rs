@@ -146,7 +146,7 @@ impl CellMap {
                     return Some(str);
                 }
             } else {
-                // Singular, as at the collapsed edge of a wedge: back towards the center.
+                // Singular, as at the collapsed edge of a wedge: back toward the center.
                 str *= 0.9;
                 residual = self.at(str) - target;
             }

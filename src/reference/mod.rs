@@ -1,4 +1,4 @@
-//! The truth that pictures are measured against: the same integral on the CPU, in plain f64.
+//! The truth that images are measured against: the same integral on the CPU, in plain f64.
 //!
 //! Nothing here is shared with the device: cells are found by a tree of boxes and Newton's method,
 //! every sample of the lattice inside the model's box is located anew, and nothing is remembered

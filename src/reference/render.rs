@@ -1,4 +1,4 @@
-//! A whole picture, row by row on all cores.
+//! A whole image, row by row on all cores.
 
 use std::sync::atomic::{AtomicU32, Ordering};
 

@@ -4,7 +4,7 @@
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum RenderError {
-    /// Whoever asked for it does not want it any more.
+    /// Whoever asked for it does not want it anymore.
     #[error("it was canceled")]
     Canceled,
     /// No adapter at all.

@@ -2,7 +2,7 @@
 //!
 //! An [`Executor`] is a device, or the like of one. It makes a [`Renderer`] for a grid, which holds what it needs of
 //! that. An image is a [`Job`]: it is advanced until a deadline or run to its end, and dropped where nobody wants
-//! it any more. Whoever shows, saves, compares, times or picks uses these alone.
+//! it anymore. Whoever shows, saves, compares, times or picks uses these alone.
 
 mod adapters;
 pub mod cpu;

@@ -4,9 +4,9 @@ use std::time::Duration;
 
 use crate::image::Image;
 
-/// A picture and what it cost.
+/// An image and what it cost.
 pub struct Frame {
-    /// The picture.
+    /// The image.
     pub image: Image,
     /// What its rays cost.
     pub stats: FrameStats,
@@ -72,11 +72,11 @@ pub struct FrameStats {
     pub lost_samples: u64,
     /// Rays that have reached their end.
     pub finished_rays: u64,
-    /// Entries into the model of the ray that has most of them.
+    /// LIBC: entries into the model of the ray that has most of them.
     pub peels: u64,
-    /// Rays that lost their way at an edge or vertex and were set right by point location.
+    /// LIBC: rays that lost their way at an edge or vertex and were set right by point location.
     pub recovered_rays: u64,
-    /// Rays that could not be set right.
+    /// LIBC: rays that could not be set right.
     pub lost_rays: u64,
     /// Loop iterations of all rays and surface points, about.
     pub work: u64,
@@ -84,7 +84,7 @@ pub struct FrameStats {
     pub pauses: u64,
     /// Number of submissions.
     pub submissions: u32,
-    /// Bytes of the picture on the device.
+    /// Bytes of the image on the device.
     pub target_bytes: u64,
 }
 
@@ -112,7 +112,7 @@ pub struct DeviceBytes {
     pub resampled: u64,
     /// Light and occlusion volumes.
     pub lighting: u64,
-    /// Pictures.
+    /// Images.
     pub targets: u64,
 }
 

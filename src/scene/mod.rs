@@ -1,4 +1,7 @@
 //! The scene file: what to look at and how, as JSON. Every field has a default.
+//!
+//! Commands, window and `Session::scene` lay the keys of a file over the scene in which the case opens
+//! (`view::look::opening`): there absent keys follow the case. [`Scene::default`] is plain and the same for all.
 
 mod camera;
 mod filter;

@@ -71,13 +71,14 @@ impl Quantity {
             Self::Pressure => Interest::Low,
             Self::Difference => Interest::Ends,
             Self::Region | Self::Depth => Interest::Alike,
-            _ => Interest::High,
+            Self::Oil
+            | Self::Water
+            | Self::Gas
+            | Self::OtherPhase
+            | Self::Wide
+            | Self::Fraction
+            | Self::Other => Interest::High,
         }
-    }
-
-    /// True of the saturation of a phase.
-    pub fn is_saturation(self) -> bool {
-        matches!(self, Self::Oil | Self::Water | Self::Gas | Self::OtherPhase)
     }
 }
 

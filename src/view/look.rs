@@ -75,7 +75,7 @@ pub fn look_of(case: &Case, property: &str) -> Look {
         Quantity::Fraction => percentiles(case, property, "viridis"),
         Quantity::Difference => difference(case, property),
         Quantity::Depth => Look::new(RangeSpec::STEP, "viridis"),
-        Quantity::Other if numbers_regions(case, property) => categories(case, property),
+        Quantity::Other if looks_like_regions(case, property) => categories(case, property),
         Quantity::Other => percentiles(case, property, "turbo"),
     };
     if look.transfer.coloring != Coloring::Categories
@@ -169,8 +169,17 @@ fn percentile_range(case: &Case, property: &str, counts: fn(f32) -> bool) -> Opt
     (low < high).then_some([low, high])
 }
 
+/// True of a property whose values are numbers of regions, by its name or its values.
+pub fn numbers_regions(case: &Case, property: &str) -> bool {
+    match Quantity::of(property) {
+        Quantity::Region => true,
+        Quantity::Other => looks_like_regions(case, property),
+        _ => false,
+    }
+}
+
 /// Region numbers that the list of names does not know: few whole numbers in an array of the files.
-fn numbers_regions(case: &Case, property: &str) -> bool {
+fn looks_like_regions(case: &Case, property: &str) -> bool {
     let of_files = case
         .property(property)
         .is_ok_and(|p| p.kind == Kind::Static);

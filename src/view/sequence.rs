@@ -180,7 +180,7 @@ impl Sequence {
     /// The view number `n` (the last one for any beyond it) of the case that the sequence was made of.
     ///
     /// # Errors
-    /// When the values cannot be read any more.
+    /// When the values cannot be read anymore.
     pub fn view(&self, n: usize, case: &Case) -> Result<View, SceneError> {
         let n = n.min(self.count() - 1);
         Ok(match &self.views {

@@ -134,7 +134,7 @@ pub enum Answer {
     Picked(PickPurpose, Box<Pick>),
     /// How far two pictures are apart.
     Difference(Box<ImageDifference>),
-    /// Nothing is kept of a case any more.
+    /// Nothing is kept of a case anymore.
     Forgotten,
     /// Why there is no picture, in one sentence.
     Failed(String),

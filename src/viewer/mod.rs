@@ -6,7 +6,6 @@
 mod action;
 mod budget;
 mod cases;
-mod command;
 mod dialogs;
 mod document;
 mod drafts;
@@ -27,6 +26,7 @@ mod pictures;
 mod reader;
 mod render_session;
 mod settings;
+mod shell_line;
 mod slices;
 mod spread;
 mod state;

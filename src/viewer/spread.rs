@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use crate::case::{Case, Categories};
 use crate::transfer::kinds::Quantity;
+use crate::view::look;
 
 /// Bars of a histogram.
 pub const BARS: usize = 64;
@@ -57,7 +58,7 @@ fn counts(case: &Case, property: &str, step: usize) -> Option<Counts> {
     // A step without values has no bars, and the range still says where filters may be set.
     let field = case.field(property, step).ok();
     let values = field.as_ref().map_or(&[][..], |f| f.values());
-    if Quantity::of(property) == Quantity::Region
+    if look::numbers_regions(case, property)
         && let Ok(Categories::Values(known)) = case.categories(property)
     {
         return Some(by_category(&known, values)).filter(|_| !known.is_empty());

@@ -39,7 +39,7 @@ const PATIENCE: Duration = Duration::from_secs(600);
 pub fn turn(case: &Arc<Case>, scene: &Scene, moves: usize) -> Result<Vec<Turned>, String> {
     let (wake, woken) = channel();
     let mut pictures = Pictures::new(move || {
-        // Nobody listens any more once the last draft is there.
+        // Nobody listens anymore once the last draft is there.
         let _ = wake.send(());
     });
     let ctx = Context::default();

@@ -71,6 +71,69 @@ fn every_case_has_figures_for_every_strategy() {
 }
 
 #[test]
+fn executors_and_lights_are_timed_in_turn_and_compared() {
+    if common::gpu().is_none() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let run = |more: &[&str]| {
+        let common = [
+            "r7",
+            "box",
+            "--size",
+            "40x30",
+            "--frames",
+            "2",
+            "--strategy",
+            "plts",
+        ];
+        let output = bench(&[&common[..], more].concat(), folder.path());
+        // A case that is not there fails, and the rest goes on.
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert!(
+            !output.status.success() && said.contains("there is no such case"),
+            "{said}"
+        );
+        String::from_utf8(output.stdout).unwrap()
+    };
+    let what = ["--adapters", "cpu,llvmpipe", "--lightings", "off"];
+    run(&[&what[..], &["--json", "a.json"]].concat());
+    let text = std::fs::read_to_string(folder.path().join("a.json")).unwrap();
+    let figures: Value = serde_json::from_str(&text).unwrap();
+    assert_eq!(figures["failures"].as_array().unwrap().len(), 1, "{text}");
+    let strategies = figures["cases"][0]["strategies"].as_array().unwrap();
+    let word = |of: &Value, name: &str| of[name].as_str().unwrap().to_owned();
+    let kinds = strategies
+        .iter()
+        .map(|s| ["executor", "lighting"].map(|name| word(s, name)));
+    let expected = [["cpu", "off"], ["gpu", "off"]];
+    assert_eq!(kinds.collect::<Vec<_>>(), expected);
+    // Both find as much in the cells.
+    let samples: Vec<_> = strategies
+        .iter()
+        .map(|s| s["samples"].as_u64().unwrap())
+        .collect();
+    assert!(
+        samples
+            .iter()
+            .all(|n| *n > 0 && n.abs_diff(samples[0]) <= samples[0] / 500),
+        "{samples:?}"
+    );
+    let table = run(&[
+        "--adapters",
+        "cpu",
+        "--lightings",
+        "off",
+        "--against",
+        "a.json",
+    ]);
+    assert!(
+        table.contains("multiples of the old ones") && table.contains("1.00"),
+        "{table}"
+    );
+}
+
+#[test]
 fn err_a_case_that_is_not_there() {
     if common::gpu().is_none() {
         return;
@@ -78,6 +141,9 @@ fn err_a_case_that_is_not_there() {
     let folder = tempfile::tempdir().unwrap();
     let output = bench(&["r7"], folder.path());
     let said = String::from_utf8(output.stderr).unwrap();
-    assert!(!output.status.success() && output.stdout.is_empty());
+    assert!(
+        !output.status.success() && output.stdout.is_empty(),
+        "{said}"
+    );
     assert!(said.contains("there is no such case"), "{said}");
 }

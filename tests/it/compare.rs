@@ -139,7 +139,7 @@ fn rows(compared: Compared) -> Vec<Row> {
 }
 
 #[test]
-fn a_report_tells_of_failures_and_of_cancelled_views() {
+fn a_report_tells_of_failures_and_of_canceled_views() {
     let Some(gpu) = common::gpu() else { return };
     let case = load::open(&common::sample()).unwrap();
     let plan = plan(&case, ACCURATE, 3);

@@ -20,7 +20,7 @@ fn entries(shader: &str) -> Vec<(String, [u32; 3])> {
 fn every_entry_is_dispatched_by_its_own_workgroup_size() {
     let Some(gpu) = common::gpu() else { return };
     let mut sizes = Vec::new();
-    for shader in ENTRIES {
+    for &shader in ENTRIES {
         for (entry, workgroup) in entries(shader) {
             let pipeline = Pipeline::variant(&gpu, shader, &entry, &[]).unwrap();
             assert_eq!(pipeline.workgroup, workgroup, "{shader}, {entry}");

@@ -191,8 +191,8 @@ fn only_chosen_steps_are_read_and_those_without_values_are_left_out() {
     assert_eq!(*read.lock().unwrap(), BTreeSet::from([3, 4, 5]));
     let none = Sequence::over_steps(&scene("SWAT"), &case, &[4], &|_| true);
     assert!(none.unwrap_err().to_string().contains("at step 4"));
-    let cancelled = Sequence::over_steps(&scene("SWAT"), &case, &[3, 5], &|f| f < 0.4);
-    assert!(cancelled.unwrap().is_none());
+    let canceled = Sequence::over_steps(&scene("SWAT"), &case, &[3, 5], &|f| f < 0.4);
+    assert!(canceled.unwrap().is_none());
 }
 
 /// True where all of the model is in the picture.
@@ -281,7 +281,7 @@ fn a_turn_begins_at_the_scenes_camera_and_goes_around_the_middle() {
         still.camera.forward.z,
     );
     assert!((last.forward - forward).length() < 1e-9);
-    // A full turn ends one view before its beginning; the other way around it is seen backwards.
+    // A full turn ends one view before its beginning; the other way around it is seen backward.
     let full = Sequence::around(&scene, &case, turn(360.0, 4)).unwrap();
     let back = Sequence::around(&scene, &case, turn(-360.0, 4)).unwrap();
     let eye = |s: &Sequence, n| s.view(n, &case).unwrap().camera.eye;

@@ -1,4 +1,4 @@
-//! What light is made anew when, what it takes, and that a cancelled update leaves nothing stale.
+//! What light is made anew when, what it takes, and that a canceled update leaves nothing stale.
 
 use std::cell::Cell;
 
@@ -134,7 +134,7 @@ fn a_change_remakes_what_depends_on_it_alone() {
 }
 
 #[test]
-fn a_cancelled_update_leaves_nothing_stale() {
+fn a_canceled_update_leaves_nothing_stale() {
     let Some(gpu) = common::gpu() else { return };
     let case = load::open(&common::sample()).unwrap();
     let fresh = |layers: [u32; 2]| {
@@ -148,7 +148,7 @@ fn a_cancelled_update_leaves_nothing_stale() {
     let [(first, was), (second, expected)] = [[1, 4], [4, 9]].map(fresh);
     assert_ne!(was, expected);
     let mut renderer = GpuRenderer::new(gpu.clone(), &case.grid).unwrap();
-    let mut cancelled = 0;
+    let mut canceled = 0;
     for calls in 0u32.. {
         render(&mut renderer, &case, &first);
         assert!(volumes(&renderer) == was, "after {calls} calls");
@@ -158,14 +158,14 @@ fn a_cancelled_update_leaves_nothing_stale() {
         let progress = |_| left.replace(left.get().saturating_sub(1)) > 0;
         match renderer.render(&view, &progress) {
             Ok(_) => break,
-            Err(RenderError::Canceled) => cancelled += 1,
+            Err(RenderError::Canceled) => canceled += 1,
             Err(error) => panic!("{error}"),
         }
         render(&mut renderer, &case, &second);
         assert!(volumes(&renderer) == expected, "after {calls} calls");
     }
-    println!("cancelled at {cancelled} places");
-    assert!(cancelled > 5);
+    println!("canceled at {canceled} places");
+    assert!(canceled > 5);
 }
 
 /// A cube of 2 x 2 x 2 cells.

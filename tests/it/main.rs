@@ -22,6 +22,7 @@ mod cone_accuracy;
 mod cones;
 mod dispatch;
 mod doctor;
+mod executors;
 mod extinction;
 mod facts;
 mod films;

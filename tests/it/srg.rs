@@ -244,7 +244,7 @@ impl<'a> Bench<'a> {
         self.grid.revisions = self.revisions.of(view);
     }
 
-    /// Whether it was not cancelled, how often the volume was filled, and how often progress was told.
+    /// Whether it was not canceled, how often the volume was filled, and how often progress was told.
     fn prepare(&mut self, view: &View, go_on: bool) -> (bool, u64, u32) {
         let (fills, calls) = (self.srg.fills(), Cell::new(0));
         let progress = |_| {
@@ -291,7 +291,7 @@ fn the_volume_is_filled_anew_when_it_must_and_only_then() {
     let first = view(&|_| ());
     let mut bench = Bench::new(&gpu, &case);
     bench.show(&first);
-    // Cancelled, filled, kept.
+    // Canceled, filled, kept.
     assert_eq!(bench.prepare(&first, false), (false, 0, 1));
     let (done, fills, calls) = bench.prepare(&first, true);
     assert!(done && fills == 1 && calls > 0, "{fills} {calls}");
@@ -339,7 +339,7 @@ fn the_volume_is_filled_anew_when_it_must_and_only_then() {
         bench.show(&first);
         assert_eq!(bench.prepare(&first, true).1, 1);
     }
-    // What is left of a fill that was cancelled is not used.
+    // What is left of a fill that was canceled is not used.
     let later = view(another[0]);
     bench.show(&later);
     assert_eq!(bench.prepare(&later, false), (false, 0, 1));

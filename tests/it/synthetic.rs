@@ -380,7 +380,7 @@ fn err_command_in_one_sentence() {
 }
 
 #[test]
-fn ok_cancelled_writing_says_so() {
+fn ok_canceled_writing_says_so() {
     let folder = tempfile::tempdir().unwrap();
     let model = build("box", dims(2, 2, 2), 1);
     let result = save::synthetic(model, &target(folder.path()), &|done| done < 0.3);

@@ -64,7 +64,7 @@ fn fault(items: &[Item], at: usize) -> Result<FaultFaces, Mistake> {
 fn range(first: &Item, last: &Item) -> Result<[usize; 2], Mistake> {
     let range = [positive(first)?, positive(last)?];
     if range[0] > range[1] {
-        let message = format!("the range {} to {} runs backwards", range[0], range[1]);
+        let message = format!("the range {} to {} runs backward", range[0], range[1]);
         return Err(Mistake::new(ErrorKind::BadValue, first.at, message));
     }
     Ok(range)

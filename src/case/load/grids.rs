@@ -7,7 +7,7 @@ use strataray_parsers::case::{CaseFiles, GridSource};
 use strataray_parsers::deck::{DeckCells, DeckProperty, FaultFaces as DeckFault, Grdecl};
 use strataray_parsers::egrid::{Egrid, PorosityModel};
 use strataray_parsers::units::{LengthUnit, UnitSystem};
-use strataray_parsers::{At, ParseError, Warnings};
+use strataray_parsers::{At, ErrorKind, ParseError, Warnings};
 
 use super::slots::CellFlags;
 use crate::case::{About, LoadTimes, LocalGrid, NamedFault};
@@ -17,7 +17,12 @@ use crate::model::{
 };
 
 fn model_error(path: &Path, error: &ModelError) -> ParseError {
-    ParseError::new(path, At::File, "", error.to_string())
+    let kind = match error {
+        ModelError::Length { .. } => ErrorKind::WrongCount,
+        ModelError::NotFinite { .. } => ErrorKind::BadValue,
+        ModelError::Dimensions(..) | ModelError::Memory(..) => ErrorKind::TooLarge,
+    };
+    ParseError::of(kind, path, At::File, "", error.to_string())
 }
 
 /// What the files of the grid give.
@@ -71,7 +76,7 @@ impl Loaded {
             true => axes,
             false => axes.in_unit(MapUnit {
                 name: map.name(),
-                length: map.metres() / length.metres(),
+                length: map.meters() / length.meters(),
             }),
         }));
         about.length_unit = length.name().to_owned();

@@ -50,7 +50,7 @@ pub struct CasePaths {
 }
 
 /// The cases that several paths name together: a file without a grid of its own is added to the case before it, or
-/// to the first one; further files of the same case are left away.
+/// to the first one; further files of the same case are left out.
 pub fn group(paths: &[PathBuf]) -> Vec<CasePaths> {
     let case = |path: &PathBuf| CasePaths {
         path: path.clone(),

@@ -38,7 +38,7 @@ pub fn leave_small(
             "MINPV may leave out other cells than the simulator: {doubt}"
         ));
     }
-    let unit = length.metres().powi(3) / units.pore_volume_in_cubic_metres();
+    let unit = length.meters().powi(3) / units.pore_volume_in_cubic_meters();
     let value = |property: Option<&DeckProperty>, cell: usize| property.map(|p| p.values[cell]);
     let volumes = Derived::Volume.field(&loaded.grid);
     let cells = loaded.grid.active_cells().iter().zip(volumes.values());

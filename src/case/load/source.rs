@@ -7,7 +7,7 @@ use strataray_parsers::cells::CellArrays;
 use strataray_parsers::deck::DeckProperty;
 use strataray_parsers::records::{Entry, Kind};
 use strataray_parsers::restart::Step as FileStep;
-use strataray_parsers::{At, ParseError};
+use strataray_parsers::{At, ErrorKind, ParseError};
 
 use super::slots::CellSlots;
 use crate::case::{About, CaseError, Source};
@@ -69,7 +69,13 @@ impl FileSource {
             "has {active} active cells and the grid {}; it belongs to another grid",
             self.cells.count()
         );
-        Err(ParseError::new(path, At::File, "INTEHEAD", message))
+        Err(ParseError::of(
+            ErrorKind::Mismatch,
+            path,
+            At::File,
+            "INTEHEAD",
+            message,
+        ))
     }
 
     fn arrays(&self, name: &str, step: usize) -> Option<&CellArrays> {

@@ -2,14 +2,16 @@
 
 use std::cell::Cell;
 use std::path::Path;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use anyhow::Context;
 use serde::Serialize;
-use strataray::render::{DeviceBytes, Executor, Frame, LightTimes, Renderer};
-use strataray::scene::Scene;
+use strataray::case::Case;
+use strataray::render::{DeviceBytes, Executor, ExecutorInfo, Frame, LightTimes, Renderer};
 use strataray::view::{self, Shown, View};
 
+use super::{Failure, Run};
 use crate::cli::process::{cpu_time, forget_peak, peak_memory};
 use crate::cli::progress::Reporter;
 use crate::cli::scene_options::open_case;
@@ -47,6 +49,11 @@ pub struct CaseTimes {
 #[derive(Serialize)]
 pub struct StrategyTimes {
     pub strategy: &'static str,
+    /// Kind of executor, and its adapter.
+    pub executor: &'static str,
+    pub adapter: String,
+    /// Preset of light; empty where the scene's own is timed.
+    pub lighting: String,
     /// Wall time of the first frame with all that it compiles and prepares.
     pub first_frame_ms: f64,
     /// Of it, what the strategy makes beside the grid.
@@ -58,10 +65,14 @@ pub struct StrategyTimes {
     pub frame_ms: f64,
     pub frame_wall_ms: f64,
     pub frame_cpu_ms: f64,
+    /// Shortest and longest wall time of the timed frames, and CPU time.
+    pub wall_range_ms: [f64; 2],
+    pub cpu_range_ms: [f64; 2],
     pub longest_submission_ms: f64,
     pub samples: u64,
     pub samples_per_second: f64,
     pub newton_iterations_per_sample: f64,
+    pub newton_iterations: u64,
     pub recovered_rays: u64,
     pub lost_rays: u64,
     pub covered_pixels: u64,
@@ -72,58 +83,100 @@ pub struct StrategyTimes {
     pub gpu_bytes: DeviceBytes,
 }
 
-/// Opens a case and renders it by each of the scenes.
-pub fn case(
-    path: &Path,
-    scenes: &[Scene],
-    executor: &dyn Executor,
-    frames: u32,
-    reporter: &Reporter,
-) -> anyhow::Result<CaseTimes> {
-    let peak_of_all = !forget_peak();
-    let (case, open) = timed(|| open_case(path, reporter));
-    let case = case?;
-    let model = case.about.load_times.model;
-    let (_, topology) = timed(|| case.grid.fault_faces());
-    let first = scenes.first().context("there is no strategy to time")?;
-    let (view, read) = timed(|| view::resolve(first, &case));
-    let Shown { property, step, .. } = view?.shown;
-    let (field, property_time) = timed(|| case.field(&property, step));
-    field?;
-    let mut renderer = executor.renderer(&case.grid)?;
-    let setup = renderer.setup_times();
-    let mut strategies = Vec::new();
-    let mut light = None;
-    for scene in scenes {
-        let view = view::resolve(scene, &case)?;
-        let times = strategy(&mut *renderer, &view, frames, reporter);
-        let what = || format!("{} by {}", case.about.name, view.sampling.strategy.name());
-        let (times, light_times) = times.with_context(what)?;
-        strategies.push(times);
-        // The strategies after the first one find it made.
-        light.get_or_insert(light_times);
+/// What is timed, and how.
+pub struct Timer<'a> {
+    pub runs: &'a [Run],
+    pub executors: &'a [Arc<dyn Executor>],
+    pub frames: u32,
+    pub reporter: &'a Reporter,
+}
+
+impl Timer<'_> {
+    /// Opens a case and renders each run by each executor; what fails is in the second part, and the rest goes on.
+    pub fn case(&self, path: &Path) -> anyhow::Result<(CaseTimes, Vec<Failure>)> {
+        let peak_of_all = !forget_peak();
+        let (case, open) = timed(|| open_case(path, self.reporter));
+        let case = case?;
+        let model = case.about.load_times.model;
+        let (_, topology) = timed(|| case.grid.fault_faces());
+        let first = &self.runs.first().context("there is nothing to time")?.scene;
+        let (view, read) = timed(|| view::resolve(first, &case));
+        let Shown { property, step, .. } = view?.shown;
+        let (field, property_time) = timed(|| case.field(&property, step));
+        field?;
+        let mut strategies = Vec::new();
+        let mut failures = Vec::new();
+        let (mut setup, mut light) = (None, LightTimes::default());
+        for executor in self.executors {
+            let mut renderer = executor.renderer(&case.grid)?;
+            setup.get_or_insert(renderer.setup_times());
+            for run in self.runs {
+                match self.run(&case, run, &**executor, &mut *renderer) {
+                    Ok((times, light_times)) => {
+                        strategies.push(times);
+                        // The runs after the first lit one find it made.
+                        if light.field.is_zero() {
+                            light = light_times;
+                        }
+                    }
+                    Err(error) => failures.push(Failure {
+                        case: case.about.name.clone(),
+                        what: run.words(&executor.info()),
+                        error: format!("{error:#}"),
+                    }),
+                }
+            }
+        }
+        let setup = setup.unwrap_or_default();
+        let dims = case.grid.dims();
+        let times = CaseTimes {
+            case: case.about.name.clone(),
+            dims: [dims.ni, dims.nj, dims.nk],
+            active: case.grid.active_cells().len(),
+            property,
+            open_ms: ms(open.saturating_sub(model)),
+            model_ms: ms(model),
+            topology_ms: ms(topology),
+            property_ms: ms(property_time),
+            read_ms: ms(read),
+            upload_ms: ms(setup.upload),
+            acceleration_ms: ms(setup.acceleration),
+            light_field_ms: ms(light.field),
+            light_extinction_ms: ms(light.extinction),
+            light_volumes_ms: ms(light.volumes),
+            peak_memory_bytes: peak_memory(),
+            peak_of_all,
+            strategies,
+        };
+        Ok((times, failures))
     }
-    let light = light.unwrap_or_default();
-    let dims = case.grid.dims();
-    Ok(CaseTimes {
-        case: case.about.name.clone(),
-        dims: [dims.ni, dims.nj, dims.nk],
-        active: case.grid.active_cells().len(),
-        property,
-        open_ms: ms(open.saturating_sub(model)),
-        model_ms: ms(model),
-        topology_ms: ms(topology),
-        property_ms: ms(property_time),
-        read_ms: ms(read),
-        upload_ms: ms(setup.upload),
-        acceleration_ms: ms(setup.acceleration),
-        light_field_ms: ms(light.field),
-        light_extinction_ms: ms(light.extinction),
-        light_volumes_ms: ms(light.volumes),
-        peak_memory_bytes: peak_memory(),
-        peak_of_all,
-        strategies,
-    })
+
+    fn run(
+        &self,
+        case: &Case,
+        run: &Run,
+        executor: &dyn Executor,
+        renderer: &mut dyn Renderer,
+    ) -> anyhow::Result<(StrategyTimes, LightTimes)> {
+        let view = view::resolve(&run.scene, case)?;
+        let (mut times, light) = strategy(renderer, &view, self.frames, self.reporter)?;
+        let info = executor.info();
+        times.executor = info.executor;
+        times.adapter = info.adapter;
+        times.lighting.clone_from(&run.lighting);
+        Ok((times, light))
+    }
+}
+
+impl Run {
+    /// What it times, by an executor.
+    fn words(&self, executor: &ExecutorInfo) -> String {
+        let strategy = self.scene.strategy.name();
+        match self.lighting.as_str() {
+            "" => format!("{strategy} on {}", executor.adapter),
+            lighting => format!("{strategy} with light {lighting} on {}", executor.adapter),
+        }
+    }
 }
 
 fn strategy(
@@ -156,20 +209,28 @@ fn strategy(
     for _ in 0..frames {
         times.push(render()?);
     }
+    let wall_range_ms = range(times.iter().map(|f| f.stats.wall));
+    let cpu_range_ms = range(times.iter().map(|f| f.stats.cpu));
     let median = Frame::median(times).context("no frame was timed")?;
     let stats = &median.stats;
     let samples = stats.samples as f64;
     let times = StrategyTimes {
         strategy: view.sampling.strategy.name(),
+        executor: "",
+        adapter: String::new(),
+        lighting: String::new(),
         first_frame_ms: ms(first_frame),
         prepare_ms: ms(warm_up.prepare),
         longest_wait_ms,
         frame_ms: ms(stats.frame),
         frame_wall_ms: ms(stats.wall),
         frame_cpu_ms: ms(stats.cpu),
+        wall_range_ms,
+        cpu_range_ms,
         longest_submission_ms: ms(stats.longest_submission),
         samples: stats.samples,
         samples_per_second: samples / stats.frame.as_secs_f64(),
+        newton_iterations: stats.newton_iterations,
         newton_iterations_per_sample: stats.newton_iterations as f64 / samples.max(1.0),
         recovered_rays: stats.recovered_rays,
         lost_rays: stats.lost_rays,
@@ -181,6 +242,11 @@ fn strategy(
         gpu_bytes: median.bytes,
     };
     Ok((times, warm_up.light))
+}
+
+/// The shortest and the longest of some times.
+fn range(times: impl Iterator<Item = Duration> + Clone) -> [f64; 2] {
+    [times.clone().min(), times.max()].map(|time| ms(time.unwrap_or_default()))
 }
 
 fn timed<T>(work: impl FnOnce() -> T) -> (T, Duration) {

@@ -11,12 +11,12 @@ pub fn text(bench: &Bench) -> String {
         "{}, {} threads, {width}x{height}, median of {} frames\n\n",
         bench.adapter, bench.threads, bench.frames
     );
-    text += &table(&loading(bench), WORDS);
+    text += &table(&loading(bench), 2);
     text.push('\n');
     text += &table(&frames(bench), WORDS);
     if !bench.turning.is_empty() {
         text += "\nTurning in the window, from a move of the pointer to the draft from there:\n\n";
-        text += &table(&turning::rows(&bench.turning), 1 + WORDS);
+        text += &table(&turning::rows(&bench.turning), 3);
     }
     text
 }
@@ -69,17 +69,21 @@ fn loading(bench: &Bench) -> Vec<Row> {
 fn frames(bench: &Bench) -> Vec<Row> {
     let mut rows = vec![row([
         "case",
+        "adapter",
         "strategy",
+        "light",
         "prepare ms",
         "first ms",
         "frame ms",
         "wall ms",
         "CPU ms",
+        "CPU range",
         "longest wait ms",
         "longest submission ms",
         "Msamples/s",
-        "Newton/sample",
-        "cells/entry",
+        "locations/pixel",
+        "cells/pixel",
+        "Newton/cell",
         "lost rays",
         "lost samples",
         "geometry B/cell",
@@ -90,21 +94,29 @@ fn frames(bench: &Bench) -> Vec<Row> {
     ])];
     for case in &bench.cases {
         for s in &case.strategies {
-            let mut cells = vec![case.case.clone(), s.strategy.to_owned()];
+            let lighting = match s.lighting.as_str() {
+                "" => "-",
+                name => name,
+            };
+            let words = [&case.case, short(&s.adapter), s.strategy, lighting];
+            let mut cells: Vec<String> = words.map(str::to_owned).to_vec();
             let times = [
                 s.prepare_ms,
                 s.first_frame_ms,
                 s.frame_ms,
                 s.frame_wall_ms,
                 s.frame_cpu_ms,
-                s.longest_wait_ms,
-                s.longest_submission_ms,
             ];
             cells.extend(times.map(|ms| format!("{ms:.1}")));
+            let [low, high] = s.cpu_range_ms;
+            cells.push(format!("{low:.0}-{high:.0}"));
+            let waits = [s.longest_wait_ms, s.longest_submission_ms];
+            cells.extend(waits.map(|ms| format!("{ms:.1}")));
             cells.push(format!("{:.2}", 1e-6 * s.samples_per_second));
-            cells.push(format!("{:.2}", s.newton_iterations_per_sample));
-            let per_entry = s.cell_crossings as f64 / s.entries.max(1) as f64;
-            cells.push(format!("{per_entry:.1}"));
+            let ratio = |part: u64, whole: u64| format!("{:.2}", part as f64 / whole.max(1) as f64);
+            cells.push(ratio(s.point_locations, s.covered_pixels));
+            cells.push(ratio(s.cell_crossings, s.covered_pixels));
+            cells.push(ratio(s.newton_iterations, s.cell_crossings));
             cells.push(s.lost_rays.to_string());
             cells.push(s.lost_samples.to_string());
             let bytes = &s.gpu_bytes;
@@ -123,5 +135,10 @@ fn frames(bench: &Bench) -> Vec<Row> {
     rows
 }
 
-/// Leading columns that hold words, not numbers.
-const WORDS: usize = 2;
+/// Name of an adapter without what is in brackets.
+fn short(adapter: &str) -> &str {
+    adapter.split(" (").next().unwrap_or(adapter)
+}
+
+/// Leading columns of the frames that hold words, not numbers.
+const WORDS: usize = 4;

@@ -61,7 +61,7 @@ fn thick_cells(structure: &Structure, zcorn: &[f32]) -> Vec<i32> {
     actnum
 }
 
-/// All columns from the heart of the field outwards, those in a hole last.
+/// All columns from the heart of the field outward, those in a hole last.
 fn by_score(structure: &Structure, random: &mut fastrand::Rng) -> Vec<usize> {
     let extent = structure.extent();
     let noise = Noise::new(random);

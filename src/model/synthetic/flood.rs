@@ -23,7 +23,7 @@ const COVERED: f64 = 0.5;
 const RISE: f64 = 0.12;
 /// Distance from a well at which half of its pressure is lost.
 const HALF_PRESSURE: f64 = 0.06;
-/// Pressure at the oil-water contact in bar, and its growth a metre of depth.
+/// Pressure at the oil-water contact in bar, and its growth a meter of depth.
 const CONTACT_PRESSURE: f64 = 240.0;
 const GRADIENT: f64 = 0.08;
 /// Oil that water leaves behind, and gas beside water and oil.
@@ -148,7 +148,7 @@ impl Flood {
         aquifer.max(connate + (1.0 - RESIDUAL_OIL - connate) * rise)
     }
 
-    /// Gas: a cap that grows downwards, without the place that water takes.
+    /// Gas: a cap that grows downward, without the place that water takes.
     fn gas(&self, rock: &Rock, time: f64) -> f64 {
         let contact = self.gas_oil + 0.08 * self.relief * time;
         let above = (contact - f64::from(rock.depth)) / (0.02 * self.relief);

@@ -150,7 +150,7 @@ pub struct Synthetic {
 
 /// The arrays of a grid.
 ///
-/// **Shape**: as in [`super::GridInput`]. **Units**: metres.
+/// **Shape**: as in [`super::GridInput`]. **Units**: meters.
 #[derive(Debug)]
 pub struct Geometry {
     /// Cells along each axis.

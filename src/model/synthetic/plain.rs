@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use super::{Fields, Geometry};
 use crate::model::{CellIndex, Dims};
 
-/// Edges of a cell in metres, and the depth of the top.
+/// Edges of a cell in meters, and the depth of the top.
 const EDGES: [f32; 3] = [100.0, 100.0, 10.0];
 const TOP: f32 = 2000.0;
 

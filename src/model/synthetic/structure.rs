@@ -10,7 +10,7 @@ use super::Shape;
 use super::noise::Noise;
 use crate::model::Dims;
 
-/// Lateral edge of a cell in metres.
+/// Lateral edge of a cell in meters.
 const EDGE: f64 = 75.0;
 /// Depth of the top where the surface is neither raised nor dipping.
 const TOP: f64 = 2200.0;
@@ -23,7 +23,7 @@ const REACH: f64 = 0.35;
 const LEAN_REACH: f64 = 0.15;
 /// How far from the crest gaps between layers are open, in parts of the longer side.
 const GAP_REACH: f64 = 0.25;
-/// Steepest lean of a pillar: horizontal metres a metre of depth.
+/// Steepest lean of a pillar: horizontal meters a meter of depth.
 const STEEPEST: f64 = 0.3;
 
 /// A fault: a bent trace in plan and the throw along it.
@@ -33,7 +33,7 @@ pub(super) struct Fault {
     along: DVec2,
     bend: f64,
     half_length: f64,
-    /// Largest throw in metres.
+    /// Largest throw in meters.
     throw: f64,
     /// The throw changes its sign at the center.
     scissor: bool,
@@ -73,7 +73,7 @@ struct Layer {
     mean: f64,
     bias: f64,
     weights: [f64; SHAPES],
-    /// Most metres below it that belong to no layer.
+    /// Most meters below it that belong to no layer.
     gap: f64,
 }
 
@@ -230,7 +230,7 @@ impl Structure {
         pillars.map(pillar).flatten_iter().collect()
     }
 
-    /// Lean of a pillar as a part of the steepest: towards the lower block near a fault.
+    /// Lean of a pillar as a part of the steepest: toward the lower block near a fault.
     fn lean(&self, p: DVec2) -> DVec2 {
         let mut lean = DVec2::new(0.2, 0.1);
         for fault in &self.faults {

@@ -18,7 +18,7 @@ impl Apng {
         encoder.set_color(png::ColorType::Rgb);
         encoder.set_depth(png::BitDepth::Eight);
         encoder.set_compression(png::Compression::Balanced);
-        // No number of plays: it goes on for ever.
+        // No number of plays: it goes on forever.
         encoder.set_animated(shape.pictures, 0)?;
         Ok(Self(encoder.write_header()?))
     }

@@ -16,8 +16,6 @@ pub struct Passage {
     pub near: f32,
     /// Samples from here on do.
     pub far: f32,
-    /// Where the ray meets the face's triangles.
-    pub at: f32,
     /// +1 where the ray comes into the cell of the face, -1 where it leaves, 0 where it does both or neither.
     pub turn: i32,
 }
@@ -40,7 +38,6 @@ impl Boundary {
             face: m.face,
             near: sample(m.span[0]) - MARGIN,
             far: sample(m.span[1]) + MARGIN,
-            at: m.point.map_or(0.0, |(depth, _)| sample(depth)),
             turn: m.point.map_or(0, |(_, turn)| turn),
         });
         self.passages.clear();
@@ -71,9 +68,60 @@ impl Boundary {
         !self.until(n).is_empty() && self.passages.iter().any(|p| p.far >= n)
     }
 
-    /// How many cells a sample seems to be in.
+    /// How many cells a sample is in, given that those have been asked whose faces are so near that they may begin or
+    /// end there, and that it is in none of them.
     pub fn depth(&self, n: f32) -> i32 {
-        let passed = self.until(n).iter().filter(|p| p.at <= n);
-        self.before + passed.map(|p| p.turn).sum::<i32>()
+        let turns = self.until(n).iter().map(|p| match p.far < n {
+            true => p.turn,
+            false => p.turn.min(0),
+        });
+        self.before + turns.sum::<i32>()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// From 10 to 20 in one cell, whose far face is bent, then from 19 or 20 to 30 in another one.
+    fn boundary() -> Boundary {
+        let passages = [
+            (10.0, 10.0, 1),
+            (18.0, 20.0, -1),
+            (19.0, 20.0, 1),
+            (30.0, 30.0, -1),
+        ];
+        let passage = |(near, far, turn)| Passage {
+            face: 0,
+            near,
+            far,
+            turn,
+        };
+        Boundary {
+            passages: passages.map(passage).into(),
+            before: 0,
+        }
+    }
+
+    #[test]
+    fn samples_outside_are_passed_at_once_and_bent_faces_one_by_one() {
+        let boundary = boundary();
+        for (n, next) in [(3.0, Some(10.0)), (10.0, Some(11.0)), (18.0, Some(19.0))] {
+            assert_eq!(boundary.next(n), next, "{n}");
+        }
+        assert_eq!(boundary.next(31.0), None);
+        assert!(boundary.surrounds(15.0) && !boundary.surrounds(5.0) && !boundary.surrounds(35.0));
+    }
+
+    #[test]
+    fn a_sample_is_in_a_cell_where_no_face_near_it_says_otherwise() {
+        let boundary = boundary();
+        let depth = |n: f32| boundary.depth(n);
+        assert_eq!(
+            [depth(5.0), depth(15.0), depth(25.0), depth(35.0)],
+            [0, 1, 1, 0]
+        );
+        // In neither of the cells whose faces are near.
+        assert_eq!([depth(18.5), depth(19.5)], [0, 0]);
     }
 }

@@ -461,38 +461,85 @@ impl Corners {
         (self.x, self.y, self.z) = (x, y, z);
     }
 
-    /// Twice the areas that pairs of corners span with the ray.
-    fn areas(&self, a: [usize; 4], b: [usize; 4]) -> Vec4 {
-        let pick = |of: &[Vec4; 2], n: [usize; 4]| Vec4::from_array(n.map(|n| of[n >> 2][n & 3]));
-        pick(&self.x, a) * pick(&self.y, b) - pick(&self.y, a) * pick(&self.x, b)
-    }
-
     /// Where the ray leaves, at the farthest of all exits.
     fn exit(&self, handedness: f32) -> Option<Exit> {
-        let u = self.areas([0, 2, 4, 6], [1, 3, 5, 7]);
-        let v = self.areas([0, 1, 4, 5], [2, 3, 6, 7]);
-        let w = self.x[0] * self.y[1] - self.y[0] * self.x[1];
-        let diagonals = self.areas([0, 1, 0, 2], [6, 7, 5, 7]);
-        let others = self.areas([0, 4, 0, 4], [3, 7, 3, 7]);
-        let h = handedness;
-        let sides = [
-            (-h, [v.x, w.z, diagonals.x, v.z, w.x]),
-            (h, [v.y, w.w, diagonals.y, v.w, w.y]),
-            (h, [u.x, w.y, diagonals.z, u.z, w.x]),
-            (-h, [u.y, w.w, diagonals.w, u.w, w.z]),
-            (-h, [u.x, v.y, others.x, u.y, v.x]),
-            (h, [u.z, v.w, others.y, u.w, v.z]),
-        ];
+        let sides = self.sides(handedness);
         let mut best: Option<Exit> = None;
-        for (face, (sense, sides)) in (0..).zip(sides) {
-            let z = || [0, 1, 2, 3].map(|n| self.depth(face_corner(face, n)));
-            let is_best = |t: f32| best.as_ref().is_none_or(|best| t > best.t);
-            if let Some((t, at)) = leave(sides.map(|side| sense * side), z).filter(|e| is_best(e.0))
-            {
-                best = Some(Exit { t, face, at });
+        for (group, first_face) in sides.iter().zip([0, 4]) {
+            let [first, second] = group.left();
+            let mut left = first | second;
+            while left != 0 {
+                let lane = left.trailing_zeros();
+                left &= left - 1;
+                let face = first_face + lane;
+                let is_first = first >> lane & 1 == 1;
+                let exit = self.leave(face, group.of(lane as usize), is_first);
+                best = match (best, exit) {
+                    (Some(best), Some(exit)) if exit.t <= best.t => Some(best),
+                    (best, exit) => exit.or(best),
+                };
             }
         }
         best
+    }
+
+    /// Twice the areas that the ray and the edges and diagonals of faces span: of the lateral faces, then of top and
+    /// bottom.
+    fn sides(&self, h: f32) -> [Sides; 2] {
+        let ([xt, xb], [yt, yb]) = (self.x, self.y);
+        let area = |[ax, ay]: [Vec4; 2], [bx, by]: [Vec4; 2]| ax * by - ay * bx;
+        // Of edges along u 01, 23, 45, 67, along v 02, 13, 46, 57, and along w 04, 15, 26, 37.
+        let lanes = |t: Vec4, b: Vec4, [i, j]: [usize; 2]| Vec4::new(t[i], t[j], b[i], b[j]);
+        let pick = |n: [usize; 2]| [lanes(xt, xb, n), lanes(yt, yb, n)];
+        let u = area(pick([0, 2]), pick([1, 3]));
+        let v = area(pick([0, 1]), pick([2, 3]));
+        let w = area([xt, yt], [xb, yb]);
+        // Of diagonals 06, 17, 05, 27, and 03, 47.
+        let lateral = area(
+            [xt, yt].map(|top| Vec4::new(top.x, top.y, top.x, top.z)),
+            [xb, yb].map(|bottom| Vec4::new(bottom.z, bottom.w, bottom.y, bottom.w)),
+        );
+        let flat = area(pick([0, 0]), pick([3, 3]));
+        [
+            Sides {
+                e0: Vec4::new(v.x, v.y, u.x, u.y),
+                e1: Vec4::new(w.z, w.w, w.y, w.w),
+                d: lateral,
+                f: Vec4::new(v.z, v.w, u.z, u.w),
+                g: Vec4::new(w.x, w.y, w.x, w.z),
+            }
+            .turned(Vec4::new(-h, h, h, -h)),
+            Sides {
+                e0: Vec4::new(u.x, u.z, 0.0, 0.0),
+                e1: Vec4::new(v.y, v.w, 0.0, 0.0),
+                d: Vec4::new(flat.x, flat.z, 0.0, 0.0),
+                f: Vec4::new(u.y, u.w, 0.0, 0.0),
+                g: Vec4::new(v.x, v.z, 0.0, 0.0),
+            }
+            .turned(Vec4::new(-h, h, 0.0, 0.0)),
+        ]
+    }
+
+    /// Where the ray leaves through a triangle of a face.
+    fn leave(&self, face: u32, [e0, e1, d, f, g]: [f32; 5], is_first: bool) -> Option<Exit> {
+        let z = |n: u32| self.depth(face_corner(face, n));
+        let (sum, t, at) = match is_first {
+            true => (
+                e0 + e1 - d,
+                e1 * z(0) - d * z(1) + e0 * z(3),
+                Vec2::new(e0 - d, e0),
+            ),
+            false => (
+                d - f - g,
+                d * z(2) - f * z(0) - g * z(3),
+                Vec2::new(-g, d - g),
+            ),
+        };
+        (sum > 0.0).then(|| Exit {
+            t: t / sum,
+            face,
+            at: at / sum,
+        })
     }
 
     fn depth(&self, corner: u32) -> f32 {
@@ -534,20 +581,38 @@ fn pillars_of(grid: &Grid, r: &RayFrame, column: u32) -> [[Vec4; 2]; 3] {
     })
 }
 
-/// Distance and parameters at which the ray leaves through a face, if it does. `sides` are of the pairs of corners
-/// 00 10, 10 11, 00 11, 01 11 and 00 01, with the sign that triangles have on the way out.
-fn leave([e0, e1, d, f, g]: [f32; 5], z: impl FnOnce() -> [f32; 4]) -> Option<(f32, Vec2)> {
-    let (first, second) = (e0 + e1 - d, d - f - g);
-    if e0 >= 0.0 && e1 >= 0.0 && d <= 0.0 && first > 0.0 {
-        let [z00, z10, _, z11] = z();
-        let t = (e1 * z00 - d * z10 + e0 * z11) / first;
-        return Some((t, Vec2::new(e0 - d, e0) / first));
+/// Of up to four faces, on which side of their edges and diagonals the ray passes: of the pairs of corners 00 10,
+/// 10 11, 00 11, 01 11 and 00 01, with the sign that triangles have on the way out.
+struct Sides {
+    e0: Vec4,
+    e1: Vec4,
+    d: Vec4,
+    f: Vec4,
+    g: Vec4,
+}
+
+impl Sides {
+    fn turned(self, sense: Vec4) -> Self {
+        Self {
+            e0: sense * self.e0,
+            e1: sense * self.e1,
+            d: sense * self.d,
+            f: sense * self.f,
+            g: sense * self.g,
+        }
     }
-    (d >= 0.0 && f <= 0.0 && g <= 0.0 && second > 0.0).then(|| {
-        let [z00, _, z01, z11] = z();
-        let t = (d * z01 - f * z00 - g * z11) / second;
-        (t, Vec2::new(-g, d - g) / second)
-    })
+
+    /// One bit a face through whose first triangle the ray leaves, and through whose second one.
+    fn left(&self) -> [u32; 2] {
+        let zero = Vec4::ZERO;
+        let first = self.e0.cmpge(zero) & self.e1.cmpge(zero) & self.d.cmple(zero);
+        let second = self.d.cmpge(zero) & self.f.cmple(zero) & self.g.cmple(zero);
+        [first.bitmask(), second.bitmask()]
+    }
+
+    fn of(&self, lane: usize) -> [f32; 5] {
+        [self.e0, self.e1, self.d, self.f, self.g].map(|side| side[lane])
+    }
 }
 
 /// The value along a segment: trilinear at parameters that are linear in the distance.

@@ -76,6 +76,13 @@ struct OfRay {
     layers: Layers,
 }
 
+/// Tiles in an order in which those that cost much are not together, so that each group says of the next one what that
+/// will cost.
+fn scattered(mut tiles: Vec<TileRect>) -> Vec<TileRect> {
+    fastrand::Rng::with_seed(0).shuffle(&mut tiles);
+    tiles
+}
+
 /// A tile and what its rays cost.
 struct Made {
     pixels: Vec<[f32; 4]>,
@@ -89,7 +96,7 @@ impl Picture<'_> {
         let size = self.view.size;
         let bins = self.bins();
         let painter = Painter::new(self.surfaces, self.view);
-        let tiles = TileRect::all(size);
+        let tiles = scattered(TileRect::all(size));
         let mut pixels = vec![[0.0; 4]; size[0] as usize * size[1] as usize];
         let mut tally = Tally::default();
         let mut stats = FrameStats::default();
@@ -117,7 +124,7 @@ impl Picture<'_> {
             stats.submissions += 1;
             stats.longest_submission = stats.longest_submission.max(took);
             let change = GROUP.as_secs_f64() / took.as_secs_f64().max(1e-6);
-            let wanted = group as f64 * change.clamp(0.25, 2.0);
+            let wanted = group as f64 * change.clamp(0.25, 1.7);
             group = (wanted as usize).max(rayon::current_num_threads());
             progress.reached(done as f64 / tiles.len() as f64).await;
         }
@@ -189,6 +196,10 @@ impl Picture<'_> {
         of_ray: &mut OfRay,
         tally: &mut Tally,
     ) -> [f32; 4] {
+        tally.rays += 1;
+        if pixel.is_empty() {
+            return [0.0; 4];
+        }
         let scene = self.scene;
         let OfRay {
             boundary,
@@ -239,7 +250,6 @@ impl Picture<'_> {
             }
         }
         layers.blend_rest(&mut sum);
-        tally.rays += 1;
         sum.pixel()
     }
 }
@@ -251,4 +261,11 @@ struct Pixel<'a> {
     met: &'a [Met],
     /// Of hull and faults.
     surfaces: [&'a [Met]; 2],
+}
+
+impl Pixel<'_> {
+    /// True where its ray meets nothing; no cell either, for it would leave that through its boundary.
+    fn is_empty(&self) -> bool {
+        self.met.is_empty() && self.surfaces.iter().all(|met| met.is_empty())
+    }
 }

@@ -233,18 +233,22 @@ impl<'a> Track<'a> {
         };
         let passed = boundary.until(n);
         let may_hold = |p: &&Passage| p.far >= n || (p.turn > 0 && p.far >= known);
-        let is_odd = is_odd(self.grid, point);
-        if !is_odd {
+        let mut in_doubt = false;
+        // Where layers cross, a point of several cells belongs to the first of them.
+        if !self.grid.compact.facts.layers_cross {
             for passage in passed.iter().rev().filter(may_hold).take(MOST_TRIED) {
                 let FacePlace { column, layer, .. } = FacePlace::of(passage.face, self.grid.nk());
                 self.cell = Cell::load(self.grid, column, layer);
                 if self.walk(n, Vec3A::splat(0.5), true) {
                     return 0.0;
                 }
+                in_doubt |= !self.solution.sure;
             }
         }
-        let is_inside = boundary.depth(n) != 0;
-        if !is_inside && !(is_odd && boundary.surrounds(n)) {
+        if !in_doubt
+            && boundary.depth(n) == 0
+            && !(boundary.surrounds(n) && is_odd(self.grid, point))
+        {
             return boundary.next(n).map_or(f32::MAX, |next| next - n);
         }
         self.search(point, before)
@@ -300,5 +304,37 @@ fn overshoot(q: Vec3A) -> f32 {
 fn steps_inside(q: Vec3A, rate: Vec3A) -> f32 {
     let room = Vec3A::select(rate.cmpgt(Vec3A::ZERO), Vec3A::ONE - q, q);
     let steps = room / rate.abs().max(Vec3A::splat(1e-9));
-    steps.min_element().floor().max(0.0)
+    steps.min_element().clamp(0.0, 1e6).trunc()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parameters_between_two_samples_keep_places_and_changes_of_both() {
+        let cubic = |n: f32| Vec3A::new(0.1 * n, 0.02 * n * n, 0.9 - 0.001 * n * n * n);
+        let change = |n: f32| Vec3A::new(0.1, 0.04 * n, -0.003 * n * n);
+        let stretch = Stretch {
+            first: 2.0,
+            more: 5.0,
+            from: cubic(2.0),
+            to: cubic(7.0),
+            from_rate: change(2.0),
+            to_rate: change(7.0),
+        };
+        for n in [2.0, 3.0, 4.5, 7.0] {
+            let off = (stretch.parameters(n) - cubic(n)).abs().max_element();
+            assert!(off < 1e-6, "{n}: {off}");
+        }
+    }
+
+    #[test]
+    fn steps_are_counted_to_the_nearest_face() {
+        let q = Vec3A::new(0.5, 0.2, 0.9);
+        assert_eq!(steps_inside(q, Vec3A::new(0.2, -0.05, 0.0)), 2.0);
+        assert_eq!(steps_inside(q, Vec3A::new(0.0, 0.0, 0.2)), 0.0);
+        assert!(steps_inside(q, Vec3A::ZERO) >= 1e6);
+        assert_eq!(steps_inside(Vec3A::splat(1.1), Vec3A::ONE), 0.0);
+    }
 }

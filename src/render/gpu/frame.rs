@@ -41,7 +41,7 @@ pub struct FrameRenderer {
 /// allows a group of eight rays.
 const WORK_LIMIT: [u32; 2] = [6_000, 100_000];
 /// Loop iterations that rasterizing the surfaces costs a pixel, about; it is done at once for a part of the
-/// picture that a submission has room for.
+/// image that a submission has room for.
 const PART_WORK: u64 = 2;
 /// Bytes of the shader's counters: low and high words.
 const COUNTERS: u64 = 8 * layout::COUNTERS as u64;
@@ -64,7 +64,7 @@ impl FrameRenderer {
     /// Renders a view.
     ///
     /// # Errors
-    /// When the picture is too large for the adapter or the device reports an error.
+    /// When the image is too large for the adapter or the device reports an error.
     pub async fn render(
         &mut self,
         gpu: &Gpu,
@@ -154,7 +154,7 @@ impl FrameRenderer {
     }
 }
 
-/// What is kept on the device of the rays of a part of the picture.
+/// What is kept on the device of the rays of a part of the image.
 struct Room {
     /// Pixels of the part at most.
     pixels: u64,
@@ -179,7 +179,7 @@ impl Room {
     }
 }
 
-/// A part of the picture whose surfaces are found at once.
+/// A part of the image whose surfaces are found at once.
 #[derive(Clone, Copy)]
 struct Part {
     rect: Rect,
@@ -202,7 +202,7 @@ impl Part {
 }
 
 impl Bound<'_> {
-    /// The parts of a picture, of at most so many pixels: all of it at once where no surfaces are to be found.
+    /// The parts of an image, of at most so many pixels: all of it at once where no surfaces are to be found.
     fn parts(&self, size: [u32; 2], has_surfaces: bool, most: u64) -> Vec<Rect> {
         let whole = Rect {
             origin: [0, 0],

@@ -3,64 +3,56 @@
 use crate::render::RenderError;
 
 macro_rules! sources {
-    ($($name:literal => $path:literal),* $(,)?) => {
-        /// Every shader by stem; what tests validate and pipelines are made from.
-        const SOURCES: &[(&str, &str)] = &[$(($name, include_str!(concat!("../../../shaders/", $path)))),*];
+    (shared: $($shared:literal)* entries: $($entry:literal)*) => {
+        /// Every shader by stem.
+        const SOURCES: &[(&str, &str)] = &[
+            $(($shared, include_str!(concat!("../../../shaders/shared/", $shared, ".wgsl"))),)*
+            $(($entry, include_str!(concat!("../../../shaders/", $entry, ".wgsl"))),)*
+        ];
+
+        /// The stems of all shaders that are entry points of a pipeline.
+        pub const ENTRIES: &[&str] = &[$($entry),*];
     };
 }
 
 sources! {
-    "layout" => "shared/layout.wgsl",
-    "grid" => "shared/grid.wgsl",
-    "cell" => "shared/cell.wgsl",
-    "thorough" => "shared/thorough.wgsl",
-    "locate" => "shared/locate.wgsl",
-    "frame" => "shared/frame.wgsl",
-    "table" => "shared/table.wgsl",
-    "transfer" => "shared/transfer.wgsl",
-    "topology" => "shared/topology.wgsl",
-    "section" => "shared/section.wgsl",
-    "facing" => "shared/facing.wgsl",
-    "raster" => "shared/raster.wgsl",
-    "projection" => "shared/projection.wgsl",
-    "surfaces" => "shared/surfaces.wgsl",
-    "edges" => "shared/edges.wgsl",
-    "light" => "shared/light.wgsl",
-    "cones" => "shared/cones.wgsl",
-    "cone_rays" => "shared/cone_rays.wgsl",
-    "shading" => "shared/shading.wgsl",
-    "random" => "shared/random.wgsl",
-    "mean" => "shared/mean.wgsl",
-    "groups" => "shared/groups.wgsl",
-    "extinction" => "extinction.wgsl",
-    "faces" => "faces.wgsl",
-    "illuminate" => "illuminate.wgsl",
-    "libc" => "libc.wgsl",
-    "paint" => "paint.wgsl",
-    "peel" => "peel.wgsl",
-    "plts" => "plts.wgsl",
-    "probe" => "probe.wgsl",
-    "pyramids" => "pyramids.wgsl",
-    "resample" => "resample.wgsl",
-    "solid" => "solid.wgsl",
-    "srg" => "srg.wgsl",
+    shared:
+        "layout"
+        "grid"
+        "cell"
+        "thorough"
+        "locate"
+        "frame"
+        "table"
+        "transfer"
+        "topology"
+        "section"
+        "facing"
+        "raster"
+        "projection"
+        "surfaces"
+        "edges"
+        "light"
+        "cones"
+        "cone_rays"
+        "shading"
+        "random"
+        "mean"
+        "groups"
+    entries:
+        "extinction"
+        "faces"
+        "illuminate"
+        "libc"
+        "paint"
+        "peel"
+        "plts"
+        "probe"
+        "pyramids"
+        "resample"
+        "solid"
+        "srg"
 }
-
-/// The stems of all shaders that are entry points of a pipeline.
-pub const ENTRIES: [&str; 12] = [
-    "extinction",
-    "faces",
-    "illuminate",
-    "libc",
-    "paint",
-    "peel",
-    "plts",
-    "probe",
-    "pyramids",
-    "resample",
-    "solid",
-    "srg",
-];
 
 /// The whole text of a shader with its imports in front, each once.
 ///

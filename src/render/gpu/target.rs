@@ -1,4 +1,4 @@
-//! The picture on the device, and its way back.
+//! The image on the device, and its way back.
 
 use super::device::Gpu;
 use crate::render::RenderError;
@@ -9,7 +9,7 @@ pub fn create(gpu: &Gpu, size: [u32; 2]) -> wgpu::Texture {
     gpu.flat_texture("target", size, wgpu::TextureFormat::Rgba32Float, usage)
 }
 
-/// Copies the picture back in bands, so that the staging buffer stays small.
+/// Copies the image back in bands, so that the staging buffer stays small.
 pub fn read(
     gpu: &Gpu,
     target: &wgpu::Texture,

@@ -1,8 +1,8 @@
-//! A picture in pieces, each short enough for a slow adapter: watchdogs reset a GPU that is busy for long.
+//! An image in pieces, each short enough for a slow adapter: watchdogs reset a GPU that is busy for long.
 
 use std::time::Duration;
 
-/// A part of a picture in pixels.
+/// A part of an image in pixels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Rect {
     /// Left and top.

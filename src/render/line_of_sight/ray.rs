@@ -1,4 +1,4 @@
-//! The ray through a place in the picture, and the samples that lie on it.
+//! The ray through a place in the image, and the samples that lie on it.
 
 use std::ops::Range;
 
@@ -6,7 +6,7 @@ use glam::{DVec2, DVec3};
 
 use crate::view::View;
 
-/// Samples of a ray, at most; where a picture has more, these lie farther apart.
+/// Samples of a ray, at most; where an image has more, these lie farther apart.
 const MOST_SAMPLES: f64 = 20_000.0;
 
 /// A ray in world space.

@@ -250,7 +250,7 @@ pub const LIST_OFFSET: u32 = 0x3fff_ffff;
 pub const BIN_IS_ODD: u32 = 0x8000_0000;
 /// Voxels along one side of a brick.
 pub const BRICK: u32 = 8;
-/// Voxels that a thread fills one after the other, downwards.
+/// Voxels that a thread fills one after the other, downward.
 pub const RUN: u32 = 16;
 /// An emitter far away.
 pub const EMITTER_DIRECTIONAL: u32 = 0;

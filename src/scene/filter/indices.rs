@@ -91,7 +91,7 @@ impl Indices {
         };
         match parts.iter().find(|[first, last, _]| first > last) {
             Some([first, last, _]) => Err(format!(
-                "{first}-{last} runs backwards; write {last}-{first}"
+                "{first}-{last} runs backward; write {last}-{first}"
             )),
             None => Ok(parts),
         }

@@ -162,7 +162,7 @@ impl Drop for Export {
 
 pub(super) type Fallible<T> = Result<T, Box<dyn std::error::Error>>;
 
-/// True where nobody wants the file any more.
+/// True where nobody wants the file anymore.
 fn is_canceled(error: &(dyn std::error::Error + 'static)) -> bool {
     let of_image = error.downcast_ref::<RenderError>();
     let of_film = error.downcast_ref::<FilmingError>();

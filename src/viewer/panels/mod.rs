@@ -8,6 +8,7 @@ mod controls;
 mod curve;
 mod curves;
 mod dates;
+mod display;
 mod faults;
 mod filters;
 mod light;
@@ -17,7 +18,6 @@ mod range_slider;
 mod selection;
 mod statistics;
 mod strategy;
-mod surfaces;
 mod table;
 mod transfer;
 mod values;
@@ -112,7 +112,7 @@ const fn panel(title: &'static str, is_open: bool, show: Show) -> Panel {
 pub const LEFT: [Panel; 6] = [
     panel("Property", true, property::show),
     panel("Cell filter", true, cells::show),
-    panel("Display", true, surfaces::show),
+    panel("Display", true, display::show),
     Panel {
         count: |about| about.case.about.named_faults.len(),
         ..panel("Faults", false, faults::show)

@@ -12,11 +12,11 @@ use super::sheets::Sheets;
 use crate::case::Case;
 use crate::scene::{LightingSpec, Scene};
 use crate::viewer::action::{Action, Beside};
-use crate::viewer::command;
 use crate::viewer::dialogs::{Dialog, Purpose};
 use crate::viewer::document::Document;
 use crate::viewer::export::Export;
 use crate::viewer::keys::Command;
+use crate::viewer::shell_line;
 use crate::viewer::state::{Comparison, CurvePlots, State, next_strategy};
 
 /// Closed cases that can be opened again, at most.
@@ -129,7 +129,7 @@ impl Window {
             ..scene
         };
         let program = std::env::current_exe().unwrap_or_else(|_| "strataray".into());
-        let line = command::command(&program, &document.paths(), &scene);
+        let line = shell_line::command(&program, &document.paths(), &scene);
         let told = line.map(|line| {
             ctx.copy_text(line);
             match is_first {

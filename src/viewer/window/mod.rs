@@ -202,7 +202,7 @@ impl Window {
             (Action::Filter(_), _) => document.apply_filter(action, held),
             _ => document.apply(action),
         }
-        // What was told of an earlier change is of no interest any more.
+        // What was told of an earlier change is of no interest anymore.
         self.message = self.message.take().filter(|m| m.1);
     }
 

@@ -5,7 +5,7 @@ use std::path::Path;
 use super::Window;
 use crate::scene::Scene;
 use crate::viewer::action::Action;
-use crate::viewer::{command, panels};
+use crate::viewer::{panels, shell_line};
 
 impl Window {
     /// Loads a scene into the document in front.
@@ -28,7 +28,7 @@ impl Window {
     /// When it cannot be written; the sentence names the file.
     pub fn save_scene(&self, path: &Path) -> Result<String, String> {
         let document = self.document().ok_or("there is no scene to save")?;
-        let text = command::scene_text(&document.state.setup.scene)?;
+        let text = shell_line::scene_text(&document.state.setup.scene)?;
         std::fs::write(path, text).map_err(|e| format!("{}: {e}", path.display()))?;
         Ok(format!("the scene is in {}", path.display()))
     }

@@ -1,0 +1,371 @@
+//! What every executor must do alike: images against the f64 reference, looks against each other.
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use crate::common;
+use crate::common::shape::Shape;
+use glam::DVec3;
+use serde_json::{Value, json};
+use strataray::case::{Case, load};
+use strataray::image::Image;
+use strataray::image::metrics::psnr_8bit;
+use strataray::model::Ijk;
+use strataray::reference::{self, Locator};
+use strataray::render::cpu::CpuExecutor;
+use strataray::render::gpu::GpuExecutor;
+use strataray::render::{Executor, FrameStats, RenderError, Renderer};
+use strataray::scene::StrategyKind;
+use strataray::view::{self, View};
+
+/// Strategies that every executor has.
+const STRATEGIES: [StrategyKind; 2] = [StrategyKind::Plts, StrategyKind::Libc];
+
+fn cpu() -> Arc<dyn Executor> {
+    Arc::new(CpuExecutor)
+}
+
+/// All that there are.
+fn executors() -> Vec<Arc<dyn Executor>> {
+    let gpu = common::gpu().map(|gpu| Arc::new(GpuExecutor::from(gpu)) as Arc<dyn Executor>);
+    gpu.into_iter().chain([cpu()]).collect()
+}
+
+fn opened(case: &Case, written: &Value) -> View {
+    let scene = view::look::opening(case, written).unwrap();
+    view::resolve(&scene, case).unwrap()
+}
+
+/// A view of the volume alone, `more` laid over it.
+fn volume(case: &Case, more: &Value) -> View {
+    let mut written = json!({
+        "size": [120, 90], "mode": "volume", "lighting": {}, "show": {"hull": "hidden"},
+    });
+    let written_keys = written.as_object_mut().unwrap();
+    written_keys.extend(more.as_object().unwrap().clone());
+    opened(case, &written)
+}
+
+/// The image and what it took; no ray and no sample is lost.
+fn render(renderer: &mut dyn Renderer, view: &View) -> (Image, FrameStats) {
+    let frame = renderer.render(view, &|_| true).unwrap();
+    assert!(frame.image.pixels.iter().flatten().all(|v| v.is_finite()));
+    let stats = frame.stats;
+    assert_eq!((stats.lost_rays, stats.lost_samples), (0, 0), "{stats:?}");
+    (frame.image, stats)
+}
+
+fn truth(case: &Case, view: &View) -> Image {
+    reference::render(&case.grid, view, &|_| true).unwrap()
+}
+
+fn psnr(a: &Image, b: &Image, view: &View) -> f64 {
+    let [a, b] = [a, b].map(|i| i.over_background_8bit(view.style.background));
+    psnr_8bit(a.as_flattened(), b.as_flattened())
+}
+
+/// What a strategy must reach against the reference, PSNR in dB.
+fn least(strategy: StrategyKind) -> f64 {
+    match strategy {
+        StrategyKind::Plts => 74.0,
+        // Linear parameters in a cell and faces of triangles are not the trilinear map.
+        _ => 51.0,
+    }
+}
+
+#[test]
+fn executors_agree_with_the_reference() {
+    for model in common::models() {
+        let case = load::open(&model).unwrap();
+        for interpolation in ["vertex", "cell"] {
+            let view = volume(&case, &json!({ "interpolation": interpolation }));
+            let truth = truth(&case, &view);
+            for executor in executors() {
+                let mut renderer = executor.renderer(&case.grid).unwrap();
+                for strategy in STRATEGIES {
+                    let (image, stats) = render(&mut *renderer, &view.by(strategy));
+                    let db = psnr(&image, &truth, &view);
+                    let place = format!(
+                        "{} {} {} {interpolation}: {db:.1} dB",
+                        executor.info().executor,
+                        case.about.name,
+                        strategy.name()
+                    );
+                    println!("{place}");
+                    assert!(db >= least(strategy), "{place}");
+                    assert!(stats.samples > 20_000, "{place}: {}", stats.samples);
+                }
+            }
+        }
+    }
+}
+
+/// The twin.
+#[test]
+fn a_shifted_camera_is_noticed() {
+    let case = load::open(&common::sample()).unwrap();
+    let view = volume(&case, &json!({}));
+    let truth = truth(&case, &view);
+    let mut shifted = view.clone();
+    let [low, high] = view.world.bounds;
+    let distance = view.camera.eye.distance(0.5 * (low + high));
+    let pixel = view.camera.half_height(distance) * 2.0 / f64::from(view.size[1]);
+    shifted.camera.eye += pixel * view.camera.right;
+    let mut renderer = cpu().renderer(&case.grid).unwrap();
+    for strategy in STRATEGIES {
+        let (image, _) = render(&mut *renderer, &shifted.by(strategy));
+        let db = psnr(&image, &truth, &view);
+        assert!(db < 40.0, "{}: {db}", strategy.name());
+    }
+}
+
+/// Rays ask no cells that they do not pass: a location for each entry, and two or three Newton iterations a cell.
+#[test]
+fn rays_search_only_where_cells_are() {
+    for model in common::models() {
+        let case = load::open(&model).unwrap();
+        let mut renderer = cpu().renderer(&case.grid).unwrap();
+        let view = volume(&case, &json!({"strategy": "plts"}));
+        let (_, stats) = render(&mut *renderer, &view);
+        let covered = stats.covered_pixels as f64;
+        let locations = stats.point_locations as f64 / covered;
+        let iterations = stats.newton_iterations as f64 / stats.cell_crossings as f64;
+        println!("{}: {locations:.2} {iterations:.2}", case.about.name);
+        assert!(locations < 1.5 && iterations < 4.0, "{stats:?}");
+    }
+}
+
+/// Pixels that differ by more than 8 of 255, and PSNR in dB of all others: at outlines one executor's ray may meet a
+/// face that the other's just misses.
+fn apart(a: &Image, b: &Image, view: &View) -> (usize, f64) {
+    let [a, b] = [a, b].map(|i| i.over_background_8bit(view.style.background));
+    let is_near = |(a, b): &(&[u8; 3], &[u8; 3])| (0..3).all(|c| a[c].abs_diff(b[c]) <= 8);
+    let near = a.iter().zip(&b).filter(is_near);
+    let (of_a, of_b): (Vec<[u8; 3]>, Vec<[u8; 3]>) = near.unzip();
+    let db = psnr_8bit(of_a.as_flattened(), of_b.as_flattened());
+    (a.len() - of_a.len(), db)
+}
+
+/// Looks of a model, with a plane through its middle that is cut open.
+fn looks(case: &Case) -> Vec<Value> {
+    let plain = volume(case, &json!({}));
+    let [low, high] = plain.world.bounds;
+    let clip = |face: &str| {
+        let away = plain.camera.forward.with_z(0.0) + DVec3::new(0.3, 0.1, 0.0);
+        let middle = 0.5 * (low + high);
+        json!([{"point": middle.to_array(), "normal": away.to_array(), "face": face}])
+    };
+    let parallel = |azimuth: f64, elevation: f64| {
+        json!({
+            "azimuth_degrees": azimuth, "elevation_degrees": elevation, "projection": "parallel",
+        })
+    };
+    let hull = |hull: &str| json!({"hull": hull});
+    vec![
+        json!({"filter": {"k": [2, 3]}, "interpolation": "cell"}),
+        json!({"filter": {"properties": [{"name": "PORO", "min": 0.15}]}}),
+        json!({"clip": clip("open")}),
+        json!({"clip": clip("opaque"), "show": {"hull": "hidden", "cell_edges": true}}),
+        json!({"show": {"hull": "hidden", "inactive": "ghost"}}),
+        json!({"show": {"hull": "opaque", "inactive": "ghost", "faults": true}}),
+        json!({"show": hull("faint")}),
+        json!({"show": {"hull": "faint", "faults": true, "cell_edges": true}}),
+        json!({"show": hull("opaque"), "clip": clip("open")}),
+        json!({"mode": "cells"}),
+        json!({"mode": "cells", "clip": clip("open")}),
+        json!({"mode": "cells", "show": {"inactive": "ghost"}}),
+        json!({"camera": parallel(140.0, 25.0), "show": {"hull": "faint", "faults": true}}),
+        json!({"camera": parallel(0.0, 90.0), "mode": "cells"}),
+        json!({"libc": {"integration": "segments"}, "interpolation": "cell"}),
+        json!({"libc": {"cross_faults": false}}),
+        json!({"lighting": {"exact_colors": true}, "show": {"hull": "opaque", "inactive": "ghost"}}),
+        json!({"blending": "linear", "early_termination": 0.0}),
+    ]
+}
+
+#[test]
+fn executors_make_the_same_of_every_look() {
+    let Some(gpu) = common::gpu() else { return };
+    let gpu = GpuExecutor::from(gpu);
+    for (model, every) in common::models().iter().take(2).zip([1, 3]) {
+        let case = load::open(model).unwrap();
+        let mut on_gpu = gpu.renderer(&case.grid).unwrap();
+        let mut on_cpu = cpu().renderer(&case.grid).unwrap();
+        let looks = looks(&case);
+        for (n, look) in looks.iter().enumerate().step_by(every) {
+            let view = volume(&case, look).by(STRATEGIES[n % 2]);
+            let frame = on_gpu.render(&view, &|_| true).unwrap();
+            let (a, of_gpu) = (frame.image, frame.stats);
+            let (b, of_cpu) = render(&mut *on_cpu, &view);
+            let (pixels, db) = apart(&a, &b, &view);
+            let place = format!("{} {look}: {pixels} pixels, {db:.1} dB", case.about.name);
+            println!("{place}");
+            assert!(pixels * 1000 <= a.pixels.len() && db > 60.0, "{place}");
+            let covered = [of_gpu, of_cpu].map(|s| s.covered_pixels as f64);
+            assert!((covered[0] / covered[1] - 1.0).abs() < 5e-3, "{covered:?}");
+        }
+    }
+}
+
+/// A grid whose cells lean, dip, pinch out and fold over, with a fault that scissors through it.
+fn odd() -> Case {
+    Shape {
+        dims: [5, 4, 6],
+        pillar: &|i, j| {
+            let [x, y] = [100.0 * i as f64, 90.0 * j as f64];
+            let lean = 30.0 * ((i * 7 + j * 5) % 4) as f64 - 45.0;
+            // One corner is drawn into its cell so far that this is not convex.
+            let drawn_in = if (i, j) == (2, 2) { 60.0 } else { 0.0 };
+            let top = [x - drawn_in, y - drawn_in, 1000.0];
+            [
+                top,
+                [x + lean - drawn_in, y - 0.5 * lean - drawn_in, 1200.0],
+            ]
+        },
+        depth: &|[i, j, k], [di, dj, dk]| {
+            let [x, y] = [(i + di) as f64, (j + dj) as f64];
+            let throw = if i > 2 { 14.0 * (y - 1.0) } else { 0.0 };
+            // The third layer pinches out toward the north.
+            let thick = if k + dk > 2 { 20.0 - 5.0 * y } else { 20.0 };
+            1000.0
+                + 20.0 * (k + dk).min(2) as f64
+                + thick
+                + 3.0 * x * y
+                + throw
+                + 22.0 * (k + dk).saturating_sub(3) as f64
+        },
+        value: &|[i, j, k]| ((3 * i + 5 * j + 7 * k) % 10) as f64 / 10.0,
+        active: &|[i, j, k]| (i, j, k) != (1, 1, 4),
+        ..Shape::default()
+    }
+    .case()
+}
+
+/// Three by three columns of two layers that cross: from 1000 to 1020, and from 1010 to 1030.
+fn crossing() -> Case {
+    Shape {
+        dims: [3, 3, 2],
+        depth: &|[_, _, k], [_, _, dk]| 1000.0 + 10.0 * k as f64 + 20.0 * dk as f64,
+        value: &|[_, _, k]| 0.1 + 0.2 * k as f64,
+        ..Shape::default()
+    }
+    .case()
+}
+
+#[test]
+fn samples_are_found_in_cells_of_odd_shapes() {
+    for (case, name) in [(odd(), "odd"), (crossing(), "crossing")] {
+        for (azimuth, elevation) in [(205.0, 20.0), (80.0, 55.0), (300.0, -15.0), (0.0, 90.0)] {
+            let view = volume(
+                &case,
+                &json!({
+                    "property": "VALUE", "range": [0.0, 1.0], "interpolation": "cell",
+                    "vertical_exaggeration": 2.0, "strategy": "plts",
+                    "camera": {"azimuth_degrees": azimuth, "elevation_degrees": elevation},
+                    "transfer": {"opacity": [[0.0, 0.3], [1.0, 0.3]], "reference_length": 100.0},
+                }),
+            );
+            let truth = truth(&case, &view);
+            for executor in executors() {
+                let mut renderer = executor.renderer(&case.grid).unwrap();
+                let (image, stats) = render(&mut *renderer, &view);
+                let db = psnr(&image, &truth, &view);
+                let place = format!("{} {name} {azimuth}: {db:.1} dB", executor.info().executor);
+                println!("{place}, {stats:?}");
+                assert!(db > 40.0, "{place}");
+            }
+        }
+    }
+}
+
+/// Rays that start among the cells.
+#[test]
+fn an_eye_within_the_model_sees_what_the_reference_sees() {
+    let case = load::open(&common::sample()).unwrap();
+    let plain = volume(&case, &json!({}));
+    let [low, high] = plain.world.bounds;
+    let eye = low + (high - low) * DVec3::new(0.4, 0.45, 0.5);
+    let view = volume(
+        &case,
+        &json!({
+            "camera": {
+                "eye": eye.to_array(), "target": (eye + DVec3::new(1.0, 0.4, -0.1)).to_array(),
+                "up": [0.0, 0.0, 1.0], "fovy_degrees": 60.0,
+            },
+        }),
+    );
+    let truth = truth(&case, &view);
+    let mut renderer = cpu().renderer(&case.grid).unwrap();
+    for strategy in STRATEGIES {
+        let (image, _) = render(&mut *renderer, &view.by(strategy));
+        let db = psnr(&image, &truth, &view);
+        println!("{}: {db:.1} dB", strategy.name());
+        assert!(db > least(strategy) - 10.0, "{}: {db}", strategy.name());
+    }
+}
+
+#[test]
+fn points_are_located_where_the_reference_has_them() {
+    let mut random = fastrand::Rng::with_seed(8);
+    for model in common::models() {
+        let case = load::open(&model).unwrap();
+        let view = volume(&case, &json!({}));
+        let [low, high] = view.world.bounds;
+        let mut unit = || DVec3::new(random.f64(), random.f64(), random.f64());
+        let points: Vec<DVec3> = (0..5000).map(|_| low + unit() * (high - low)).collect();
+        let mut renderer = cpu().renderer(&case.grid).unwrap();
+        let found = renderer.locate(&view, &points).unwrap();
+        let locator = Locator::of_drawn(&case.grid, &view.shown.cells.drawn);
+        let to_grid = |p: &DVec3| view.world.spaces.grid_from_world.transform_point3(*p);
+        let expected = points.iter().map(|p| locator.locate(to_grid(p)));
+        let mut inside = 0;
+        let mut apart = 0;
+        for (found, expected) in found.iter().zip(expected) {
+            let cells: [Option<Ijk>; 2] = [found.map(|f| f.ijk), expected.map(|e| e.ijk)];
+            inside += usize::from(cells[1].is_some());
+            apart += usize::from(cells[0] != cells[1]);
+        }
+        println!("{}: {apart} of {inside}", case.about.name);
+        assert!(inside > 200 && apart <= 5, "{apart} of {inside}");
+    }
+}
+
+#[test]
+fn an_image_is_made_in_pieces_and_can_be_left() {
+    let case = load::open(&common::sample()).unwrap();
+    let mut renderer = cpu().renderer(&case.grid).unwrap();
+    let view = volume(&case, &json!({"strategy": "plts", "size": [400, 300]}));
+    let canceled = renderer.render(&view, &|_| false);
+    assert!(matches!(canceled, Err(RenderError::Canceled)));
+    let whole = renderer.render(&view, &|_| true).unwrap();
+    assert!(whole.stats.submissions > 3);
+    assert!(whole.stats.longest_submission < Duration::from_millis(500));
+    let mut job = renderer.start(&view);
+    let mut pieces = 0;
+    let pieced = loop {
+        let before = job.done();
+        match job.advance(Instant::now()).unwrap() {
+            Some(frame) => break frame,
+            None => assert!(job.done() > before && job.done() <= 1.0),
+        }
+        pieces += 1;
+    };
+    assert!(pieces > 3);
+    assert_eq!(pieced.image, whole.image);
+}
+
+#[test]
+fn what_the_cpu_cannot_do_is_refused_in_a_sentence() {
+    let case = load::open(&common::sample()).unwrap();
+    let mut renderer = cpu().renderer(&case.grid).unwrap();
+    for (asked, word) in [
+        (json!({"strategy": "srg"}), "srg"),
+        (json!({"lighting": {"occlusion": {}}}), "occlusion"),
+    ] {
+        let view = volume(&case, &asked);
+        let refused = renderer.render(&view, &|_| true).err().unwrap().to_string();
+        assert!(refused.contains(word), "{refused}");
+    }
+    // The next image is made.
+    render(&mut *renderer, &volume(&case, &json!({})));
+}
