@@ -240,6 +240,7 @@ pub fn cast(way: &Way<'_>, layers: &mut Layers, sum: &mut Accumulated, tally: &m
         }
         if stretch.stride == 0.0 {
             n = stretch.end;
+            tally.skips += 1;
             continue;
         }
         let taken = match long_steps {
@@ -255,6 +256,8 @@ pub fn cast(way: &Way<'_>, layers: &mut Layers, sum: &mut Accumulated, tally: &m
         if voxel.y + voxel.z > 0.0 {
             tally.samples += 1;
             volume.add(scene, voxel, taken, ray.sample(middle), sum);
+        } else {
+            tally.skips += 1;
         }
         sees_nothing = sum.transmittance == before;
         n += taken;
