@@ -28,12 +28,6 @@ pub enum RenderError {
         /// Which limit or request failed.
         reason: String,
     },
-    /// The executor cannot do what the view asks for.
-    #[error("the CPU cannot render {what} yet; choose a GPU adapter, or leave that out")]
-    Unsupported {
-        /// What it cannot do.
-        what: &'static str,
-    },
     /// A buffer is larger than the adapter allows.
     #[error(
         "the model does not fit this adapter: {what} needs {needed} bytes and one binding holds {limit}"

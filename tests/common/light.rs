@@ -3,8 +3,8 @@
 use glam::DVec3;
 use half::f16;
 use strataray::case::Case;
+use strataray::render::gpu::Gpu;
 use strataray::render::gpu::volume::Volume;
-use strataray::render::gpu::{Gpu, GpuRenderer};
 use strataray::render::{Frame, Renderer};
 use strataray::scene::{Interpolation, LightingSpec, OpacitySpec, RangeSpec, Scene};
 use strataray::view::{self, View};
@@ -32,7 +32,7 @@ pub fn lighting(json: serde_json::Value) -> LightingSpec {
 }
 
 /// Renders a scene, so that its light is there.
-pub fn render(renderer: &mut GpuRenderer, case: &Case, scene: &Scene) -> (View, Frame) {
+pub fn render(renderer: &mut dyn Renderer, case: &Case, scene: &Scene) -> (View, Frame) {
     let view = view::resolve(scene, case).unwrap();
     let frame = renderer.render(&view, &|_| true).unwrap();
     (view, frame)

@@ -20,6 +20,7 @@ mod colors;
 mod compare;
 mod cone_accuracy;
 mod cones;
+mod cpu_light;
 mod dispatch;
 mod doctor;
 mod executors;

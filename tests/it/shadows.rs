@@ -8,7 +8,9 @@ use serde_json::{Value, json};
 use strataray::case::Case;
 use strataray::image::Image;
 use strataray::reference::Ray;
-use strataray::render::gpu::GpuRenderer;
+use strataray::render::cpu::CpuExecutor;
+use strataray::render::gpu::GpuExecutor;
+use strataray::render::{Executor, Renderer};
 use strataray::scene::{CameraSpec, ColorSpec, FramingCamera, Projection, StrategyKind};
 use strataray::view::View;
 
@@ -35,7 +37,7 @@ fn bar() -> Case {
 
 /// The picture under lights.
 fn picture(
-    renderer: &mut GpuRenderer,
+    renderer: &mut dyn Renderer,
     case: &Case,
     lights: &[Light],
     mode: &str,
@@ -162,21 +164,36 @@ fn counted(view: &View, image: &Image, lights: &[Light]) -> ([u32; 4], u32) {
 /// The picture under lights shows their shadows, found where and by what `ways` say; not those of the lights
 /// turned around, and none where they are off. Gives the pixels by the lights that reach them.
 fn check(name: &str, lights: &[Light], ways: &[(&str, StrategyKind)]) -> Option<[u32; 4]> {
-    let gpu = common::gpu()?;
+    let gpu = GpuExecutor::from(common::gpu()?);
+    let executors: [&dyn Executor; 2] = [&gpu, &CpuExecutor];
+    let of = |executor: &&dyn Executor| check_on(*executor, name, lights, ways);
+    executors.iter().map(of).last()
+}
+
+/// As [`check`], by an executor.
+fn check_on(
+    executor: &dyn Executor,
+    name: &str,
+    lights: &[Light],
+    ways: &[(&str, StrategyKind)],
+) -> [u32; 4] {
     let case = bar();
-    let mut renderer = GpuRenderer::new(gpu, &case.grid).unwrap();
+    let mut renderer = executor.renderer(&case.grid).unwrap();
     let mirrored: Vec<_> = lights.iter().map(|l| l.mirrored()).collect();
-    let mut pixels = None;
+    let mut pixels = [0; 4];
     for &(mode, strategy) in ways {
-        let (view, image) = picture(&mut renderer, &case, lights, mode, strategy);
+        let (view, image) = picture(&mut *renderer, &case, lights, mode, strategy);
         let (counts, wrong) = counted(&view, &image, lights);
         let (_, twin) = counted(&view, &image, &mirrored);
         let strategy = strategy.name();
-        println!("{name} {mode} {strategy}: {wrong} of {counts:?} pixels wrong; mirrored {twin}");
+        let executor = executor.info().executor;
+        println!(
+            "{executor} {name} {mode} {strategy}: {wrong} of {counts:?} pixels wrong; mirrored {twin}"
+        );
         assert!(wrong == 0 && twin > 200, "{name} {mode} {strategy}");
-        pixels = Some(counts);
+        pixels = counts;
     }
-    let (view, image) = picture(&mut renderer, &case, lights, "off", StrategyKind::Plts);
+    let (view, image) = picture(&mut *renderer, &case, lights, "off", StrategyKind::Plts);
     let (_, wrong) = counted(&view, &image, lights);
     assert!(wrong > 40, "{name} without shadows: {wrong}");
     pixels

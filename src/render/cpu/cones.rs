@@ -12,6 +12,8 @@ const THREE_AT: f32 = 0.535_898_4;
 const SEVEN_AT: f32 = 0.666_666_7;
 /// Optical depth behind which nothing more is seen to change.
 const DARK: f32 = 8.0;
+/// Exponent of a Gaussian behind which nothing is left of it.
+const MOST_OUTSIDE: f32 = 12.0;
 /// Half the square root of three.
 const COS_30: f32 = 0.866_025_4;
 
@@ -49,6 +51,8 @@ pub struct Cones<'a> {
     pub pyramid: &'a Pyramid,
     /// Of the box.
     pub size: Vec3A,
+    /// One over it.
+    scale: Vec3A,
 }
 
 /// Sums along parts of a cone: optical depths, and what the last section counted.
@@ -84,9 +88,11 @@ impl<const N: usize> Parts<N> {
 impl<'a> Cones<'a> {
     /// Cones through a pyramid.
     pub fn new(pyramid: &'a Pyramid, info: &LightingInfo) -> Self {
+        let size = Vec3A::from(info.size);
         Self {
             pyramid,
-            size: info.size.into(),
+            size,
+            scale: size.recip(),
         }
     }
 
@@ -96,7 +102,10 @@ impl<'a> Cones<'a> {
         let levels = &self.pyramid.0;
         let outside = (-p).max(p - self.size).max(Vec3A::ZERO);
         let off = section.fade * outside.length_squared();
-        let depth = levels[section.level.min(levels.len() - 1)].sample(p / self.size);
+        if off > MOST_OUTSIDE {
+            return 0.0;
+        }
+        let depth = levels[section.level.min(levels.len() - 1)].sample(p * self.scale);
         match off > 0.0 {
             true => (-off).exp() * depth,
             false => depth,

@@ -5,6 +5,7 @@
 
 use glam::{Vec3A, Vec4};
 
+use super::mean::overlap;
 use super::resample::FieldVoxel;
 use super::transfer::Tables;
 use super::volume::Voxels;
@@ -150,13 +151,6 @@ impl Taps {
             overlap(n, made as i32, from as i32, to as i32) as f32
         })
     }
-}
-
-/// How much of fine voxel `n` lies within larger voxel `m`, in parts of which a larger one has `fine` in all, where
-/// `coarse` of them cover what `fine` voxels do. Whole numbers, so that voxels that only touch count nothing.
-pub fn overlap(n: i32, m: i32, fine: i32, coarse: i32) -> i32 {
-    let end = ((n + 1) * coarse).min((m + 1) * fine);
-    (end - (n * coarse).max(m * fine)).max(0)
 }
 
 /// Filters opacities along x, y and depth in turn: by the Gaussian of a level, or into their means.

@@ -10,19 +10,57 @@ use super::volume::Voxels;
 use crate::render::job::Progress;
 use crate::render::plan::layout::LightingInfo;
 
-/// Transmittances of the cones from the middles of voxels to one emitter.
+/// Transmittances of the cones from the middles of voxels to one emitter; 1 where no cell is so near that it matters.
 pub async fn light_volume(
     cones: &Cones<'_>,
     lamp: &Lamp,
-    size: [u32; 3],
+    near: &Voxels<bool>,
     progress: &Progress,
 ) -> Voxels<f32> {
+    let size = near.size.map(|n| n as u32);
     let spacing = cones.size / voxels(size);
     Voxels::by_rows(size, progress, |y, z| {
-        let found = |x| cones.transmittance(lamp, middle([x, y, z]) * spacing);
-        (0..size[0] as usize).map(found).collect()
+        let found = |(x, is_near): (usize, &bool)| match is_near {
+            true => cones.transmittance(lamp, middle([x, y, z]) * spacing),
+            false => 1.0,
+        };
+        near.row(y, z).iter().enumerate().map(found).collect()
     })
     .await
+}
+
+/// Which voxels of light volumes of a size count for places in cells, or within a voxel of values from them.
+pub async fn near_cells(field: &Voxels<u16>, size: [u32; 3], progress: &Progress) -> Voxels<bool> {
+    // Voxels of values so near to a voxel of light that it counts there.
+    let around = |axis: usize, voxel: usize| {
+        let (from, to) = (field.size[axis], size[axis]);
+        let ratio = from as f32 / to as f32;
+        let low = ((voxel as f32 - 0.5) * ratio - 2.0).ceil().max(0.0) as usize;
+        let high = ((voxel as f32 + 1.5) * ratio + 1.0).floor() as usize;
+        low..(high + 1).min(from)
+    };
+    let any_row = |rows: &mut dyn Iterator<Item = &[bool]>| {
+        let mut any = vec![false; size[0] as usize];
+        for row in rows {
+            any.iter_mut()
+                .zip(row)
+                .for_each(|(any, is_near)| *any |= is_near);
+        }
+        any
+    };
+    let [_, height, depth] = field.size.map(|n| n as u32);
+    let first = Voxels::by_rows([size[0], height, depth], progress, |y, z| {
+        let row = field.row(y, z);
+        let is_near = |x| row[around(0, x)].iter().any(|packed| *packed != 0);
+        (0..size[0] as usize).map(is_near).collect()
+    });
+    let first = first.await;
+    let second = Voxels::by_rows([size[0], size[1], depth], progress, |y, z| {
+        any_row(&mut around(1, y).map(|n| first.row(n, z)))
+    });
+    let second = second.await;
+    let third = |y, z| any_row(&mut around(2, z).map(|n| second.row(y, n)));
+    Voxels::by_rows(size, progress, third).await
 }
 
 /// Change of the transfer function's position a unit of lighting space, times presence; and presence. Least squares

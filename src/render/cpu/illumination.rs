@@ -10,7 +10,7 @@ use super::cone_rays::ConeRays;
 use super::cones::Cones;
 use super::extinction::{Pyramid, opacities};
 use super::grid::Grid;
-use super::illuminate::{gradients, light_volume};
+use super::illuminate::{gradients, light_volume, near_cells};
 use super::kept::Kept;
 use super::light::{Lamp, Light};
 use super::resample::Resampler;
@@ -47,6 +47,8 @@ struct Field {
     /// Values at both ends of the range that is stored.
     range: [f64; 2],
     voxels: Voxels<u16>,
+    /// Voxels of light volumes that count.
+    near: Voxels<bool>,
 }
 
 /// Transmittances of the cones to an emitter.
@@ -116,9 +118,13 @@ impl Illumination {
         slopes: bool,
         progress: &Progress,
     ) {
-        let size = source.view.style.lighting.size();
+        let lighting = &source.view.style.lighting;
+        let (size, light_size) = (lighting.size(), lighting.light_size());
         let is_used = slopes || shading.casts_rays() || shading.traces_cones();
-        let fits = |f: &Field| f.voxels.size == size.map(|n| n as usize);
+        let fits = |f: &Field| {
+            let sizes = [f.voxels.size, f.near.size];
+            sizes == [size, light_size].map(|size| size.map(|n| n as usize))
+        };
         if !is_used || !self.field.get().is_some_and(fits) {
             self.field.forget();
         }
@@ -131,7 +137,13 @@ impl Illumination {
         let range = cells.value_range().unwrap_or([0.0, 1.0]);
         let resampler = Resampler::new(source.grid, size, range);
         let voxels = resampler.packed(progress).await;
-        self.field.keep(revision, Field { range, voxels });
+        let near = near_cells(&voxels, light_size, progress).await;
+        let field = Field {
+            range,
+            voxels,
+            near,
+        };
+        self.field.keep(revision, field);
     }
 
     /// Makes the pyramid where the values, the transfer function or the clip planes have changed.
@@ -169,7 +181,7 @@ impl Illumination {
         progress: &Progress,
     ) {
         self.volumes.truncate(emitters.volumes.len());
-        let Some(pyramid) = self.pyramid.get() else {
+        let (Some(pyramid), Some(field)) = (self.pyramid.get(), self.field.get()) else {
             self.volumes.clear();
             return;
         };
@@ -185,7 +197,7 @@ impl Illumination {
             if self.volumes.get(n).is_some_and(|v| v.lit == lit) {
                 continue;
             }
-            let voxels = light_volume(&cones, &self.lamps[at], size, progress).await;
+            let voxels = light_volume(&cones, &self.lamps[at], &field.near, progress).await;
             let made = LightVolume { lit, voxels };
             match self.volumes.get_mut(n) {
                 Some(volume) => *volume = made,
@@ -238,7 +250,9 @@ impl Illumination {
 
     /// Bytes of all volumes.
     pub fn bytes(&self) -> u64 {
-        self.field.get().map_or(0, |f| f.voxels.bytes())
+        self.field
+            .get()
+            .map_or(0, |f| f.voxels.bytes() + f.near.bytes())
             + self.opacities.get().map_or(0, Voxels::bytes)
             + self.pyramid.get().map_or(0, Pyramid::bytes)
             + self.volumes.iter().map(|v| v.voxels.bytes()).sum::<u64>()

@@ -15,6 +15,11 @@ impl<T> Kept<T> {
         self.0.as_ref().map(|(_, kept)| kept)
     }
 
+    /// What is kept, to be changed.
+    pub fn get_mut(&mut self) -> Option<&mut T> {
+        self.0.as_mut().map(|(_, kept)| kept)
+    }
+
     /// True where it is of a revision.
     pub fn is_of(&self, revision: u64) -> bool {
         self.0.as_ref().is_some_and(|(of, _)| *of == revision)

@@ -2,6 +2,7 @@
 //! have the names of those that they are the twins of.
 
 mod boundary;
+mod bricks;
 mod cell;
 mod cone_rays;
 mod cones;
@@ -17,6 +18,7 @@ mod kept;
 mod libc;
 mod light;
 mod locate;
+mod mean;
 mod picture;
 mod pieces;
 mod plts;
@@ -28,6 +30,7 @@ mod resample;
 mod scene;
 mod section;
 mod shading;
+mod srg;
 mod surfaces;
 mod tally;
 mod thorough;

@@ -10,6 +10,7 @@ use super::plts;
 use super::raster::{FaceBins, Met, Projector, TILE, TileRect};
 use super::scene::Scene;
 use super::section::section_color;
+use super::srg::{self, SrgVolume};
 use super::surfaces::{Layers, Painter, SurfaceFaces};
 use super::tally::Tally;
 use super::transfer::Accumulated;
@@ -25,6 +26,8 @@ pub enum Strategy {
     Plts,
     /// Linear interpolation with barycentric coordinates.
     Libc,
+    /// Structured resampled grid.
+    Srg,
     /// Nothing: surfaces and sections are all there is.
     Solid,
 }
@@ -40,6 +43,8 @@ pub struct Picture<'a> {
     pub view: &'a View,
     /// What casts the rays.
     pub strategy: Strategy,
+    /// What rays of SRG sample.
+    pub srg: Option<SrgVolume<'a>>,
     /// Boundary faces of the drawn cells.
     pub boundary: &'a [u32],
     /// Faces of the surfaces.
@@ -145,7 +150,7 @@ impl Picture<'_> {
         let projector = Projector::new(self.scene.grid, &self.scene.frame);
         let boundary = match self.strategy {
             Strategy::Solid => &[],
-            Strategy::Plts | Strategy::Libc => self.boundary,
+            Strategy::Plts | Strategy::Libc | Strategy::Srg => self.boundary,
         };
         Bins {
             boundary: FaceBins::new(&projector, boundary),
@@ -228,6 +233,20 @@ impl Picture<'_> {
                     },
                 };
                 libc::cast(&way, layers, &mut sum, tally);
+            }
+            Strategy::Srg => {
+                let span = srg::span(pixel.met, &through, &ray, scene.frame.numbers.step);
+                if let (Some(volume), Some(span)) = (&self.srg, span) {
+                    tally.entries += 1;
+                    let way = srg::Way {
+                        scene,
+                        volume,
+                        pixel: pixel.at,
+                        ray: &ray,
+                        span,
+                    };
+                    srg::cast(&way, layers, &mut sum, tally);
+                }
             }
         }
         layers.blend_rest(&mut sum);

@@ -14,6 +14,7 @@ use super::locate::{Query, locate};
 use super::picture::{Picture, Strategy};
 use super::scene::Scene;
 use super::shading::Shading;
+use super::srg::Srg;
 use super::surfaces::SurfaceFaces;
 use super::transfer::{Tables, Transfer};
 use crate::model::{Grid as Model, Ijk};
@@ -40,6 +41,7 @@ pub struct CpuRenderer {
     revisions: Revisions,
     tables: Kept<Tables>,
     light: Illumination,
+    srg: Srg,
     /// Boundary faces of the drawn cells, once a ray needs them.
     boundary: Kept<Vec<u32>>,
     surfaces: Kept<SurfaceFaces>,
@@ -67,6 +69,7 @@ impl CpuRenderer {
             revisions: Revisions::default(),
             tables: Kept::default(),
             light: Illumination::default(),
+            srg: Srg::default(),
             boundary: Kept::default(),
             surfaces: Kept::default(),
             surface_tree: SurfaceTree::default(),
@@ -75,7 +78,7 @@ impl CpuRenderer {
 
     async fn frame(&mut self, view: &View, progress: Progress) -> Result<Frame, RenderError> {
         let start = Instant::now();
-        let strategy = supported(view)?;
+        let strategy = strategy_of(view);
         self.prepare(view)?;
         let (model, now) = (&self.model, self.revisions);
         let tables = self.tables.update(now.transfer, || Ok(Tables::new(view)))?;
@@ -86,6 +89,10 @@ impl CpuRenderer {
             tables,
         };
         self.light.update(&source, &progress).await;
+        if strategy == Strategy::Srg {
+            let (grid, _) = view.shown.cells.in_grid(model);
+            self.srg.update(&source, grid.dims(), &progress).await;
+        }
         let boundary = self.boundary.update(now.drawn, || {
             let (grid, drawn) = view.shown.cells.in_grid(model);
             face_numbers(grid, &grid.boundary_faces(drawn))
@@ -106,6 +113,7 @@ impl CpuRenderer {
             scene: &scene,
             view,
             strategy,
+            srg: self.srg.volume(),
             boundary,
             surfaces,
         };
@@ -120,6 +128,10 @@ impl CpuRenderer {
                 + DeviceBytes {
                     geometry: 4 * lists as u64,
                     lighting: self.light.bytes(),
+                    resampled: match strategy {
+                        Strategy::Srg => self.srg.bytes(),
+                        _ => 0,
+                    },
                     targets: stats.target_bytes,
                     ..DeviceBytes::default()
                 },
@@ -128,17 +140,12 @@ impl CpuRenderer {
 }
 
 /// What casts the rays of a view.
-///
-/// # Errors
-/// When the view asks for what there is not.
-fn supported(view: &View) -> Result<Strategy, RenderError> {
+fn strategy_of(view: &View) -> Strategy {
     match view.sampling.strategy {
-        _ if !view.casts_rays() => Ok(Strategy::Solid),
-        StrategyKind::Plts => Ok(Strategy::Plts),
-        StrategyKind::Libc => Ok(Strategy::Libc),
-        StrategyKind::Srg => Err(RenderError::Unsupported {
-            what: "the strategy srg",
-        }),
+        _ if !view.casts_rays() => Strategy::Solid,
+        StrategyKind::Plts => Strategy::Plts,
+        StrategyKind::Libc => Strategy::Libc,
+        StrategyKind::Srg => Strategy::Srg,
     }
 }
 

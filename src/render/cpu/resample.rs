@@ -1,12 +1,12 @@
 //! Fills volumes with a field by point location down their lines of voxels. The twin of `shaders/resample.wgsl`.
 
-use glam::{Vec3A, Vec4};
+use glam::{Vec2, Vec3A, Vec4};
 
 use super::frame::Ray;
 use super::grid::Grid;
 use super::tally::Tally;
 use super::topology::Track;
-use super::volume::{Voxels, in_parts};
+use super::volume::{Voxel, Voxels, averages, in_parts};
 use crate::render::job::Progress;
 use crate::render::plan::layout::{
     PACKED_COVERAGE, PACKED_GHOST, PACKED_SHIFT, PACKED_VALUES, VolumeInfo,
@@ -31,29 +31,52 @@ pub struct Resampler<'a> {
     size: [u32; 3],
 }
 
-/// A volume of values and presence.
+/// A volume of values and presence, level by level of its average pyramid.
 pub enum Field {
     /// The value as a part of the range times presence, and presence: 1 in a drawn cell and 0 elsewhere.
-    Drawn(Voxels<[u16; 2]>),
+    Drawn(Vec<Voxels<[u16; 2]>>),
     /// The same two, presence of a ghost, and 0.
-    WithGhosts(Voxels<[u16; 4]>),
+    WithGhosts(Vec<Voxels<[u16; 4]>>),
 }
 
 impl Field {
     /// Value times presence, presence, and presence of ghosts.
-    pub fn sample(&self, at: Vec3A) -> Vec4 {
+    pub fn sample(&self, at: Vec3A, level: usize) -> Vec4 {
         match self {
-            Self::Drawn(voxels) => voxels.sample(at).extend(0.0).extend(0.0),
-            Self::WithGhosts(voxels) => voxels.sample(at),
+            Self::Drawn(levels) => levels[level].sample(at).extend(0.0).extend(0.0),
+            Self::WithGhosts(levels) => levels[level].sample(at),
+        }
+    }
+
+    /// Value times presence, and presence, of a voxel of the finest level.
+    pub fn voxel(&self, at: [usize; 3]) -> Vec2 {
+        match self {
+            Self::Drawn(levels) => levels[0].at(at).number(),
+            Self::WithGhosts(levels) => levels[0].at(at).number().truncate().truncate(),
+        }
+    }
+
+    /// Makes the coarser levels, up to so many in all.
+    pub async fn average(&mut self, levels: u32, progress: &Progress) {
+        match self {
+            Self::Drawn(made) => coarser(made, levels, progress).await,
+            Self::WithGhosts(made) => coarser(made, levels, progress).await,
         }
     }
 
     /// Bytes that it takes.
     pub fn bytes(&self) -> u64 {
         match self {
-            Self::Drawn(voxels) => voxels.bytes(),
-            Self::WithGhosts(voxels) => voxels.bytes(),
+            Self::Drawn(levels) => levels.iter().map(Voxels::bytes).sum(),
+            Self::WithGhosts(levels) => levels.iter().map(Voxels::bytes).sum(),
         }
+    }
+}
+
+async fn coarser<T: Voxel>(made: &mut Vec<Voxels<T>>, levels: u32, progress: &Progress) {
+    while let Some(fine) = made.last().filter(|_| made.len() < levels as usize) {
+        let coarse = averages(fine, progress).await;
+        made.push(coarse);
     }
 }
 
@@ -81,7 +104,7 @@ impl<'a> Resampler<'a> {
             let fill = |x, y, line: &mut [[u16; 2]]| {
                 self.for_each(x, y, 1, |f| line[f.n] = [in_parts(f.stored), one]);
             };
-            return Field::Drawn(Voxels::by_lines(self.size, progress, fill).await);
+            return Field::Drawn(vec![Voxels::by_lines(self.size, progress, fill).await]);
         }
         let fill = |x, y, line: &mut [[u16; 4]]| {
             self.for_each(x, y, 1, |f| {
@@ -91,7 +114,7 @@ impl<'a> Resampler<'a> {
                 };
             });
         };
-        Field::WithGhosts(Voxels::by_lines(self.size, progress, fill).await)
+        Field::WithGhosts(vec![Voxels::by_lines(self.size, progress, fill).await])
     }
 
     /// Finds the samples of a line that lie in cells, `parts` of them in a voxel.

@@ -31,6 +31,8 @@ pub struct Tally {
     pub lost_rays: u64,
     /// Rays that have reached their end.
     pub rays: u64,
+    /// Steps of rays through a volume that met no sample.
+    pub skips: u64,
     /// Surface points that got their colors.
     pub painted: u64,
 }
@@ -49,6 +51,7 @@ impl AddAssign for Tally {
         self.recovered += other.recovered;
         self.lost_rays += other.lost_rays;
         self.rays += other.rays;
+        self.skips += other.skips;
         self.painted += other.painted;
     }
 }
@@ -69,7 +72,7 @@ impl Tally {
             peels: self.peels,
             recovered_rays: self.recovered,
             lost_rays: self.lost_rays,
-            work: self.samples + self.iterations + self.steps + self.painted,
+            work: self.samples + self.iterations + self.steps + self.skips + self.painted,
             ..FrameStats::default()
         }
     }

@@ -104,7 +104,12 @@ impl<'a> Transfer<'a> {
 
     /// Color and extinction of the inside of a cell.
     pub fn of(&self, value: f32) -> Vec4 {
-        let entry = self.color(value);
+        self.at(self.position(value))
+    }
+
+    /// Color and extinction of the inside of a cell, by its position.
+    pub fn at(&self, position: f32) -> Vec4 {
+        let entry = self.tables.at(position);
         match self.is_solid {
             true => entry.xyz().extend(0.0),
             false => entry,
@@ -113,11 +118,6 @@ impl<'a> Transfer<'a> {
 
     fn position(&self, value: f32) -> f32 {
         ((value - self.value_low) * self.value_scale).clamp(0.0, 1.0)
-    }
-
-    /// Color and extinction of a value, whatever is seen of insides.
-    fn color(&self, value: f32) -> Vec4 {
-        between(&self.tables.table, self.position(value))
     }
 
     /// Means over the values between two: of extinction times color, and of extinction.

@@ -4,6 +4,7 @@ use std::ops::{Add, Mul, Sub};
 
 use glam::{Vec2, Vec3A, Vec4};
 
+use super::mean::overlap;
 use super::pieces::in_groups;
 use crate::render::job::Progress;
 
@@ -17,6 +18,9 @@ pub trait Voxel: Copy + Default + Send + Sync {
 
     /// The voxel as numbers.
     fn number(self) -> Self::Number;
+
+    /// The voxel of numbers.
+    fn of(number: Self::Number) -> Self;
 }
 
 impl Voxel for f32 {
@@ -25,6 +29,10 @@ impl Voxel for f32 {
     fn number(self) -> Self {
         self
     }
+
+    fn of(number: Self) -> Self {
+        number
+    }
 }
 
 impl Voxel for Vec4 {
@@ -32,6 +40,10 @@ impl Voxel for Vec4 {
 
     fn number(self) -> Self {
         self
+    }
+
+    fn of(number: Self) -> Self {
+        number
     }
 }
 
@@ -42,6 +54,10 @@ impl Voxel for [u16; 2] {
     fn number(self) -> Vec2 {
         Vec2::from_array(self.map(f32::from)) * ONE_PART
     }
+
+    fn of(number: Vec2) -> Self {
+        number.to_array().map(in_parts)
+    }
 }
 
 /// Parts of one, in 16 bits each.
@@ -50,6 +66,10 @@ impl Voxel for [u16; 4] {
 
     fn number(self) -> Vec4 {
         Vec4::from_array(self.map(f32::from)) * ONE_PART
+    }
+
+    fn of(number: Vec4) -> Self {
+        number.to_array().map(in_parts)
     }
 }
 
@@ -68,15 +88,32 @@ pub struct Voxels<T> {
     pub size: [usize; 3],
     /// All of them.
     pub data: Vec<T>,
+    /// The same numbers as `size`, those of the last voxel along each axis, and those of the last pair.
+    counts: Vec3A,
+    last: Vec3A,
+    last_pair: Vec3A,
+    /// From a voxel to the next one along each axis; none where there is but one.
+    steps: [usize; 3],
 }
 
 impl<T: Copy + Default + Send + Sync> Voxels<T> {
     /// So many voxels, all zero.
     pub fn new(size: [u32; 3]) -> Self {
+        let counts = Vec3A::from_array(size.map(|n| n as f32));
         let size = size.map(|n| n as usize);
+        let [width, height, depth] = size;
+        let next = |step: usize, n: usize| if n > 1 { step } else { 0 };
         Self {
             size,
-            data: vec![T::default(); size.iter().product()],
+            data: vec![T::default(); width * height * depth],
+            counts,
+            last: counts - 1.0,
+            last_pair: (counts - 2.0).max(Vec3A::ZERO),
+            steps: [
+                next(1, width),
+                next(width, height),
+                next(width * height, depth),
+            ],
         }
     }
 
@@ -146,19 +183,13 @@ impl<T: Copy + Default + Send + Sync> Voxels<T> {
 impl<T: Voxel> Voxels<T> {
     /// Linear between the middles of voxels at a place of the box, 0 to 1 each way; behind the outermost as there.
     pub fn sample(&self, at: Vec3A) -> T::Number {
-        let [width, height, depth] = self.size;
-        let count = Vec3A::new(width as f32, height as f32, depth as f32);
-        let place = (at * count - 0.5).clamp(Vec3A::ZERO, count - 1.0);
-        let low = place.floor().min((count - 2.0).max(Vec3A::ZERO));
+        let place = (at * self.counts - 0.5).clamp(Vec3A::ZERO, self.last);
+        let low = place.floor().min(self.last_pair);
         let [fx, fy, fz] = (place - low).to_array();
         let [x, y, z] = low.to_array().map(|n| n as usize);
+        let [width, height, _] = self.size;
         let first = x + width * (y + height * z);
-        let next = |step: usize, n: usize| if n > 1 { step } else { 0 };
-        let (dx, dy, dz) = (
-            next(1, width),
-            next(width, height),
-            next(width * height, depth),
-        );
+        let [dx, dy, dz] = self.steps;
         let cube = &self.data[first..=first + dx + dy + dz];
         let along = |n: usize| {
             let (a, b) = (cube[n].number(), cube[n + dx].number());
@@ -171,6 +202,37 @@ impl<T: Voxel> Voxels<T> {
         let (a, b) = (across(0), across(dz));
         a + (b - a) * fz
     }
+}
+
+/// Coarser voxels, each the mean of what it covers.
+pub async fn averages<T: Voxel>(fine: &Voxels<T>, progress: &Progress) -> Voxels<T> {
+    let size = fine.size.map(|n| (n / 2).max(1));
+    // An odd number of voxels has no pairs: up to four along an axis lie within a larger one, in whole or in part.
+    let covered = |axis: usize, voxel: usize| {
+        let (from, to) = (fine.size[axis], size[axis]);
+        let range = voxel * from / to..((voxel + 1) * from).div_ceil(to);
+        let [fine, coarse] = [from, to].map(|n| n as i32);
+        range.map(move |n| {
+            let part = overlap(n as i32, voxel as i32, fine, coarse);
+            (n, part as f32 / from as f32)
+        })
+    };
+    Voxels::by_rows(size.map(|n| n as u32), progress, |y, z| {
+        let mean = |x| {
+            let mut sum = T::default().number();
+            for (z, in_z) in covered(2, z) {
+                for (y, in_y) in covered(1, y) {
+                    let row = fine.row(y, z);
+                    for (x, in_x) in covered(0, x) {
+                        sum = sum + row[x].number() * (in_x * in_y * in_z);
+                    }
+                }
+            }
+            T::of(sum)
+        };
+        (0..size[0]).map(mean).collect()
+    })
+    .await
 }
 
 #[cfg(test)]
