@@ -27,7 +27,7 @@ fn viewed(case: &Case, parts: &[&Value]) -> View {
 }
 
 fn on_cpu(case: &Case) -> Box<dyn Renderer> {
-    CpuExecutor.renderer(&case.grid).unwrap()
+    CpuExecutor::default().renderer(&case.grid).unwrap()
 }
 
 fn image(renderer: &mut dyn Renderer, view: &View) -> Image {

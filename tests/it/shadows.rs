@@ -165,7 +165,7 @@ fn counted(view: &View, image: &Image, lights: &[Light]) -> ([u32; 4], u32) {
 /// turned around, and none where they are off. Gives the pixels by the lights that reach them.
 fn check(name: &str, lights: &[Light], ways: &[(&str, StrategyKind)]) -> Option<[u32; 4]> {
     let gpu = GpuExecutor::from(common::gpu()?);
-    let executors: [&dyn Executor; 2] = [&gpu, &CpuExecutor];
+    let executors: [&dyn Executor; 2] = [&gpu, &CpuExecutor::default()];
     let of = |executor: &&dyn Executor| check_on(*executor, name, lights, ways);
     executors.iter().map(of).last()
 }
