@@ -6,7 +6,7 @@ use std::f32::consts::TAU;
 use glam::Vec3A;
 
 use super::extinction::depth_of;
-use super::light::{Lamp, across};
+use super::lamps::{Lamp, across};
 use super::random::{pcg, unit};
 use super::volume::Voxels;
 

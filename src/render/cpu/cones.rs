@@ -4,7 +4,7 @@
 use glam::Vec3A;
 
 use super::extinction::Pyramid;
-use super::light::{Lamp, across};
+use super::lamps::{Lamp, Section, across};
 use crate::render::plan::layout::LightingInfo;
 
 /// Centers of three circles packed in a circle, as a part of its radius; and of the outer six of seven.
@@ -16,33 +16,6 @@ const DARK: f32 = 8.0;
 const MOST_OUTSIDE: f32 = 12.0;
 /// Half the square root of three.
 const COS_30: f32 = 0.866_025_4;
-
-/// A section of a cone.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Section {
-    /// From the tip.
-    distance: f32,
-    /// Of the pyramid.
-    level: usize,
-    /// Factor on its depths.
-    amplitude: f32,
-    weight: f32,
-    /// 1 / (2 s^2) for the standard deviation s of the level.
-    fade: f32,
-}
-
-impl Section {
-    /// As it is planned: distance, level, amplitude, weight.
-    pub fn of([distance, level, amplitude, weight]: [f32; 4]) -> Self {
-        Self {
-            distance,
-            level: level as usize,
-            amplitude,
-            weight,
-            fade: 0.5 * (-2.0 * level).exp2(),
-        }
-    }
-}
 
 /// A pyramid that cones are traced through, over a box of `size` in lighting space.
 #[derive(Clone, Copy)]

@@ -4,7 +4,7 @@
 use glam::{IVec3, Vec3A, Vec4};
 
 use super::cones::Cones;
-use super::light::Lamp;
+use super::lamps::Lamp;
 use super::resample::FieldVoxel;
 use super::volume::Voxels;
 use crate::render::job::Progress;

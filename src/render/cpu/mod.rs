@@ -15,6 +15,7 @@ mod grid;
 mod illuminate;
 mod illumination;
 mod kept;
+mod lamps;
 mod libc;
 mod light;
 mod locate;

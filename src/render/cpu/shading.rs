@@ -4,7 +4,8 @@
 use glam::{Vec3A, Vec4};
 
 use super::frame::Frame;
-use super::light::{Light, smoothstep};
+use super::lamps::smoothstep;
+use super::light::Light;
 use crate::render::plan::layout::LIGHT_OFF;
 use crate::view::lighting::{GRADIENT_FADE, Lighting, SHININESS, SPECULAR};
 use crate::view::surfaces::HEADLIGHT_AMBIENT;
