@@ -37,15 +37,16 @@ fn image(renderer: &mut dyn Renderer, view: &View) -> Image {
 }
 
 /// PSNR in dB of all pixels but the few at outlines, where one executor's ray may meet a face that the other's just
-/// misses; these must be fewer than one of a hundred.
+/// misses; infinite where they are the same. Those that are left out are fewer than one of two hundred, or the images
+/// do not agree at all.
 fn agreement(a: &Image, b: &Image, view: &View) -> f64 {
     let [a, b] = [a, b].map(|i| i.over_background_8bit(view.style.background));
-    let apart = |n: &usize| (0..3).map(|c| a[*n][c].abs_diff(b[*n][c])).max();
-    let mut order: Vec<usize> = (0..a.len()).collect();
-    order.sort_by_key(apart);
-    order.truncate(a.len() - a.len() / 100);
-    let [a, b] = [&a, &b].map(|i| order.iter().map(|n| i[*n]).collect::<Vec<_>>());
-    psnr_8bit(a.as_flattened(), b.as_flattened())
+    let is_near = |(a, b): &(&[u8; 3], &[u8; 3])| (0..3).all(|c| a[c].abs_diff(b[c]) <= 8);
+    let (of_a, of_b): (Vec<[u8; 3]>, Vec<[u8; 3]>) = a.iter().zip(&b).filter(is_near).unzip();
+    match 200 * (a.len() - of_a.len()) <= a.len() {
+        true => psnr_8bit(of_a.as_flattened(), of_b.as_flattened()),
+        false => 0.0,
+    }
 }
 
 fn psnr(a: &Image, b: &Image, view: &View) -> f64 {
@@ -240,7 +241,7 @@ fn the_resampled_grid_is_as_near_to_the_reference_as_on_the_gpu() {
 /// Occlusion, a directional light and a spot on the sample, in small volumes.
 fn lit() -> Value {
     json!({
-        "size": [40, 30], "property": "SWAT", "vertical_exaggeration": 8.0, "step": 0,
+        "size": [16, 12], "property": "SWAT", "vertical_exaggeration": 8.0, "step": 0,
         "interpolation": "vertex", "filter": {}, "clip": [], "background": "#ffffff",
         "lighting": {
             "occlusion": {"strength": 0.8, "half_angle_degrees": 20},
@@ -320,7 +321,7 @@ fn a_canceled_update_leaves_nothing_stale() {
         assert!(was != expected);
         let mut renderer = on_cpu(&case);
         let mut canceled = 0;
-        for calls in 0u32.. {
+        for calls in (0u32..).step_by(7) {
             assert!(image(&mut *renderer, &first) == was, "after {calls} calls");
             let left = Cell::new(calls);
             let progress = |_| left.replace(left.get().saturating_sub(1)) > 0;

@@ -166,8 +166,11 @@ fn counted(view: &View, image: &Image, lights: &[Light]) -> ([u32; 4], u32) {
 fn check(name: &str, lights: &[Light], ways: &[(&str, StrategyKind)]) -> Option<[u32; 4]> {
     let gpu = GpuExecutor::from(common::gpu()?);
     let executors: [&dyn Executor; 2] = [&gpu, &CpuExecutor::default()];
-    let of = |executor: &&dyn Executor| check_on(*executor, name, lights, ways);
-    executors.iter().map(of).last()
+    let mut counts = None;
+    for executor in executors {
+        counts = Some(check_on(executor, name, lights, ways));
+    }
+    counts
 }
 
 /// As [`check`], by an executor.

@@ -38,11 +38,7 @@ impl Pyramid {
             let below = means.as_ref().unwrap_or(opacities);
             let taps = |line: &Line| Taps::gaussian(line);
             let (size, of) = (shape.at(level), Some(level));
-            let mut made = filtered(below, size, blur, of, &taps, progress).await;
-            for opacity in &mut made.data {
-                *opacity = depth_of(*opacity);
-            }
-            levels.push(made);
+            levels.push(filtered(below, size, blur, of, &taps, progress).await);
         }
         Self(levels)
     }
@@ -153,7 +149,7 @@ impl Taps {
     }
 }
 
-/// Filters opacities along x, y and depth in turn: by the Gaussian of a level, or into their means.
+/// Filters opacities along x, y and depth in turn: into optical depths by the Gaussian of a level, or into their means.
 async fn filtered(
     below: &Voxels<f32>,
     size: [u32; 3],
@@ -183,7 +179,14 @@ async fn filtered(
         rows(&along_y.0[y], size[0], |n| first.row(n, z))
     });
     let second = second.await;
-    let third = |y: usize, z: usize| rows(&along_z.0[z], size[0], |n| second.row(y, n));
+    let third = |y: usize, z: usize| {
+        let mut row = rows(&along_z.0[z], size[0], |n| second.row(y, n));
+        if level.is_some() {
+            row.iter_mut()
+                .for_each(|opacity| *opacity = depth_of(*opacity));
+        }
+        row
+    };
     Voxels::by_rows(size, progress, third).await
 }
 

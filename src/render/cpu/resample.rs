@@ -6,7 +6,7 @@ use super::frame::Ray;
 use super::grid::Grid;
 use super::tally::Tally;
 use super::topology::Track;
-use super::volume::{Voxel, Voxels, averages, in_parts};
+use super::volume::{ONE_PART, Voxel, Voxels, averages, in_parts};
 use crate::render::job::Progress;
 use crate::render::plan::layout::{
     PACKED_COVERAGE, PACKED_GHOST, PACKED_SHIFT, PACKED_VALUES, VolumeInfo,
@@ -43,17 +43,21 @@ impl Field {
     /// Value times presence, presence, and presence of ghosts.
     pub fn sample(&self, at: Vec3A, level: usize) -> Vec4 {
         match self {
-            Self::Drawn(levels) => levels[level].sample(at).extend(0.0).extend(0.0),
-            Self::WithGhosts(levels) => levels[level].sample(at),
+            Self::Drawn(levels) => {
+                let [value, presence] = levels[level].sample(at).to_array();
+                ONE_PART * Vec4::new(value, presence, 0.0, 0.0)
+            }
+            Self::WithGhosts(levels) => ONE_PART * levels[level].sample(at),
         }
     }
 
     /// Value times presence, and presence, of a voxel of the finest level.
     pub fn voxel(&self, at: [usize; 3]) -> Vec2 {
-        match self {
+        let parts = match self {
             Self::Drawn(levels) => levels[0].at(at).number(),
             Self::WithGhosts(levels) => levels[0].at(at).number().truncate().truncate(),
-        }
+        };
+        ONE_PART * parts
     }
 
     /// Makes the coarser levels, up to so many in all.

@@ -158,6 +158,7 @@ impl<'a> Transfer<'a> {
 }
 
 /// Linear between the entries of a table, at a position from 0 to 1.
+#[inline]
 fn between(table: &[Vec4], position: f32) -> Vec4 {
     let at = position * (LUT_SIZE - 1) as f32;
     let entry = (at as usize).min(LUT_SIZE as usize - 2);

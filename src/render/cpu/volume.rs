@@ -47,33 +47,34 @@ impl Voxel for Vec4 {
     }
 }
 
-/// Parts of one, in 16 bits each.
+/// Numbers are so many [`ONE_PART`]s.
 impl Voxel for [u16; 2] {
     type Number = Vec2;
 
     fn number(self) -> Vec2 {
-        Vec2::from_array(self.map(f32::from)) * ONE_PART
+        Vec2::from_array(self.map(f32::from))
     }
 
     fn of(number: Vec2) -> Self {
-        number.to_array().map(in_parts)
+        number.to_array().map(|n| (n + 0.5) as u16)
     }
 }
 
-/// Parts of one, in 16 bits each.
+/// Numbers are so many [`ONE_PART`]s.
 impl Voxel for [u16; 4] {
     type Number = Vec4;
 
     fn number(self) -> Vec4 {
-        Vec4::from_array(self.map(f32::from)) * ONE_PART
+        Vec4::from_array(self.map(f32::from))
     }
 
     fn of(number: Vec4) -> Self {
-        number.to_array().map(in_parts)
+        number.to_array().map(|n| (n + 0.5) as u16)
     }
 }
 
-const ONE_PART: f32 = 1.0 / 65535.0;
+/// What numbers from 0 to 1 are stored in.
+pub const ONE_PART: f32 = 1.0 / 65535.0;
 
 /// A number from 0 to 1 in 16 bits.
 pub fn in_parts(number: f32) -> u16 {
@@ -182,6 +183,7 @@ impl<T: Copy + Default + Send + Sync> Voxels<T> {
 
 impl<T: Voxel> Voxels<T> {
     /// Linear between the middles of voxels at a place of the box, 0 to 1 each way; behind the outermost as there.
+    #[inline]
     pub fn sample(&self, at: Vec3A) -> T::Number {
         let place = (at * self.counts - 0.5).clamp(Vec3A::ZERO, self.last);
         let low = place.floor().min(self.last_pair);
