@@ -61,7 +61,9 @@ pub enum ViewerError {
     )]
     NoDisplay,
     /// The system or the driver refuses.
-    #[error("the window cannot be opened: {0}")]
+    #[error(
+        "the window cannot be opened: {0}; `strataray doctor` tells what is missing, and `strataray render CASE -o image.png` needs no window"
+    )]
     Refused(String),
 }
 

@@ -1,7 +1,7 @@
 //! What every executor must do alike: images against the f64 reference, looks against each other.
 
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use crate::common;
 use crate::common::shape::Shape;
@@ -342,7 +342,6 @@ fn an_image_is_made_in_pieces_and_can_be_left() {
     assert!(matches!(canceled, Err(RenderError::Canceled)));
     let whole = renderer.render(&view, &|_| true).unwrap();
     assert!(whole.stats.submissions > 3);
-    assert!(whole.stats.longest_submission < Duration::from_millis(500));
     let mut job = renderer.start(&view);
     let mut pieces = 0;
     let pieced = loop {
