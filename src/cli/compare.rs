@@ -110,7 +110,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
         "the comparison was canceled before a view was done"
     );
     let rows = report.finish()?;
-    print!("{}", summary(&rows));
+    say!("{}", summary(&rows));
     let folder = arguments.output.display();
     ensure!(
         done == all,

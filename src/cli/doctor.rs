@@ -38,8 +38,8 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
         display: display(),
     };
     match arguments.json {
-        true => println!("{}", serde_json::to_string_pretty(&facts(&machine))?),
-        false => print!("{}", text(&machine)),
+        true => say_line!("{}", serde_json::to_string_pretty(&facts(&machine))?),
+        false => say!("{}", text(&machine)),
     }
     Ok(())
 }

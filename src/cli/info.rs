@@ -35,7 +35,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let case = arguments.added.open_case(&arguments.case, &reporter)?;
     let facts = facts(&case, &arguments.stats)?;
     if arguments.json {
-        println!("{}", serde_json::to_string_pretty(&facts)?);
+        say_line!("{}", serde_json::to_string_pretty(&facts)?);
     } else {
         print_text(&case, &facts);
     }
@@ -146,8 +146,8 @@ fn map_bounds(case: &Case, axes: MapAxes) -> Value {
 
 fn print_text(case: &Case, facts: &Value) {
     let dims = case.grid.dims();
-    println!("{}", case.about.name);
-    println!(
+    say_line!("{}", case.about.name);
+    say_line!(
         "  {} x {} x {} = {} cells, {} active",
         dims.ni,
         dims.nj,
@@ -155,7 +155,7 @@ fn print_text(case: &Case, facts: &Value) {
         dims.cells(),
         facts["active"]
     );
-    println!(
+    say_line!(
         "  length unit {}, bulk volume {:.6e} {}, {}-handed",
         case.about.length_unit,
         facts["bulk_volume"].as_f64().unwrap_or_default(),
@@ -166,13 +166,13 @@ fn print_text(case: &Case, facts: &Value) {
         let end = |end: &str, n: usize| bounds[end][n].as_f64().unwrap_or_default();
         let range = |n: usize| format!("{:.2} to {:.2}", end("min", n), end("max", n));
         let unit = &case.about.map_unit;
-        println!(
+        say_line!(
             "  easting {} {unit}, northing {} {unit}",
             range(0),
             range(1)
         );
     }
-    println!(
+    say_line!(
         "  fault faces {} along i, {} along j; {} non-neighbor connections; {} local grids",
         facts["fault_faces"]["i"],
         facts["fault_faces"]["j"],
@@ -187,20 +187,20 @@ fn print_text(case: &Case, facts: &Value) {
             .map(|p| p.name.as_str())
             .collect();
         if !names.is_empty() {
-            println!("  {kind:?}: {}", names.join(" "));
+            say_line!("  {kind:?}: {}", names.join(" "));
         }
     }
     for property in &case.properties {
         if let Some(formula) = property.formula() {
-            println!("  {} = {formula}", property.name);
+            say_line!("  {} = {formula}", property.name);
         }
         if let Some(doubt) = &property.doubt {
-            println!("  {}: {doubt}", property.name);
+            say_line!("  {}: {doubt}", property.name);
         }
     }
     for fault in &case.about.named_faults {
         let multiplier = fault.multiplier.map(|m| format!(", multiplier {m}"));
-        println!(
+        say_line!(
             "  fault {}: {} faces{}",
             fault.name,
             fault.faces,
@@ -208,19 +208,24 @@ fn print_text(case: &Case, facts: &Value) {
         );
     }
     for (index, step) in case.steps.iter().enumerate() {
-        println!(
+        say_line!(
             "  step {index}: report {}, {}, {} days",
-            step.report, step.date, step.days
+            step.report,
+            step.date,
+            step.days
         );
     }
     if !case.about.wells.is_empty() {
-        println!("  wells: {}", case.about.wells.join(" "));
+        say_line!("  wells: {}", case.about.wells.join(" "));
     }
     if let Some(stats) = facts.get("stats").and_then(Value::as_object) {
         for (name, s) in stats {
-            println!(
+            say_line!(
                 "  {name}: min {} max {} mean {} undefined {}",
-                s["min"], s["max"], s["mean"], s["undefined"]
+                s["min"],
+                s["max"],
+                s["mean"],
+                s["undefined"]
             );
         }
     }

@@ -50,11 +50,11 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let mut renderer = executor.renderer(&case.grid)?;
     let pick = picking::pick(&mut *renderer, &case, &shot.view, at)?;
     match arguments.json {
-        true => println!(
+        true => say_line!(
             "{}",
             serde_json::to_string_pretty(&facts(&case, pixel, &pick))?
         ),
-        false => print!("{}", text(&case, pixel, &pick)),
+        false => say!("{}", text(&case, pixel, &pick)),
     }
     Ok(())
 }

@@ -67,7 +67,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
         anyhow::Ok(save::synthetic(model, &target, progress)?)
     })?;
     for file in &files {
-        println!("{}", file.display());
+        say_line!("{}", file.display());
     }
     if let Some(grid) = files.first() {
         let grid = grid.display();

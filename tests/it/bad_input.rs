@@ -160,3 +160,19 @@ fn results_of_another_grid_are_named_and_the_rest_is_shown() {
     );
     assert!(case.field("SWAT", 3).is_ok());
 }
+
+#[test]
+fn a_reader_that_stops_reading_ends_a_command_quietly() {
+    let sample = common::sample();
+    let mut child = Command::new(env!("CARGO_BIN_EXE_strataray"))
+        .args(["info", "--json"])
+        .arg(sample)
+        .stdout(std::process::Stdio::piped())
+        .stderr(std::process::Stdio::piped())
+        .spawn()
+        .unwrap();
+    drop(child.stdout.take());
+    let output = child.wait_with_output().unwrap();
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success() && said.is_empty(), "{said}");
+}

@@ -151,14 +151,14 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
         }
     }
     if !bench.cases.is_empty() {
-        print!("{}", table::text(&bench));
+        say!("{}", table::text(&bench));
     }
     if let Some(path) = &arguments.json {
         std::fs::write(path, serde_json::to_string_pretty(&bench)?)
             .with_context(|| format!("cannot write {}", path.display()))?;
     }
     if let Some(before) = before {
-        print!(
+        say!(
             "{}",
             against::text(&before, &serde_json::to_value(&bench)?)?
         );
