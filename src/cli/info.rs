@@ -190,6 +190,22 @@ fn print_text(case: &Case, facts: &Value) {
             say_line!("  {kind:?}: {}", names.join(" "));
         }
     }
+    print_notes(case);
+    if let Some(stats) = facts.get("stats").and_then(Value::as_object) {
+        for (name, s) in stats {
+            say_line!(
+                "  {name}: min {} max {} mean {} undefined {}",
+                s["min"],
+                s["max"],
+                s["mean"],
+                s["undefined"]
+            );
+        }
+    }
+}
+
+/// What is known of properties, faults, steps and wells, by name.
+fn print_notes(case: &Case) {
     for property in &case.properties {
         if let Some(formula) = property.formula() {
             say_line!("  {} = {formula}", property.name);
@@ -217,16 +233,5 @@ fn print_text(case: &Case, facts: &Value) {
     }
     if !case.about.wells.is_empty() {
         say_line!("  wells: {}", case.about.wells.join(" "));
-    }
-    if let Some(stats) = facts.get("stats").and_then(Value::as_object) {
-        for (name, s) in stats {
-            say_line!(
-                "  {name}: min {} max {} mean {} undefined {}",
-                s["min"],
-                s["max"],
-                s["mean"],
-                s["undefined"]
-            );
-        }
     }
 }

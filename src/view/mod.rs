@@ -236,7 +236,7 @@ impl View {
         box_corners(&self.world.spaces, bounds)
     }
 
-    /// The value that a number of [`Shown::field`], or between such numbers, stands for.
+    /// The value that a number of [`ShownCells::field`], or between such numbers, stands for.
     pub fn true_value(&self, shown: f64) -> f64 {
         self.style.transfer.scale.true_value(shown)
     }
