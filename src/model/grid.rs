@@ -112,6 +112,8 @@ pub struct GridInput<'a, C, Z> {
 pub struct Grid {
     dims: Dims,
     pillars: Arc<[Pillar]>,
+    /// Of the pillars: corners are asked for much more often than pillars are made.
+    slopes: Arc<[DVec2]>,
     lists: Arc<[DepthList]>,
     depths: Arc<[f64]>,
     active_cells: Vec<CellIndex>,
@@ -135,7 +137,7 @@ impl Grid {
         let dims = input.dims;
         check(input)?;
         let coord: Vec<f64> = input.coord.iter().map(|&v| v.into()).collect();
-        let pillars = coord
+        let pillars: Arc<[Pillar]> = coord
             .chunks_exact(6)
             .map(|c| Pillar {
                 top: DVec3::new(c[0], c[1], c[2]),
@@ -153,6 +155,7 @@ impl Grid {
         }
         Ok(Self {
             dims,
+            slopes: pillars.iter().map(Pillar::slope).collect(),
             pillars,
             lists: lists.into(),
             depths: depths.into(),
@@ -174,7 +177,11 @@ impl Grid {
 
     /// The pillar at corner `corner` (`di + 2 dj`) of column (`i`, `j`).
     pub fn pillar(&self, i: usize, j: usize, corner: usize) -> &Pillar {
-        &self.pillars[(i + (corner & 1)) + (self.dims.ni + 1) * (j + (corner >> 1 & 1))]
+        &self.pillars[self.pillar_index(i, j, corner)]
+    }
+
+    fn pillar_index(&self, i: usize, j: usize, corner: usize) -> usize {
+        (i + (corner & 1)) + (self.dims.ni + 1) * (j + (corner >> 1 & 1))
     }
 
     /// The same grid with its inactive cells active too.
@@ -183,6 +190,7 @@ impl Grid {
         Self {
             dims: self.dims,
             pillars: self.pillars.clone(),
+            slopes: self.slopes.clone(),
             lists: self.lists.clone(),
             depths: self.depths.clone(),
             active_cells: (0..cells).map(CellIndex).collect(),
@@ -234,10 +242,16 @@ impl Grid {
 
     /// The hexahedron of a cell in grid space.
     pub fn hexahedron(&self, ijk: Ijk) -> Hexahedron {
-        Hexahedron(std::array::from_fn(|corner| {
-            self.pillar(ijk.i, ijk.j, corner & 3)
-                .at(self.corner_depth(ijk, corner))
-        }))
+        let mut corners = [DVec3::ZERO; 8];
+        for corner in 0..4 {
+            let pillar = self.pillar_index(ijk.i, ijk.j, corner);
+            let (top, slope) = (self.pillars[pillar].top, self.slopes[pillar]);
+            for end in [corner, corner + 4] {
+                let depth = self.corner_depth(ijk, end);
+                corners[end] = (top.truncate() + slope * (depth - top.z)).extend(depth);
+            }
+        }
+        Hexahedron(corners)
     }
 
     /// The active cells in natural order.
