@@ -28,6 +28,7 @@ pub use stats::{DeviceBytes, Frame, FrameStats, LightTimes};
 
 use crate::model::{Grid, Ijk};
 use crate::view::View;
+use line_of_sight::{Sighting, SurfaceTree};
 
 /// Who makes images.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -104,7 +105,17 @@ pub trait Renderer {
     ///
     /// # Errors
     /// When the device reports an error.
-    fn look(&mut self, view: &View, at: DVec2) -> Result<Option<LineOfSight>, RenderError>;
+    fn look(&mut self, view: &View, at: DVec2) -> Result<Option<LineOfSight>, RenderError> {
+        let grid = self.grid().clone();
+        let Some(sighting) = Sighting::through(&grid, view, at, self.surface_tree()) else {
+            return Ok(None);
+        };
+        let located = self.locate(view, &sighting.points())?;
+        Ok(Some(sighting.located(&located)))
+    }
+
+    /// The faces of surfaces that [`Self::look`] has met, kept from one place to the next.
+    fn surface_tree(&mut self) -> &mut SurfaceTree;
 
     /// Makes an image, and tells after each piece how much of it, or of what is prepared for it, is done.
     ///

@@ -121,3 +121,14 @@ pub mod parallelepipeds {
         3.0 + p.dot(DVec3::new(2e-3, -3e-3, 4e-3)) + square * p.x.powi(2)
     }
 }
+
+/// Three by three columns of two layers that cross: from 1000 to 1020, and from 1010 to 1030.
+pub fn crossing() -> Case {
+    Shape {
+        dims: [3, 3, 2],
+        depth: &|[_, _, k], [_, _, dk]| 1000.0 + 10.0 * k as f64 + 20.0 * dk as f64,
+        value: &|[_, _, k]| 0.1 + 0.2 * k as f64,
+        ..Shape::default()
+    }
+    .case()
+}

@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use crate::common;
-use crate::common::shape::Shape;
+use crate::common::shape::{Shape, crossing};
 use glam::DVec3;
 use serde_json::{Value, json};
 use strataray::case::{Case, load};
@@ -234,17 +234,6 @@ fn odd(drawn_in: f64) -> Case {
         },
         value: &|[i, j, k]| ((3 * i + 5 * j + 7 * k) % 10) as f64 / 10.0,
         active: &|[i, j, k]| (i, j, k) != (1, 1, 4),
-        ..Shape::default()
-    }
-    .case()
-}
-
-/// Three by three columns of two layers that cross: from 1000 to 1020, and from 1010 to 1030.
-fn crossing() -> Case {
-    Shape {
-        dims: [3, 3, 2],
-        depth: &|[_, _, k], [_, _, dk]| 1000.0 + 10.0 * k as f64 + 20.0 * dk as f64,
-        value: &|[_, _, k]| 0.1 + 0.2 * k as f64,
         ..Shape::default()
     }
     .case()

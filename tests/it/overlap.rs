@@ -1,7 +1,7 @@
 //! Cells that overlap: each point belongs to the first one that is drawn, whatever a filter hides.
 
 use crate::common;
-use crate::common::shape::Shape;
+use crate::common::shape::crossing;
 use strataray::case::{Case, load};
 use strataray::image::Image;
 use strataray::reference;
@@ -12,17 +12,6 @@ use strataray::scene::{
     StrategyKind,
 };
 use strataray::view::{self, View};
-
-/// Three by three columns of two layers that cross: from 1000 to 1020, and from 1010 to 1030.
-fn crossing() -> Case {
-    Shape {
-        dims: [3, 3, 2],
-        depth: &|[_, _, k], [_, _, dk]| 1000.0 + 10.0 * k as f64 + 20.0 * dk as f64,
-        value: &|[_, _, k]| 0.1 + 0.2 * k as f64,
-        ..Shape::default()
-    }
-    .case()
-}
 
 /// Layers `k`, evenly opaque, seen from aside.
 fn view_of(case: &Case, k: [usize; 2]) -> View {

@@ -5,7 +5,7 @@
 
 use glam::{Vec2, Vec4};
 
-use crate::model::Grid as Model;
+use crate::model::{Grid as Model, topology};
 use crate::render::plan::columns::COLUMN_MARGINS;
 use crate::render::plan::layout::{COLUMN_FLAG, LIST_GAPPED, LIST_OFFSET};
 use crate::render::plan::{CompactGrid, drawn_words, ghost_words, values};
@@ -14,7 +14,7 @@ use crate::scene::Interpolation;
 use crate::view::ShownCells;
 
 /// Corners closer than this along their pillar coincide.
-pub const COINCIDENT: f32 = 1e-3;
+pub const COINCIDENT: f32 = topology::COINCIDENT as f32;
 
 /// A grid in memory, with the field and selection that are shown now.
 pub struct Grid {

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use glam::{DVec2, DVec3, Vec3A, Vec4};
+use glam::{DVec3, Vec3A, Vec4};
 use rayon::prelude::*;
 
 use super::frame::Frame as FrameOfRays;
@@ -19,7 +19,7 @@ use super::surfaces::SurfaceFaces;
 use super::transfer::{Tables, Transfer};
 use crate::model::{Grid as Model, Ijk};
 use crate::render::job::{Job, Progress};
-use crate::render::line_of_sight::{LineOfSight, Sighting, SurfaceTree};
+use crate::render::line_of_sight::SurfaceTree;
 use crate::render::plan::faces::face_numbers;
 use crate::render::plan::frame::{frame_uniform, ghost};
 use crate::render::revisions::{RevisionCounter, Revisions};
@@ -207,12 +207,7 @@ impl Renderer for CpuRenderer {
         Ok(points.par_iter().map(locate).collect())
     }
 
-    fn look(&mut self, view: &View, at: DVec2) -> Result<Option<LineOfSight>, RenderError> {
-        let sighting = Sighting::through(&self.model, view, at, &mut self.surface_tree);
-        let Some(sighting) = sighting else {
-            return Ok(None);
-        };
-        let located = self.locate(view, &sighting.points())?;
-        Ok(Some(sighting.located(&located)))
+    fn surface_tree(&mut self) -> &mut SurfaceTree {
+        &mut self.surface_tree
     }
 }

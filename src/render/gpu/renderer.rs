@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 
 use crate::model::Grid;
 use crate::render::gpu::faces::{BoundaryFaces, FaceList};
@@ -15,7 +15,7 @@ use crate::render::gpu::surfaces::SurfacePainter;
 use crate::render::gpu::transfer_tables::TransferTables;
 use crate::render::gpu::{Drawing, FrameRenderer, Gpu, GpuGrid, strategies};
 use crate::render::job::{Job, Progress};
-use crate::render::line_of_sight::{LineOfSight, Sighting, SurfaceTree};
+use crate::render::line_of_sight::SurfaceTree;
 use crate::render::revisions::RevisionCounter;
 use crate::render::{DeviceBytes, Frame, Located, RenderError, Renderer, SetupTimes};
 use crate::scene::StrategyKind;
@@ -205,13 +205,8 @@ impl Renderer for GpuRenderer {
         )
     }
 
-    fn look(&mut self, view: &View, at: DVec2) -> Result<Option<LineOfSight>, RenderError> {
-        let sighting = Sighting::through(&self.model, view, at, &mut self.surface_tree);
-        let Some(sighting) = sighting else {
-            return Ok(None);
-        };
-        let located = self.locate(view, &sighting.points())?;
-        Ok(Some(sighting.located(&located)))
+    fn surface_tree(&mut self) -> &mut SurfaceTree {
+        &mut self.surface_tree
     }
 }
 
