@@ -5,6 +5,7 @@
 
 use glam::{Vec2, Vec4};
 
+use super::each::Each;
 use crate::model::{Grid as Model, topology};
 use crate::render::plan::columns::COLUMN_MARGINS;
 use crate::render::plan::layout::{COLUMN_FLAG, LIST_GAPPED, LIST_OFFSET};
@@ -92,6 +93,7 @@ impl Grid {
     }
 
     /// Layers.
+    #[inline]
     pub fn nk(&self) -> u32 {
         self.compact.info.nk
     }
@@ -102,11 +104,13 @@ impl Grid {
     }
 
     /// The four depth lists of a column with their flags.
+    #[inline]
     pub fn lists(&self, column: u32) -> [u32; 4] {
         self.compact.column_lists[column as usize]
     }
 
     /// A pillar by its number.
+    #[inline]
     pub fn pillar(&self, number: u32) -> Pillar {
         let [at, low_bits, slope] = self.compact.pillars[number as usize].map(Vec2::from_array);
         Pillar {
@@ -117,6 +121,7 @@ impl Grid {
     }
 
     /// Numbers of the four pillars of a column.
+    #[inline]
     pub fn pillar_index(&self, column: u32) -> [u32; 4] {
         let ni = self.compact.info.ni;
         let first = column % ni + (ni + 1) * (column / ni);
@@ -124,8 +129,9 @@ impl Grid {
     }
 
     /// The four pillars of a column.
+    #[inline]
     pub fn pillars(&self, column: u32) -> [Pillar; 4] {
-        self.pillar_index(column).map(|number| self.pillar(number))
+        self.pillar_index(column).each(|number| self.pillar(number))
     }
 
     /// How far outside its column, in cell widths, a point may seem by the horizontal section.
@@ -134,18 +140,21 @@ impl Grid {
         COLUMN_MARGINS[bit(0) + bit(1) + bit(2)] as f32
     }
 
+    #[inline]
     fn bit_of(&self, column: u32, layer: u32) -> (usize, u32) {
         let slot = column * self.nk() + layer;
         ((slot >> 5) as usize, slot & 31)
     }
 
     /// True where a cell is drawn.
+    #[inline]
     pub fn is_drawn(&self, column: u32, layer: u32) -> bool {
         let (word, bit) = self.bit_of(column, layer);
         self.drawn_cells[word][0] >> bit & 1 == 1
     }
 
     /// True where a cell is an inactive one that is shown.
+    #[inline]
     pub fn is_ghost(&self, column: u32, layer: u32) -> bool {
         let (word, bit) = self.bit_of(column, layer);
         let ghosts = self.ghost_cells.as_ref();
@@ -153,6 +162,7 @@ impl Grid {
     }
 
     /// The value of a drawn cell, where values are constant in cells.
+    #[inline]
     pub fn cell_value(&self, column: u32, layer: u32) -> f32 {
         let (word, bit) = self.bit_of(column, layer);
         let [bits, before] = self.drawn_cells[word];
@@ -161,6 +171,7 @@ impl Grid {
     }
 
     /// Position in the depth lists of a layer's top (0) or bottom (1).
+    #[inline]
     pub fn list_entry(list: u32, layer: u32, bottom: u32) -> u32 {
         let layers = if list & LIST_GAPPED != 0 {
             2 * layer
@@ -171,43 +182,50 @@ impl Grid {
     }
 
     /// Positions in the depth lists of the four corners of a layer's top (0) or bottom (1).
+    #[inline]
     pub fn layer_entries(lists: [u32; 4], layer: u32, bottom: u32) -> [u32; 4] {
-        lists.map(|list| Self::list_entry(list, layer, bottom))
+        lists.each(|list| Self::list_entry(list, layer, bottom))
     }
 
     /// A depth by its position in the lists.
+    #[inline]
     pub fn depth(&self, entry: u32) -> f32 {
         self.compact.depths[entry as usize]
     }
 
     /// Depths of the four corners of a layer's top (0) or bottom (1).
+    #[inline]
     pub fn layer_depths(&self, lists: [u32; 4], layer: u32, bottom: u32) -> Vec4 {
         self.depths_at(Self::layer_entries(lists, layer, bottom))
     }
 
     /// Four depths.
+    #[inline]
     pub fn depths_at(&self, entries: [u32; 4]) -> Vec4 {
-        Vec4::from_array(entries.map(|entry| self.depth(entry)))
+        Vec4::from_array(entries.each(|entry| self.depth(entry)))
     }
 
     /// Four values at vertices.
+    #[inline]
     pub fn values_at(&self, entries: [u32; 4]) -> Vec4 {
-        Vec4::from_array(entries.map(|entry| self.values[entry as usize]))
+        Vec4::from_array(entries.each(|entry| self.values[entry as usize]))
     }
 
     /// Values at the corners of a cell's top, and of its bottom.
+    #[inline]
     pub fn corner_values(&self, column: u32, layer: u32) -> [Vec4; 2] {
         match self.interpolation {
             Interpolation::Cell => [Vec4::splat(self.cell_value(column, layer)); 2],
             Interpolation::Vertex => {
                 let lists = self.lists(column);
-                [0, 1].map(|bottom| self.values_at(Self::layer_entries(lists, layer, bottom)))
+                [0, 1].each(|bottom| self.values_at(Self::layer_entries(lists, layer, bottom)))
             }
         }
     }
 }
 
 /// True where corners lie on each other.
+#[inline]
 pub fn all_coincide(a: Vec4, b: Vec4) -> bool {
     (a - b).abs().cmple(Vec4::splat(COINCIDENT)).all()
 }

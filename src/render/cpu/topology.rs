@@ -3,10 +3,11 @@
 //! grid where all that does not help (campagnolo-2021, 4.1.3). The twin of `shaders/shared/topology.wgsl`, which has
 //! no boundary faces and searches instead.
 
-use glam::Vec3A;
+use glam::{Vec3A, Vec4};
 
 use super::boundary::{Boundary, Passage};
 use super::cell::{Cell, Solution};
+use super::each::Each;
 use super::facing::{FacePlace, column_behind, side_lists, sides_join};
 use super::frame::Ray;
 use super::grid::{Grid, all_coincide};
@@ -57,15 +58,14 @@ pub struct Stretch {
 }
 
 impl Stretch {
-    /// Parameters of a sample, a cubic between the ends.
-    pub fn parameters(&self, n: f32) -> Vec3A {
-        if self.more == 0.0 {
-            return self.from;
-        }
-        let s = (n - self.first) / self.more;
-        let [m0, m1] = [self.from_rate, self.to_rate].map(|rate| self.more * rate);
+    /// Parameters u, v and w of four samples by their numbers, a cubic between the ends.
+    pub fn parameters(&self, n: Vec4) -> [Vec4; 3] {
+        let s = (n - self.first) / self.more.max(1.0);
+        let [m0, m1] = [self.from_rate, self.to_rate].each(|rate| self.more * rate);
         let way = self.to - self.from;
-        self.from + s * (m0 + s * ((3.0 * way - 2.0 * m0 - m1) + s * (m0 + m1 - 2.0 * way)))
+        let (square, cube) = (3.0 * way - 2.0 * m0 - m1, m0 + m1 - 2.0 * way);
+        [0, 1, 2]
+            .each(|axis| self.from[axis] + s * (m0[axis] + s * (square[axis] + s * cube[axis])))
     }
 }
 
