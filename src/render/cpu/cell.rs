@@ -83,7 +83,7 @@ impl Cell {
     #[inline]
     pub fn load(grid: &Grid, column: u32, layer: u32) -> Self {
         let lists = grid.lists(column);
-        let [top, bottom] = [0, 1].each(|bottom| grid.layer_depths(lists, layer, bottom));
+        let [top, bottom] = grid.corner_depths(lists, layer);
         let pillars = grid.pillars(column);
         let values = grid.corner_values(column, layer);
         let corner = |n: usize| {

@@ -199,16 +199,18 @@ impl Grid {
         self.depths_at(Self::layer_entries(lists, layer, bottom))
     }
 
+    /// True where a layer lies on the next one below, without a gap.
+    #[inline]
+    pub fn layers_join(&self, lists: [u32; 4], upper: u32) -> bool {
+        let gapped = (lists[0] | lists[1] | lists[2] | lists[3]) & LIST_GAPPED;
+        let depths = |layer, bottom| self.layer_depths(lists, layer, bottom);
+        gapped == 0 || all_coincide(depths(upper, 1), depths(upper + 1, 0))
+    }
+
     /// Four depths.
     #[inline]
     pub fn depths_at(&self, entries: [u32; 4]) -> Vec4 {
         Vec4::from_array(entries.each(|entry| self.depth(entry)))
-    }
-
-    /// Four values at vertices.
-    #[inline]
-    pub fn values_at(&self, entries: [u32; 4]) -> Vec4 {
-        Vec4::from_array(entries.each(|entry| self.values[entry as usize]))
     }
 
     /// Values at the corners of a cell's top, and of its bottom.
@@ -216,12 +218,27 @@ impl Grid {
     pub fn corner_values(&self, column: u32, layer: u32) -> [Vec4; 2] {
         match self.interpolation {
             Interpolation::Cell => [Vec4::splat(self.cell_value(column, layer)); 2],
-            Interpolation::Vertex => {
-                let lists = self.lists(column);
-                [0, 1].each(|bottom| self.values_at(Self::layer_entries(lists, layer, bottom)))
-            }
+            Interpolation::Vertex => of_cell(&self.values, self.lists(column), layer),
         }
     }
+
+    /// Depths at the corners of a cell's top, and of its bottom.
+    #[inline]
+    pub fn corner_depths(&self, lists: [u32; 4], layer: u32) -> [Vec4; 2] {
+        of_cell(&self.compact.depths, lists, layer)
+    }
+}
+
+/// Entries of depth lists, or of what is numbered as they are, at the corners of a cell's top, and of its bottom.
+#[inline]
+fn of_cell(entries: &[f32], lists: [u32; 4], layer: u32) -> [Vec4; 2] {
+    // The two of a pillar follow each other.
+    let pairs = lists.each(|list| {
+        let top = Grid::list_entry(list, layer, 0) as usize;
+        let pair = &entries[top..top + 2];
+        [pair[0], pair[1]]
+    });
+    [0, 1].each(|bottom| Vec4::from_array(pairs.each(|pair| pair[bottom])))
 }
 
 /// True where corners lie on each other.

@@ -409,24 +409,24 @@ fn next_layer(
     settings: LibcSettings,
 ) -> Option<u32> {
     let lists = grid.lists(column);
-    let mine = grid.layer_depths(lists, layer, bottom);
     let mut at = layer;
     loop {
-        at = match bottom {
+        let next = match bottom {
             0 => at.checked_sub(1)?,
             _ => at + 1,
         };
-        let joins = |side: u32| all_coincide(mine, grid.layer_depths(lists, at, side));
-        if at >= grid.nk() || !joins(1 - bottom) {
+        if next >= grid.nk() || !grid.layers_join(lists, at.min(next)) {
             return None;
         }
-        if grid.is_drawn(column, at) {
-            return Some(at);
+        if grid.is_drawn(column, next) {
+            return Some(next);
         }
         // A layer without thickness hides nothing; what is behind it joins.
-        if !settings.cross_faults || !joins(bottom) {
+        let [top, bottom] = grid.corner_depths(lists, next);
+        if !settings.cross_faults || !all_coincide(top, bottom) {
             return None;
         }
+        at = next;
     }
 }
 
@@ -457,7 +457,7 @@ impl Corners {
             None => (column, pillars_of(grid, r, column)),
         });
         let lists = grid.lists(column);
-        let depths = [0, 1].each(|bottom| grid.layer_depths(lists, layer, bottom));
+        let depths = grid.corner_depths(lists, layer);
         let [x, y, z] = pillars.each(|[at, slope]| depths.each(|depth| at + depth * slope));
         (self.x, self.y, self.z) = (x, y, z);
     }

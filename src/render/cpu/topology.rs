@@ -10,7 +10,7 @@ use super::cell::{Cell, Solution};
 use super::each::Each;
 use super::facing::{FacePlace, column_behind, side_lists, sides_join};
 use super::frame::Ray;
-use super::grid::{Grid, all_coincide};
+use super::grid::Grid;
 use super::locate::{Query, is_odd, locate};
 use super::tally::Tally;
 use super::thorough::encloses;
@@ -300,8 +300,7 @@ fn behind(grid: &Grid, column: u32, layer: u32, face: u32) -> Option<(u32, u32)>
         0 => layer.checked_sub(1)?,
         _ => layer + 1,
     };
-    let mine = grid.layer_depths(lists, layer, bottom);
-    let joins = || all_coincide(mine, grid.layer_depths(lists, next, 1 - bottom));
+    let joins = || grid.layers_join(lists, layer.min(next));
     (next < grid.nk() && grid.is_drawn(column, next) && joins()).then_some((column, next))
 }
 
