@@ -135,6 +135,46 @@ fn rays_search_only_where_cells_are() {
     }
 }
 
+/// Cells in which the transfer function shows nothing are passed without a step, and the image is that of a walk
+/// through them; a curve that shows them again brings them back.
+#[test]
+fn invisible_cells_are_passed() {
+    let faint = json!([[0.0, 0.1], [1.0, 0.4]]);
+    let upper = json!([[0.0, 0.0], [0.55, 0.0], [0.6, 0.2], [1.0, 0.5]]);
+    let looks = [
+        json!({}),
+        json!({"interpolation": "cell"}),
+        json!({"show": {"hull": "hidden", "inactive": "ghost"}}),
+        json!({"show": {"hull": "faint", "faults": true}}),
+    ];
+    for model in common::models() {
+        let case = load::open(&model).unwrap();
+        let mut renderer = cpu().renderer(&case.grid).unwrap();
+        for (n, look) in looks.iter().enumerate() {
+            let strategy = STRATEGIES[n % 2];
+            let with = |opacity: &Value| {
+                let mut look = look.clone();
+                look["transfer"] = json!({ "opacity": opacity });
+                volume(&case, &look).by(strategy)
+            };
+            let view = with(&upper);
+            let (image, passing) = render(&mut *renderer, &view);
+            let db = psnr(&image, &truth(&case, &view), &view);
+            let place = format!("{} {} {look}: {db:.1} dB", case.about.name, strategy.name());
+            println!("{place}");
+            assert!(db >= least(strategy), "{place}");
+            let (shown, walking) = render(&mut *renderer, &with(&faint));
+            let crossings = [passing, walking].map(|stats| stats.cell_crossings);
+            assert!(
+                10 * crossings[0] < 9 * crossings[1],
+                "{place} {crossings:?}"
+            );
+            let mut fresh = cpu().renderer(&case.grid).unwrap();
+            assert!(render(&mut *fresh, &with(&faint)).0 == shown, "{place}");
+        }
+    }
+}
+
 /// Pixels that differ by more than 8 of 255, and PSNR in dB of all others: at outlines one executor's ray may meet a
 /// face that the other's just misses.
 fn apart(a: &Image, b: &Image, view: &View) -> (usize, f64) {

@@ -9,10 +9,11 @@ use super::each::Each;
 use crate::model::{Grid as Model, topology};
 use crate::render::plan::columns::COLUMN_MARGINS;
 use crate::render::plan::layout::{COLUMN_FLAG, LIST_GAPPED, LIST_OFFSET};
+use crate::render::plan::visible::visible_words;
 use crate::render::plan::{CompactGrid, drawn_words, ghost_words, values};
 use crate::render::{DeviceBytes, RenderError};
 use crate::scene::Interpolation;
-use crate::view::ShownCells;
+use crate::view::{ShownCells, View};
 
 /// Corners closer than this along their pillar coincide.
 pub const COINCIDENT: f32 = topology::COINCIDENT as f32;
@@ -151,6 +152,27 @@ impl Grid {
     pub fn is_drawn(&self, column: u32, layer: u32) -> bool {
         let (word, bit) = self.bit_of(column, layer);
         self.drawn_cells[word][0] >> bit & 1 == 1
+    }
+
+    /// True where rays meet a cell: where it is among those with a bit, or is drawn where no bits are given.
+    #[inline]
+    pub fn is_met(&self, visible: Option<&[u32]>, column: u32, layer: u32) -> bool {
+        let Some(words) = visible else {
+            return self.is_drawn(column, layer);
+        };
+        let (word, bit) = self.bit_of(column, layer);
+        words[word] >> bit & 1 == 1
+    }
+
+    /// Bits of the drawn cells in which a view shows something; `None` where rays meet all drawn cells.
+    pub fn visible_words(&self, view: &View) -> Option<Vec<u32>> {
+        let range = |slot: usize| {
+            let [column, layer] = [slot as u32 / self.nk(), slot as u32 % self.nk()];
+            let [top, bottom] = self.corner_values(column, layer);
+            let (low, high) = (top.min(bottom), top.max(bottom));
+            [low.min_element(), high.max_element()]
+        };
+        visible_words(view, &self.drawn_cells, self.ghost_cells.as_deref(), range)
     }
 
     /// True where a cell is an inactive one that is shown.

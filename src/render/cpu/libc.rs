@@ -228,7 +228,7 @@ impl Walk<'_> {
         let (column, layer) = (self.column, self.layer);
         self.phase = Phase::NeedsEntry;
         if face >= 4 {
-            if let Some(next) = next_layer(grid, column, layer, face & 1, self.way.settings) {
+            if let Some(next) = next_layer(self.way, column, layer, face & 1) {
                 self.uvw.z = 1.0 - self.uvw.z;
                 self.come_into(column, next);
             }
@@ -240,7 +240,7 @@ impl Walk<'_> {
         let [mine, theirs] = [column, next].each(|c| grid.lists(c));
         let sides = [side_lists(mine, face), side_lists(theirs, face ^ 1)];
         if sides_join(grid, sides[0], sides[1], layer) {
-            if grid.is_drawn(next, layer) {
+            if self.way.scene.is_met(next, layer) {
                 let axis = (face >> 1) as usize;
                 self.uvw[axis] = 1.0 - self.uvw[axis];
                 self.come_into(next, layer);
@@ -279,7 +279,7 @@ impl Walk<'_> {
                 high = middle;
             }
         }
-        if low < grid.nk() && grid.is_drawn(next, low) && is_below(low, 0) {
+        if low < grid.nk() && self.way.scene.is_met(next, low) && is_below(low, 0) {
             self.come_into(next, low);
             let (_, at) = self.corners.enter_through(face, self.sense(face));
             self.uvw = on_face(face, at);
@@ -400,14 +400,9 @@ impl Walk<'_> {
     }
 }
 
-/// The drawn layer below (`bottom` 1) or above that the ray comes into.
-fn next_layer(
-    grid: &Grid,
-    column: u32,
-    layer: u32,
-    bottom: u32,
-    settings: LibcSettings,
-) -> Option<u32> {
+/// The layer below (`bottom` 1) or above that the ray comes into.
+fn next_layer(way: &Way<'_>, column: u32, layer: u32, bottom: u32) -> Option<u32> {
+    let grid = way.scene.grid;
     let lists = grid.lists(column);
     let mut at = layer;
     loop {
@@ -418,12 +413,12 @@ fn next_layer(
         if next >= grid.nk() || !grid.layers_join(lists, at.min(next)) {
             return None;
         }
-        if grid.is_drawn(column, next) {
+        if way.scene.is_met(column, next) {
             return Some(next);
         }
         // A layer without thickness hides nothing; what is behind it joins.
         let [top, bottom] = grid.corner_depths(lists, next);
-        if !settings.cross_faults || !all_coincide(top, bottom) {
+        if !way.settings.cross_faults || !all_coincide(top, bottom) {
             return None;
         }
         at = next;

@@ -24,7 +24,7 @@ pub fn cast(
     sum: &mut Accumulated,
     tally: &mut Tally,
 ) {
-    let mut track = Track::new(scene.grid, ray, boundary, tally);
+    let mut track = Track::new(scene, ray, boundary, tally);
     let mut n = 0.0;
     let mut is_next = false;
     while scene.transfer.is_open(sum) {

@@ -12,6 +12,7 @@ use super::facing::{FacePlace, column_behind, side_lists, sides_join};
 use super::frame::Ray;
 use super::grid::Grid;
 use super::locate::{Query, is_odd, locate};
+use super::scene::Scene;
 use super::tally::Tally;
 use super::thorough::encloses;
 use crate::render::plan::layout::COLUMN_FLAG;
@@ -30,6 +31,8 @@ const MOST_BENT: f32 = 0.2;
 pub struct Track<'a> {
     grid: &'a Grid,
     ray: &'a Ray,
+    /// Bits of the cells that it meets, where these are not all drawn cells.
+    visible: Option<&'a [u32]>,
     /// Where it passes the boundary; `None` where nothing is known of that, and all is searched.
     boundary: Option<&'a Boundary>,
     /// The cell of the current sample, and where in it that is.
@@ -71,10 +74,16 @@ impl Stretch {
 
 impl<'a> Track<'a> {
     /// A ray before its first sample.
-    pub fn new(grid: &'a Grid, ray: &'a Ray, boundary: &'a Boundary, tally: &'a mut Tally) -> Self {
+    pub fn new(
+        scene: &'a Scene<'_>,
+        ray: &'a Ray,
+        boundary: &'a Boundary,
+        tally: &'a mut Tally,
+    ) -> Self {
         Self {
+            visible: scene.visible,
             boundary: Some(boundary),
-            ..Self::through(grid, ray, tally)
+            ..Self::through(scene.grid, ray, tally)
         }
     }
 
@@ -83,6 +92,7 @@ impl<'a> Track<'a> {
         Self {
             grid,
             ray,
+            visible: None,
             boundary: None,
             cell: Cell::default(),
             solution: Solution::default(),
@@ -223,7 +233,7 @@ impl<'a> Track<'a> {
         let axis = (-q).max(q - Vec3A::ONE).max_position();
         let plus = q[axis] > 0.5;
         let face = 2 * axis as u32 + u32::from(plus);
-        let Some((column, layer)) = behind(grid, self.cell.column, self.cell.layer, face) else {
+        let Some((column, layer)) = self.behind(face) else {
             return false;
         };
         self.cell = Cell::load(grid, column, layer);
@@ -231,6 +241,25 @@ impl<'a> Track<'a> {
         start[axis] = if plus { q[axis] - 1.0 } else { q[axis] + 1.0 };
         *uvw = start.clamp(Vec3A::splat(-1.0), Vec3A::splat(2.0));
         true
+    }
+
+    /// The cell behind a face of the current one, where rays meet it and it shares the whole face.
+    fn behind(&self, face: u32) -> Option<(u32, u32)> {
+        let (grid, Cell { column, layer, .. }) = (self.grid, self.cell);
+        let is_met = |column, layer| grid.is_met(self.visible, column, layer);
+        let lists = grid.lists(column);
+        if face < 4 {
+            let next = column_behind(grid, column, face)?;
+            let theirs = side_lists(grid.lists(next), face ^ 1);
+            let joins = || sides_join(grid, side_lists(lists, face), theirs, layer);
+            return (is_met(next, layer) && joins()).then_some((next, layer));
+        }
+        let next = match face & 1 {
+            0 => layer.checked_sub(1)?,
+            _ => layer + 1,
+        };
+        let joins = || grid.layers_join(lists, layer.min(next));
+        (next < grid.nk() && is_met(column, next) && joins()).then_some((column, next))
     }
 
     /// Finds a sample that no neighbor has, `known` being the last one of which it is known where it lies. Where it
@@ -284,24 +313,6 @@ impl<'a> Track<'a> {
         self.tally.lost_samples += u64::from(is_lost);
         location.skip
     }
-}
-
-/// The drawn cell behind a face of a cell, where it shares the whole face.
-fn behind(grid: &Grid, column: u32, layer: u32, face: u32) -> Option<(u32, u32)> {
-    let lists = grid.lists(column);
-    if face < 4 {
-        let next = column_behind(grid, column, face)?;
-        let theirs = side_lists(grid.lists(next), face ^ 1);
-        let joins = || sides_join(grid, side_lists(lists, face), theirs, layer);
-        return (grid.is_drawn(next, layer) && joins()).then_some((next, layer));
-    }
-    let bottom = face & 1;
-    let next = match bottom {
-        0 => layer.checked_sub(1)?,
-        _ => layer + 1,
-    };
-    let joins = || grid.layers_join(lists, layer.min(next));
-    (next < grid.nk() && grid.is_drawn(column, next) && joins()).then_some((column, next))
 }
 
 /// How far parameters are outside of a cell.

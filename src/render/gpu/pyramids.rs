@@ -3,8 +3,9 @@
 use super::device::Gpu;
 use super::pipeline::Pipeline;
 use crate::render::RenderError;
-use crate::render::plan::bricks::{Classifier, bricks_of_volume, levels, range_maxima, room};
+use crate::render::plan::bricks::{Classifier, bricks_of_volume, levels, room};
 use crate::render::plan::layout::{BRICK, BricksInfo, Slab};
+use crate::render::plan::majorants::Majorants;
 
 use super::slabs::Slabs;
 use super::volume::Volume;
@@ -193,9 +194,9 @@ impl PyramidMaker {
         if by.limits.are_never() {
             return Ok(());
         }
-        let maxima = range_maxima(by.transfer);
+        let majorants = Majorants::new(by.transfer);
         gpu.queue
-            .write_buffer(&bricks.maxima, 0, bytemuck::cast_slice(&maxima));
+            .write_buffer(&bricks.maxima, 0, bytemuck::cast_slice(majorants.table()));
         let finest = volume.level(0);
         let unused = gpu.scratch("no voxels", UNUSED_BYTES);
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
