@@ -15,7 +15,7 @@ use strataray::reference::{self, Locator};
 use strataray::render::cpu::CpuExecutor;
 use strataray::render::gpu::GpuExecutor;
 use strataray::render::{Executor, FrameStats, RenderError, Renderer};
-use strataray::scene::StrategyKind;
+use strataray::scene::{Integration, StrategyKind};
 use strataray::view::{self, View};
 
 /// Strategies that every executor has.
@@ -132,6 +132,36 @@ fn rays_search_only_where_cells_are() {
         let iterations = stats.newton_iterations as f64 / stats.cell_crossings as f64;
         println!("{}: {locations:.2} {iterations:.2}", case.about.name);
         assert!(locations < 1.5 && iterations < 4.0, "{stats:?}");
+    }
+}
+
+/// PLTS over whole cells is what samples come to where they are dense, by two Newton iterations a cell.
+#[test]
+fn whole_cells_are_dense_samples() {
+    for model in common::models() {
+        let case = load::open(&model).unwrap();
+        let mut renderer = cpu().renderer(&case.grid).unwrap();
+        for interpolation in ["vertex", "cell"] {
+            let look = json!({"interpolation": interpolation, "plts": {"integration": "segments"}});
+            let view = volume(&case, &look).by(StrategyKind::Plts);
+            let mut dense = view.clone();
+            dense.sampling.step *= 0.125;
+            let (image, stats) = render(&mut *renderer, &view);
+            let truth = truth(&case, &dense);
+            let db = psnr(&image, &truth, &view);
+            let of_samples = {
+                let mut by_samples = view.clone();
+                by_samples.sampling.plts.integration = Integration::Samples;
+                psnr(&render(&mut *renderer, &by_samples).0, &truth, &view)
+            };
+            let iterations = stats.newton_iterations as f64 / stats.cell_crossings as f64;
+            let name = &case.about.name;
+            println!(
+                "{name} {interpolation}: {db:.1} dB, {of_samples:.1} by samples, {iterations:.2}"
+            );
+            assert!(db >= 62.0 && db > of_samples, "{db} {of_samples}");
+            assert!(iterations < 2.5, "{stats:?}");
+        }
     }
 }
 

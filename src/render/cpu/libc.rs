@@ -22,6 +22,7 @@ use super::raster::Met;
 use super::samples::Samples;
 use super::scene::Scene;
 use super::section::SECTION_ENOUGH;
+use super::segments::Span;
 use super::surfaces::Layers;
 use super::tally::Tally;
 use super::thorough::encloses;
@@ -33,10 +34,6 @@ use crate::scene::{Integration, Interpolation, LibcSettings};
 const MOST_STALLS: u32 = 32;
 /// Recoveries of one ray after which it counts as lost.
 const MOST_RECOVERIES: u32 = 1000;
-/// Optical depth and part of the value range that one piece of a segment may have.
-const PIECE_DEPTH: f32 = 0.5;
-const PIECE_RANGE: f32 = 0.05;
-const MOST_PIECES: f32 = 16.0;
 
 /// A boundary face through which a ray comes in.
 #[derive(Debug, Clone, Copy)]
@@ -341,13 +338,18 @@ impl Walk<'_> {
             if to <= from {
                 return;
             }
-            if is_ghost {
-                let middle = ray.at(0.5 * (from + to));
-                let entry = scene.shading.shade_entry(scene.ghost, middle, true);
-                sum.absorb(entry, entry.w * (to - from));
-            } else {
-                let segment = self.segment(t, uvw);
-                tally.samples += integrate_segment(scene, ray, &segment, sum, [from, to]);
+            let span = Span {
+                scene,
+                ray,
+                from,
+                to,
+            };
+            match is_ghost {
+                true => span.of_ghost(sum),
+                false => {
+                    let segment = self.segment(t, uvw);
+                    tally.samples += span.by_value(sum, |t| segment.values(t));
+                }
             }
             return;
         }
@@ -639,48 +641,4 @@ impl Segment {
         let high = c2 + u * (c3 - c2);
         low + v * (high - low)
     }
-
-    /// The value at a distance.
-    fn value(&self, t: f32) -> f32 {
-        self.values(Vec4::splat(t)).x
-    }
-}
-
-/// The segment in pieces so small that the order of colors within one does not matter; in each the means of extinction
-/// and color over its values are differences of integrals. Returns their number.
-fn integrate_segment(
-    scene: &Scene<'_>,
-    ray: &Ray,
-    segment: &Segment,
-    sum: &mut Accumulated,
-    [from, to]: [f32; 2],
-) -> u64 {
-    let transfer = &scene.transfer;
-    let length = to - from;
-    let values = segment.values(from + length * Vec4::new(0.0, 0.5, 1.0, 1.0));
-    let (low, high) = (values.min_element(), values.max_element());
-    let [first, middle, last, _] = values.to_array();
-    let extinctions = [first, middle, last].each(|value| transfer.of(value).w);
-    let depth = length * Vec3A::from_array(extinctions).max_element();
-    let range = (high - low) * transfer.value_scale();
-    let pieces = (depth / PIECE_DEPTH).max(range / PIECE_RANGE).ceil();
-    let pieces = pieces.clamp(1.0, MOST_PIECES);
-    let mut before = first;
-    let mut done = 0.0;
-    while done < pieces && transfer.is_open(sum) {
-        done += 1.0;
-        let value = match done < pieces {
-            true => segment.value(from + length * done / pieces),
-            false => last,
-        };
-        let mean = transfer.mean(before, value);
-        let color = Vec3A::from_vec4(mean) / mean.w.max(1e-30);
-        let middle = ray.at(from + length * (done - 0.5) / pieces);
-        let entry = scene
-            .shading
-            .shade_entry(color.extend(mean.w), middle, false);
-        sum.absorb(entry, mean.w * length / pieces);
-        before = value;
-    }
-    done as u64
 }

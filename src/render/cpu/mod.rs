@@ -32,6 +32,7 @@ mod resample;
 mod samples;
 mod scene;
 mod section;
+mod segments;
 mod shading;
 mod srg;
 mod surfaces;

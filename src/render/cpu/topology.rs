@@ -22,6 +22,8 @@ const TOPOLOGICAL_LIMIT: u32 = 6;
 const MARCH_ENOUGH: f32 = 1e-2;
 /// Cells of boundary faces that are tried for a sample, at most.
 const MOST_TRIED: usize = 4;
+/// Surely past a face, in samples.
+const PAST_FACE: f32 = 1e-2;
 /// A sample that seems to be so far outside of a cell is looked for in the neighbor at once.
 const SURELY_OUTSIDE: f32 = 0.02;
 /// Samples are interpolated between two of a cell where parameters are off a straight line by less than this.
@@ -48,11 +50,11 @@ pub struct Track<'a> {
     pub tally: &'a mut Tally,
 }
 
-/// Samples in one cell.
+/// Samples in one cell, or the way through it: places are numbers of samples, and parts of them.
 pub struct Stretch {
-    /// Number of the first.
+    /// The first.
     pub first: f32,
-    /// How many more there are.
+    /// How much more there is.
     pub more: f32,
     from: Vec3A,
     to: Vec3A,
@@ -63,7 +65,8 @@ pub struct Stretch {
 impl Stretch {
     /// Parameters u, v and w of four samples by their numbers, a cubic between the ends.
     pub fn parameters(&self, n: Vec4) -> [Vec4; 3] {
-        let s = (n - self.first) / self.more.max(1.0);
+        let length = if self.more > 0.0 { self.more } else { 1.0 };
+        let s = (n - self.first) / length;
         let [m0, m1] = [self.from_rate, self.to_rate].each(|rate| self.more * rate);
         let way = self.to - self.from;
         let (square, cube) = (3.0 * way - 2.0 * m0 - m1, m0 + m1 - 2.0 * way);
@@ -122,9 +125,9 @@ impl<'a> Track<'a> {
                 if passed == 0.0 {
                     break;
                 }
-                self.gap += passed;
                 known = n;
-                n += passed;
+                n = (n + passed).ceil();
+                self.gap += n - known;
                 if n >= self.ray.count {
                     return None;
                 }
@@ -188,6 +191,73 @@ impl<'a> Track<'a> {
             };
         }
         stretch
+    }
+
+    /// The way through the cell that the ray is in at a place, or comes into behind it; `None` where there is none.
+    /// `joins` says that it came there from the cell before, whose way ends there.
+    pub fn cross(&mut self, mut from: f32, joins: bool) -> Option<Stretch> {
+        if !joins {
+            from = self.enter(from)?;
+        }
+        self.arrive();
+        let start = self.solution.uvw;
+        let rate = self.cell.parameters_along(start, self.ray.advance);
+        let mut stretch = Stretch {
+            first: from,
+            more: steps_to_face(start, rate),
+            from: start,
+            to: start,
+            from_rate: rate,
+            to_rate: rate,
+        };
+        let mut expected = start + stretch.more * rate;
+        for _ in 0..MOST_TRIED {
+            let reached = self.solve(from + stretch.more, expected).uvw;
+            stretch.to_rate = self.cell.parameters_along(reached, self.ray.advance);
+            let off = steps_to_face(reached, stretch.to_rate);
+            expected = reached + off * stretch.to_rate;
+            stretch.more += off;
+            // What is left is of the square of this.
+            if (off * stretch.to_rate).abs().max_element() < MOST_BENT {
+                break;
+            }
+        }
+        stretch.more = stretch.more.max(0.0);
+        stretch.to = expected;
+        self.solution.uvw = expected;
+        Some(stretch)
+    }
+
+    /// Goes on through the face at which the way through a cell ends; false where no cell joins there.
+    pub fn leave(&mut self) -> bool {
+        let mut start = self.solution.uvw;
+        let joins = self.step_to_neighbor(&mut start);
+        self.tally.steps += u64::from(joins);
+        self.solution.uvw = start.clamp(Vec3A::ZERO, Vec3A::ONE);
+        joins
+    }
+
+    /// Finds the cell that the ray comes into at a place or behind it, and where it does.
+    fn enter(&mut self, from: f32) -> Option<f32> {
+        // At the face itself the cell that was left seems to hold the ray still.
+        let (mut n, mut known) = (from + PAST_FACE, from);
+        loop {
+            let passed = self.find(n, known);
+            if passed == 0.0 {
+                break;
+            }
+            self.gap += passed;
+            known = n;
+            n += passed;
+            if n >= self.ray.count {
+                return None;
+            }
+        }
+        let found = self.solution.uvw;
+        let rate = self.cell.parameters_along(found, self.ray.advance);
+        let back = steps_to_face(found, -rate).clamp(0.0, n - from);
+        self.solution.uvw = (found - back * rate).clamp(Vec3A::ZERO, Vec3A::ONE);
+        Some(n - back)
     }
 
     /// Newton in the current cell.
@@ -320,11 +390,16 @@ fn overshoot(q: Vec3A) -> f32 {
     (-q).max(q - Vec3A::ONE).max_element()
 }
 
-/// Steps of a change that parameters can make before they leave a cell.
+/// Whole steps of a change that parameters can make before they leave a cell.
 fn steps_inside(q: Vec3A, rate: Vec3A) -> f32 {
+    steps_to_face(q, rate).max(0.0).trunc()
+}
+
+/// Steps of a change up to where parameters leave a cell; negative where they have left it.
+fn steps_to_face(q: Vec3A, rate: Vec3A) -> f32 {
     let room = Vec3A::select(rate.cmpgt(Vec3A::ZERO), Vec3A::ONE - q, q);
     let steps = room / rate.abs().max(Vec3A::splat(1e-9));
-    steps.min_element().clamp(0.0, 1e6).trunc()
+    steps.min_element().clamp(-1e6, 1e6)
 }
 
 #[cfg(test)]
