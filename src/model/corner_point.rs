@@ -44,9 +44,11 @@ impl Hexahedron {
     /// lies below its two triangulations.
     pub fn signed_volume(&self) -> f64 {
         let p = self.0.map(|corner| corner - self.0[0]);
-        let cone = |a: usize, b: usize, c: usize| p[a].dot(p[b].cross(p[c]));
-        let under = |[a, b, c, d]: [usize; 4]| {
-            cone(a, b, c) + cone(a, c, d) + cone(a, b, d) + cone(b, c, d)
+        let product = |u: DVec3, v: DVec3, w: DVec3| u.dot(v.cross(w));
+        // Over the triangles a b c and a c d, a b d and b c d.
+        let under = |face: [usize; 4]| {
+            let [a, b, c, d] = face.map(|corner| p[corner]);
+            product(a, b, c + d) + product(a + b, c, d)
         };
         FACES_OUTWARD.map(under).iter().sum::<f64>() / 12.0
     }

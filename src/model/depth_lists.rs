@@ -25,9 +25,20 @@ impl DepthList {
         self.0 & Self::GAPPED != 0
     }
 
+    /// Entries from one layer to the next.
+    pub fn step(self) -> usize {
+        if self.gapped() { 2 } else { 1 }
+    }
+
+    /// Pool positions of all entries, given the number of layers.
+    pub fn entries(self, nk: usize) -> std::ops::Range<usize> {
+        let count = if self.gapped() { 2 * nk } else { nk + 1 };
+        self.offset()..self.offset() + count
+    }
+
     /// Pool position of the top (`dk` 0) or bottom (`dk` 1) of layer `k`.
     pub fn entry(self, k: usize, dk: usize) -> usize {
-        self.offset() + if self.gapped() { 2 * k + dk } else { k + dk }
+        self.offset() + self.step() * k + dk
     }
 }
 
@@ -95,7 +106,7 @@ fn same(list: &[f64], depths: &[f64], gapped: bool) -> bool {
     list[0] == depths[0] && list[1..].iter().eq(depths.iter().skip(1).step_by(2))
 }
 
-/// The four lists of every column and the pool they point into.
+/// The four lists of every column and the pool they point into, where lists lie in the order of their pillars.
 pub(super) fn build<Z: Copy + Into<f64> + Sync>(
     dims: Dims,
     zcorn: &[Z],

@@ -1,5 +1,7 @@
 //! The reservoir in f64: corner-point geometry, topology and fields. No files, no GPU.
 
+mod activity;
+mod column;
 pub mod corner_point;
 mod depth_lists;
 pub mod derivatives;
@@ -13,7 +15,10 @@ pub mod spaces;
 pub mod summary;
 pub mod synthetic;
 pub mod topology;
+mod vertices;
 
+pub use activity::ColumnBits;
+pub use column::Column;
 pub use corner_point::Hexahedron;
 pub use face_tree::{FaceHit, FaceTree};
 pub use faults::FaultFaces;

@@ -4,6 +4,7 @@
 use rayon::prelude::*;
 
 use super::function::Curve;
+use super::shares::{Weighted, shares_below};
 
 /// Which end of a property's range one looks for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -27,6 +28,18 @@ pub struct Cell {
     pub volume: f64,
     /// Its thinnest extent in world space.
     pub extent: f64,
+}
+
+impl Cell {
+    /// True where the cell has all that its opacity follows from.
+    fn counts(&self) -> bool {
+        self.position.is_finite() && self.volume > 0.0 && self.extent > 0.0
+    }
+
+    /// Its volume, where it counts.
+    fn weight(&self) -> f64 {
+        if self.counts() { self.volume } else { 0.0 }
+    }
 }
 
 /// An opacity curve and the length in world space that it refers to.
@@ -65,28 +78,27 @@ const CONSTANT: f64 = 0.95;
 /// reference length is so chosen that cells with 96.5 % of it have an opacity of [`SHOWS`] or more each,
 /// through their own thinnest extent.
 pub fn find(interest: Interest, cells: &[Cell], model_extent: f64) -> Option<Opacity> {
-    let valid = |c: &&Cell| c.position.is_finite() && c.volume > 0.0 && c.extent > 0.0;
-    let cells: Vec<Cell> = cells.par_iter().filter(valid).copied().collect();
-    let (low, high) = ends(&cells)?;
+    let (low, high) = ends(cells)?;
     if interest == Interest::Alike || high - low < 1e-6 {
         let opacity = if interest == Interest::Alike {
             ALIKE
         } else {
             CONSTANT
         };
-        let extents = cells.iter().map(|c| (c.extent, c.volume)).collect();
+        let extents = cells.par_iter().map(|c| (c.extent, c.weight()));
+        let extents: Vec<Weighted> = extents.collect();
         return Some(Opacity {
             curve: vec![(0.0, opacity), (1.0, opacity)],
-            reference_length: shares_below(extents, [0.5])?[0],
+            reference_length: shares_below(&extents, [0.5])?[0],
         });
     }
     let weighted = |c: &Cell| {
         let richness = interest.richness(c.position);
-        (richness, c.volume * richness)
+        (richness, c.weight() * richness)
     };
-    let weights: Vec<(f64, f64)> = cells.par_iter().map(weighted).collect();
+    let weights: Vec<Weighted> = cells.par_iter().map(weighted).collect();
     let [veil, body] = [HAZE_SHARE, BODY_SHARES[0]];
-    let rich = shares_below(weights.clone(), [veil, body, BODY_SHARES[1]])?;
+    let rich = shares_below(&weights, [veil, body, BODY_SHARES[1]])?;
     let rising = rising(rich);
     // The length at which each cell just shows; the haze is decided after it.
     let lengths = cells
@@ -97,7 +109,8 @@ pub fn find(interest: Interest, cells: &[Cell], model_extent: f64) -> Option<Opa
             let needed = (1.0 - SHOWS).ln() / (1.0 - opacity).ln();
             (cell.extent / needed, *weight)
         });
-    let [reference_length] = shares_below(lengths.collect(), [1.0 - SHOWN])?;
+    let lengths: Vec<Weighted> = lengths.collect();
+    let [reference_length] = shares_below(&lengths, [1.0 - SHOWN])?;
     let layers = (model_extent / reference_length).max(1.0);
     let haze = (1.0 - (1.0 - HAZE).powf(1.0 / layers)).min(MOST_HAZE);
     Some(Opacity {
@@ -107,27 +120,9 @@ pub fn find(interest: Interest, cells: &[Cell], model_extent: f64) -> Option<Opa
 }
 
 fn ends(cells: &[Cell]) -> Option<(f64, f64)> {
-    let ends = cells.par_iter().map(|c| (c.position, c.position));
+    let counting = cells.par_iter().filter(|c| c.counts());
+    let ends = counting.map(|c| (c.position, c.position));
     ends.reduce_with(|a, b| (a.0.min(b.0), a.1.max(b.1)))
-}
-
-/// The values below which the given shares, rising, of the weight lie; `None` without weight.
-fn shares_below<const N: usize>(mut values: Vec<(f64, f64)>, shares: [f64; N]) -> Option<[f64; N]> {
-    values.par_sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
-    let total: f64 = values.iter().map(|v| v.1).sum();
-    let mut rising = values.iter();
-    let mut sum = 0.0;
-    let mut last = values.first()?.0;
-    let below = shares.map(|share| {
-        while sum < share * total {
-            let Some((value, weight)) = rising.next() else {
-                break;
-            };
-            (last, sum) = (*value, sum + weight);
-        }
-        last
-    });
-    (total > 0.0).then_some(below)
 }
 
 /// Opacity by richness from where the veil begins, without haze.

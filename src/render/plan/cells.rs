@@ -1,23 +1,32 @@
 //! What is shown of a grid: bits of the drawn cells, and values by cell or by vertex.
 
-use crate::model::{Grid, Ijk, VertexField};
+use rayon::prelude::*;
+
+use crate::model::{ColumnBits, Dims, Grid, Ijk, VertexField};
 use crate::scene::Interpolation;
 use crate::view::ShownCells;
 
 /// Slots column by column, layers fastest: bits of the drawn cells (by active index) and the count before each
 /// word.
 pub fn drawn_words(grid: &Grid, drawn: &[bool]) -> Vec<[u32; 2]> {
-    let dims = grid.dims();
-    let mut words = vec![[0u32; 2]; dims.cells().div_ceil(32)];
-    for (&cell, _) in grid.active_cells().iter().zip(drawn).filter(|(_, d)| **d) {
-        let ijk = dims.ijk(cell);
-        let slot = (ijk.i + dims.ni * ijk.j) * dims.nk + ijk.k;
-        words[slot / 32][0] |= 1 << (slot % 32);
-    }
+    let bits = packed(grid.dims(), &grid.bits_of(drawn));
     let mut before = 0;
-    for word in &mut words {
-        word[1] = before;
-        before += word[0].count_ones();
+    let counted = bits.into_iter().map(|word| {
+        let counted = [word, before];
+        before += word.count_ones();
+        counted
+    });
+    counted.collect()
+}
+
+/// Bits of columns without gaps between them, in words of 32.
+fn packed(dims: Dims, bits: &ColumnBits) -> Vec<u32> {
+    let mut words = vec![0u32; dims.cells().div_ceil(32)];
+    for column in 0..dims.columns() {
+        for k in bits.layers(column) {
+            let slot = column * dims.nk + k;
+            words[slot / 32] |= 1 << (slot % 32);
+        }
     }
     words
 }
@@ -47,20 +56,16 @@ pub fn values(model: &Grid, cells: &ShownCells) -> Vec<f32> {
 fn column_major(model: &Grid, cells: &ShownCells) -> Vec<f32> {
     let (grid, drawn) = cells.in_grid(model);
     let dims = grid.dims();
-    let mut values = Vec::new();
-    for column in 0..dims.columns() {
-        for k in 0..dims.nk {
-            let ijk = Ijk {
-                i: column % dims.ni,
-                j: column / dims.ni,
-                k,
-            };
-            let cell = dims.cell(ijk);
-            let active = grid.active_index(cell).map(|a| a.0 as usize);
-            if active.is_some_and(|a| drawn.get(a) == Some(&true)) {
-                values.push(cells.field.value(model, cell).unwrap_or(0.0));
-            }
-        }
-    }
-    values
+    let drawn = grid.bits_of(drawn);
+    let value = |column: usize, k: usize| {
+        let (i, j) = (column % dims.ni, column / dims.ni);
+        let value = cells.field.value(model, dims.cell(Ijk { i, j, k }));
+        value.unwrap_or(0.0)
+    };
+    let columns = (0..dims.columns()).into_par_iter();
+    let values = columns.flat_map_iter(|column| {
+        let layers = drawn.layers(column);
+        layers.map(move |k| value(column, k))
+    });
+    values.collect()
 }
