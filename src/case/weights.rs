@@ -57,7 +57,7 @@ impl Case {
         if let Some(porv) = field("PORV") {
             return Weights {
                 weighting: Weighting::PoreVolume,
-                values: Arc::new(porv.values().iter().map(|v| kept(*v)).collect()),
+                values: Arc::new(porv.values().par_iter().map(|v| kept(*v)).collect()),
             };
         }
         let bulk = Derived::Volume.field(&self.grid);

@@ -120,15 +120,20 @@ pub(super) fn build<Z: Copy + Into<f64> + Sync>(
             read_band(dims, zcorn, band * band_rows..end)
         })
         .collect();
-    let mut depths = Vec::with_capacity(bands.iter().map(|b| b.depths.len()).sum());
     let mut lists = vec![DepthList::new(0, false); 4 * dims.columns()];
-    for band in bands {
-        let base = depths.len();
-        for (at, offset, gapped) in band.lists {
+    let mut depths = vec![0.0; bands.iter().map(|b| b.depths.len()).sum()];
+    let mut places = Vec::with_capacity(bands.len());
+    let (mut rest, mut base) = (depths.as_mut_slice(), 0);
+    for band in &bands {
+        for &(at, offset, gapped) in &band.lists {
             lists[at] = DepthList::new(base + offset, gapped);
         }
-        depths.extend_from_slice(&band.depths);
+        let (place, behind) = rest.split_at_mut(band.depths.len());
+        places.push(place);
+        (rest, base) = (behind, base + band.depths.len());
     }
+    let copies = bands.into_par_iter().zip(places);
+    copies.for_each(|(band, place)| place.copy_from_slice(&band.depths));
     (lists, depths)
 }
 

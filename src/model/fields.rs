@@ -1,5 +1,7 @@
 //! Values of the active cells, and their averages at the vertices.
 
+use rayon::prelude::*;
+
 use super::grid::Grid;
 use super::ids::{CellIndex, Ijk};
 
@@ -38,11 +40,11 @@ pub struct Statistics {
 impl CellField {
     /// A field from one value for each active cell; 1e20-like and non-finite values are undefined.
     pub fn new(mut values: Vec<f32>) -> Self {
-        for v in &mut values {
+        values.par_iter_mut().for_each(|v| {
             if v.is_nan() || v.abs() >= UNDEFINED {
                 *v = f32::NAN;
             }
-        }
+        });
         Self(values)
     }
 

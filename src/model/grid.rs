@@ -116,8 +116,8 @@ pub struct Grid {
     pillars: Arc<[Pillar]>,
     /// Of the pillars: corners are asked for much more often than pillars are made.
     slopes: Arc<[DVec2]>,
-    lists: Arc<[DepthList]>,
-    depths: Arc<[f64]>,
+    lists: Arc<Vec<DepthList>>,
+    depths: Arc<Vec<f64>>,
     active_cells: Vec<CellIndex>,
     activity: Activity,
     map_axes: Option<MapAxes>,
@@ -161,8 +161,8 @@ impl Grid {
             dims,
             slopes: pillars.iter().map(Pillar::slope).collect(),
             pillars,
-            lists: lists.into(),
-            depths: depths.into(),
+            lists: Arc::new(lists),
+            depths: Arc::new(depths),
             activity: Activity::new(dims, &active_cells),
             active_cells,
             map_axes: input.map_axes,
@@ -449,8 +449,16 @@ fn finite<T: Copy + Into<f64> + Sync>(
 ) -> Result<(), ModelError> {
     let pieces = values.par_chunks(PIECE).enumerate();
     let bad = pieces.find_map_first(|(piece, values)| {
-        let at = values.iter().position(|&v| !v.into().is_finite())?;
-        Some(piece * PIECE + at + 1)
+        // All at once first, which takes a fraction of the time of one after the other.
+        let all = values
+            .iter()
+            .fold(true, |all, &v| all & v.into().is_finite());
+        let at = if all {
+            None
+        } else {
+            values.iter().position(|&v| !v.into().is_finite())
+        };
+        Some(piece * PIECE + at? + 1)
     });
     bad.map_or(Ok(()), |index| {
         Err(ModelError::NotFinite { keyword, index })

@@ -15,12 +15,12 @@ pub(super) type Weighted = (f64, f64);
 ///
 /// Found by sums over bins, and over bins of the one bin that a share ends in: nothing is sorted.
 pub(super) fn shares_below<const N: usize>(
-    values: &[Weighted],
+    values: impl IndexedParallelIterator<Item = Weighted> + Clone,
     shares: [f64; N],
 ) -> Option<[f64; N]> {
-    let bins = Bins::of(values)?;
+    let bins = Bins::of(values.clone())?;
     let total: f64 = bins.sums.iter().sum();
-    Some(shares.map(|share| bins.value_at(values, share * total)))
+    Some(shares.map(|share| bins.value_at(values.clone(), share * total)))
 }
 
 /// Sums of weights over equal parts of a range of values.
@@ -31,27 +31,24 @@ struct Bins {
 }
 
 impl Bins {
-    fn of(values: &[Weighted]) -> Option<Self> {
+    fn of(values: impl IndexedParallelIterator<Item = Weighted> + Clone) -> Option<Self> {
         let start = [f64::INFINITY, f64::NEG_INFINITY];
         let join = |a: [f64; 2], b: [f64; 2]| [a[0].min(b[0]), a[1].max(b[1])];
-        let ends = values.par_chunks(PIECE).map(|piece| {
-            let counting = piece.iter().filter(|v| v.1 > 0.0);
-            counting.fold(start, |ends, v| join(ends, [v.0; 2]))
-        });
-        let [low, high] = ends.reduce(|| start, join);
+        let weighty = values.clone().filter(|v| v.1 > 0.0);
+        let [low, high] = weighty.map(|v| [v.0; 2]).reduce(|| start, join);
         let mut bins = Self {
             low,
             high,
             sums: vec![0.0; BINS],
         };
-        let sums = values.par_chunks(PIECE).map(|piece| {
-            let mut sums = vec![0.0; BINS];
-            for (value, weight) in piece.iter().filter(|v| v.1 > 0.0) {
-                sums[bins.bin(*value)] += weight;
+        let none = || vec![0.0; BINS];
+        let pieces = values.fold_chunks(PIECE, none, |mut sums: Vec<f64>, (value, weight)| {
+            if weight > 0.0 {
+                sums[bins.bin(value)] += weight;
             }
             sums
         });
-        for piece in sums.collect::<Vec<_>>() {
+        for piece in pieces.collect::<Vec<_>>() {
             let sums = bins.sums.iter_mut().zip(piece);
             sums.for_each(|(sum, more)| *sum += more);
         }
@@ -64,7 +61,7 @@ impl Bins {
     }
 
     /// The first of the rising values up to which the weight is as large as wanted.
-    fn value_at(&self, values: &[Weighted], wanted: f64) -> f64 {
+    fn value_at(&self, values: impl ParallelIterator<Item = Weighted>, wanted: f64) -> f64 {
         if self.low == self.high {
             return self.low;
         }
@@ -78,11 +75,11 @@ impl Bins {
             }
         }
         let (bin, before) = found;
-        let members = values
-            .par_iter()
-            .filter(|v| v.1 > 0.0 && self.bin(v.0) == bin);
-        let members: Vec<Weighted> = members.copied().collect();
-        Self::of(&members).map_or(self.low, |bins| bins.value_at(&members, wanted - before))
+        let members = values.filter(|v| v.1 > 0.0 && self.bin(v.0) == bin);
+        let members: Vec<Weighted> = members.collect();
+        let members = members.par_iter().copied();
+        let bins = Self::of(members.clone());
+        bins.map_or(self.low, |bins| bins.value_at(members, wanted - before))
     }
 }
 
@@ -105,7 +102,7 @@ mod tests {
             .collect();
         values.push((1e6, 2.0));
         let shares = [1e-6, 0.015, 0.4, 0.5, 0.7, 0.99, 1.0];
-        let found = shares_below(&values, shares).unwrap();
+        let found = shares_below(values.par_iter().copied(), shares).unwrap();
         let mut sorted: Vec<_> = values.into_iter().filter(|v| v.1 > 0.0).collect();
         sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
         let total: f64 = sorted.iter().map(|v| v.1).sum();
@@ -117,6 +114,6 @@ mod tests {
             });
             assert_eq!(expected.unwrap().0, found, "{share}");
         }
-        assert_eq!(shares_below(&[(1.0, 0.0)], [0.5]), None);
+        assert_eq!(shares_below([(1.0, 0.0)].par_iter().copied(), [0.5]), None);
     }
 }
