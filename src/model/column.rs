@@ -13,6 +13,8 @@ pub struct Column<'a> {
     pub i: usize,
     /// Along j.
     pub j: usize,
+    /// Depth grows with the layer, or stays, on all pillars.
+    pub is_sorted: bool,
     pub(super) active: &'a [u64],
     pub(super) corners: [Corner<'a>; 4],
 }
@@ -69,23 +71,25 @@ impl Column<'_> {
         self.corners.map(|c| c.slope)
     }
 
-    /// True where depth grows with the layer, or stays, on all pillars.
-    pub fn is_sorted(&self) -> bool {
-        self.corners.iter().all(|c| c.depths.is_sorted())
-    }
-
     /// The highest and the lowest corner of some layers' cells on each pillar, between which all of their others lie;
     /// `None` without layers.
     pub fn ends(&self, layers: impl IntoIterator<Item = usize>) -> Option<[[DVec3; 2]; 4]> {
+        let mut layers = layers.into_iter();
+        let first = layers.next()?;
         let mut depths = [[f64::INFINITY, f64::NEG_INFINITY]; 4];
-        for k in layers {
+        let mut add = |k: usize| {
             for corner in 0..8 {
-                let depth = self.depth(k, corner);
                 let [high, low] = &mut depths[corner & 3];
+                let depth = self.depth(k, corner);
                 (*high, *low) = (high.min(depth), low.max(depth));
             }
+        };
+        add(first);
+        match self.is_sorted {
+            true => layers.last().into_iter().for_each(add),
+            false => layers.for_each(add),
         }
         let ends = |c: usize| depths[c].map(|depth| self.corners[c].at(depth));
-        (depths[0][0] <= depths[0][1]).then(|| std::array::from_fn(ends))
+        Some(std::array::from_fn(ends))
     }
 }

@@ -111,14 +111,6 @@ impl VertexField {
         &self.0
     }
 
-    /// The same, with 0 where no defined active cell touches.
-    pub fn into_defined(mut self) -> Vec<f32> {
-        for value in self.0.iter_mut().filter(|v| v.is_nan()) {
-            *value = 0.0;
-        }
-        self.0
-    }
-
     /// The eight corner values of a cell.
     pub fn corners(&self, grid: &Grid, ijk: Ijk) -> [f64; 8] {
         std::array::from_fn(|c| f64::from(self.0[grid.corner_entry(ijk, c)]))

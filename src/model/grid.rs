@@ -24,7 +24,7 @@ use rayon::prelude::*;
 use super::activity::{Activity, ColumnBits};
 use super::column::{Column, Corner};
 use super::corner_point::Hexahedron;
-use super::depth_lists::DepthList;
+use super::depth_lists::{DepthList, Lists, UsedDepths};
 use super::ids::{ActiveIndex, CellIndex, Dims, Ijk};
 use super::spaces::MapAxes;
 
@@ -118,6 +118,8 @@ pub struct Grid {
     slopes: Arc<[DVec2]>,
     lists: Arc<Vec<DepthList>>,
     depths: Arc<Vec<f64>>,
+    /// By column: true where depth grows with the layer, or stays, on all pillars.
+    sorted: Arc<Vec<bool>>,
     active_cells: Vec<CellIndex>,
     activity: Activity,
     map_axes: Option<MapAxes>,
@@ -130,6 +132,7 @@ struct Found {
     bounds: OnceLock<Option<[DVec3; 2]>>,
     signed_volume: OnceLock<f64>,
     thick: OnceLock<Arc<[bool]>>,
+    used_depths: OnceLock<Arc<UsedDepths>>,
 }
 
 impl Grid {
@@ -141,7 +144,7 @@ impl Grid {
     pub fn new<C, Z>(input: &GridInput<'_, C, Z>) -> Result<Self, ModelError>
     where
         C: Copy + Into<f64> + Sync,
-        Z: Copy + Into<f64> + Sync,
+        Z: Copy + Into<f64> + Send + Sync,
     {
         let dims = input.dims;
         check(input)?;
@@ -153,7 +156,11 @@ impl Grid {
                 bottom: DVec3::new(c[3], c[4], c[5]),
             })
             .collect();
-        let (lists, depths) = super::depth_lists::build(dims, input.zcorn);
+        let Lists {
+            lists,
+            depths,
+            sorted,
+        } = super::depth_lists::build(dims, input.zcorn);
         let is_active = |cell: &u32| input.actnum.is_none_or(|a| a[*cell as usize] != 0);
         let active_cells = (0..dims.cells() as u32).filter(is_active).map(CellIndex);
         let active_cells: Vec<CellIndex> = active_cells.collect();
@@ -163,6 +170,7 @@ impl Grid {
             pillars,
             lists: Arc::new(lists),
             depths: Arc::new(depths),
+            sorted: Arc::new(sorted),
             activity: Activity::new(dims, &active_cells),
             active_cells,
             map_axes: input.map_axes,
@@ -185,7 +193,8 @@ impl Grid {
         &self.pillars[self.pillar_index(i, j, corner)]
     }
 
-    fn pillar_index(&self, i: usize, j: usize, corner: usize) -> usize {
+    /// The number of that pillar.
+    pub fn pillar_index(&self, i: usize, j: usize, corner: usize) -> usize {
         (i + (corner & 1)) + (self.dims.ni + 1) * (j + (corner >> 1 & 1))
     }
 
@@ -198,6 +207,7 @@ impl Grid {
             slopes: self.slopes.clone(),
             lists: self.lists.clone(),
             depths: self.depths.clone(),
+            sorted: self.sorted.clone(),
             activity: Activity::new(self.dims, &active_cells),
             active_cells,
             map_axes: self.map_axes,
@@ -231,6 +241,21 @@ impl Grid {
     /// The pool of all depth lists.
     pub fn depths(&self) -> &[f64] {
         &self.depths
+    }
+
+    /// The part of the pool that columns with active cells need. Found at the first call.
+    pub fn used_depths(&self) -> &UsedDepths {
+        self.found.used_depths.get_or_init(|| {
+            let columns = (0..self.dims.columns()).into_par_iter();
+            let has_cells = |column: &usize| {
+                let words = self.active_bits().column(*column);
+                words.iter().any(|word| *word != 0)
+            };
+            let lists = columns
+                .filter(has_cells)
+                .flat_map_iter(|c| self.column_lists(c));
+            Arc::new(UsedDepths::new(lists.collect(), self.dims.nk))
+        })
     }
 
     /// Depth-pool position of corner `corner` (`di + 2 dj + 4 dk`) of a cell.
@@ -279,6 +304,7 @@ impl Grid {
         Column {
             i,
             j,
+            is_sorted: self.sorted[column],
             active: self.activity.columns().column(column),
             corners: std::array::from_fn(corner),
         }

@@ -20,6 +20,7 @@ mod vertices;
 pub use activity::ColumnBits;
 pub use column::Column;
 pub use corner_point::Hexahedron;
+pub use depth_lists::{DepthList, UsedDepths};
 pub use face_tree::{FaceHit, FaceTree};
 pub use faults::FaultFaces;
 pub use fields::{CellField, Statistics, VertexField};

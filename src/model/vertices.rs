@@ -11,7 +11,7 @@ use super::topology::COINCIDENT;
 /// their values by active index; NaN where there is none, as cells without a value are.
 pub(super) fn means(grid: &Grid, value: impl Fn(usize) -> f32 + Sync) -> Vec<f32> {
     let Dims { nj, .. } = grid.dims();
-    let mut means = vec![f32::NAN; grid.depths().len()];
+    let mut means = vec![0.0; grid.depths().len()];
     let mut rows = Vec::with_capacity(nj + 1);
     let (mut rest, mut first) = (means.as_mut_slice(), 0);
     for pj in 0..=nj {
@@ -46,6 +46,7 @@ fn average_row(
     (first, entries): (usize, &mut [f32]),
 ) {
     let Dims { ni, nj, nk } = grid.dims();
+    entries.fill(f32::NAN);
     // Values of the columns behind the row of pillars and before it, a column after the other.
     let rows = [Some(pj), pj.checked_sub(1)].map(|j| {
         let j = j.filter(|j| *j < nj)?;
@@ -77,6 +78,8 @@ type Around<'a> = (DepthList, &'a [f32]);
 #[derive(Default)]
 struct OnPillar {
     entries: Vec<Entry>,
+    /// Of one list: sums of the cells that touch each entry, and how many these are.
+    sums: Vec<(f64, f64)>,
     /// Vertices so far, and the last one that each cell was added to.
     vertices: usize,
     added: Vec<usize>,
@@ -134,26 +137,29 @@ impl OnPillar {
     /// Adds the entries of a list.
     fn add(&mut self, grid: &Grid, corners: &[Option<Around<'_>>; 4], list: DepthList) {
         let nk = grid.dims().nk;
-        for (place, at) in list.entries(nk).enumerate() {
-            let (mut sum, mut count) = (0.0, 0.0);
-            for (_, values) in corners.iter().flatten().filter(|(l, _)| *l == list) {
-                for value in &values[touching(list, place, nk)] {
-                    if !value.is_nan() {
-                        sum += f64::from(*value);
-                        count += 1.0;
-                    }
+        let entries = list.entries(nk);
+        self.sums.clear();
+        self.sums.resize(entries.len(), (0.0, 0.0));
+        for (_, values) in corners.iter().flatten().filter(|(l, _)| *l == list) {
+            for (k, value) in values.iter().enumerate().filter(|(_, v)| !v.is_nan()) {
+                let top = list.step() * k;
+                for (sum, count) in &mut self.sums[top..top + 2] {
+                    *sum += f64::from(*value);
+                    *count += 1.0;
                 }
             }
-            if count > 0.0 {
-                self.entries.push(Entry {
-                    depth: grid.depths()[at],
-                    at,
-                    place,
-                    list,
-                    sum,
-                    count,
-                });
-            }
+        }
+        let sums = self.sums.iter().enumerate();
+        for (place, &(sum, count)) in sums.filter(|(_, (_, count))| *count > 0.0) {
+            let at = entries.start + place;
+            self.entries.push(Entry {
+                depth: grid.depths()[at],
+                at,
+                place,
+                list,
+                sum,
+                count,
+            });
         }
     }
 }

@@ -301,7 +301,7 @@ fn bounds(points: &[DVec3]) -> [DVec3; 2] {
 
 /// The chosen cells of the columns of a grid, in grid space.
 struct Columns {
-    /// The highest and lowest corner on each pillar of each column: all others lie between them.
+    /// The highest and lowest corner on each pillar: all others lie between them.
     points: Vec<DVec3>,
     /// Sums of the ways across the columns along I and J.
     ways: [DVec3; 2],
@@ -319,7 +319,7 @@ impl Columns {
         };
         let columns = grid.columns().enumerate();
         let columns: Vec<_> = columns.filter_map(of_column).collect();
-        let mut points = Vec::with_capacity(8 * columns.len());
+        let mut on_pillars: Vec<Option<[DVec3; 2]>> = vec![None; grid.dims().pillars()];
         let mut ways = [DVec3::ZERO; 2];
         let mut cells = [[usize::MAX, 0]; 3];
         for &([i, j], ends, layers) in &columns {
@@ -329,10 +329,15 @@ impl Columns {
             let [a, b, c, d] = ends;
             ways[0] += b[0] - a[0] + d[0] - c[0];
             ways[1] += c[0] - a[0] + d[0] - b[0];
-            points.extend(ends.as_flattened());
+            for (corner, [high, low]) in ends.into_iter().enumerate() {
+                let known = &mut on_pillars[grid.pillar_index(i, j, corner)];
+                let [a, b] = known.unwrap_or([high, low]);
+                let high = if high.z < a.z { high } else { a };
+                *known = Some([high, if low.z > b.z { low } else { b }]);
+            }
         }
         (!columns.is_empty()).then(|| Self {
-            points,
+            points: on_pillars.into_iter().flatten().flatten().collect(),
             ways: ways.map(|way| way.with_z(0.0)),
             cells: cells.map(|[first, last]| last - first + 1),
         })

@@ -21,14 +21,20 @@ pub fn drawn_words(grid: &Grid, drawn: &[bool]) -> Vec<[u32; 2]> {
 
 /// Bits of columns without gaps between them, in words of 32.
 fn packed(dims: Dims, bits: &ColumnBits) -> Vec<u32> {
-    let mut words = vec![0u32; dims.cells().div_ceil(32)];
+    let mut words = vec![0u64; dims.cells().div_ceil(64) + 1];
     for column in 0..dims.columns() {
-        for k in bits.layers(column) {
-            let slot = column * dims.nk + k;
-            words[slot / 32] |= 1 << (slot % 32);
+        for (n, bits) in bits.column(column).iter().enumerate() {
+            let slot = column * dims.nk + 64 * n;
+            let (word, shift) = (slot / 64, slot % 64);
+            words[word] |= bits << shift;
+            // What does not fit; shifted twice, for by all 64 bits cannot be.
+            words[word + 1] |= bits >> 1 >> (63 - shift);
         }
     }
-    words
+    let halves = words
+        .iter()
+        .flat_map(|word| [*word as u32, (word >> 32) as u32]);
+    halves.take(dims.cells().div_ceil(32)).collect()
 }
 
 /// One bit for each slot: the ghosts among the cells that rays meet; `None` where no ghosts are shown.
@@ -41,15 +47,22 @@ pub fn ghost_words(model: &Grid, cells: &ShownCells) -> Option<Vec<u32>> {
 }
 
 /// The values of what is shown of the case's grid `model`: one for each cell that rays meet, in the order of slots,
-/// or one for each entry of the depth lists. None is NaN.
+/// or one for each entry of the depth lists that are used. None is NaN.
 pub fn values(model: &Grid, cells: &ShownCells) -> Vec<f32> {
     match cells.interpolation {
         Interpolation::Cell => column_major(model, cells),
-        // Entries that no drawn cell touches are never read.
-        Interpolation::Vertex => {
-            VertexField::of(model, &cells.field, cells.valued()).into_defined()
-        }
+        Interpolation::Vertex => at_vertices(model, cells),
     }
+}
+
+/// Values at the entries of the depth lists that are used; those that no drawn cell touches are never read.
+fn at_vertices(model: &Grid, cells: &ShownCells) -> Vec<f32> {
+    let values = VertexField::of(model, &cells.field, cells.valued());
+    let (grid, _) = cells.in_grid(model);
+    let used: Vec<&[f32]> = grid.used_depths().of(values.values()).collect();
+    let used = used.par_iter().flat_map(|values| values.par_iter());
+    used.map(|value| if value.is_nan() { 0.0 } else { *value })
+        .collect()
 }
 
 /// Values in the order of slots; ghosts have none.

@@ -32,7 +32,7 @@ fn shape(column: &Column<'_>) -> ColumnShape {
         let may_fold = !folded && !slopes.leave_one_sign(&cell);
         folded |= may_fold && column.has_thickness(k) && folds(&cell);
     }
-    let layers_cross = !column.is_sorted();
+    let layers_cross = !column.is_sorted;
     let level = margin_level(margin);
     ColumnShape {
         layers_cross,
