@@ -51,8 +51,8 @@ impl Facts {
         let has_mean = scene.transfer.coloring != Coloring::Categories
             && Quantity::of(property) != Quantity::Region;
         let all = values.values();
-        let valued = all.iter().filter(|v| !v.is_nan()).count();
-        let drawn = seen.iter().filter(|s| **s).count();
+        let valued = all.par_iter().filter(|v| !v.is_nan()).count();
+        let drawn = seen.par_iter().filter(|s| **s).count();
         let range = range(all, seen);
         let values = range.map(|[min, max]| Values {
             min,
@@ -98,8 +98,9 @@ fn reaches(plane: &ClipPlane, corners: &[DVec3]) -> bool {
 
 fn range(values: &[f32], seen: &[bool]) -> Option<[f64; 2]> {
     let start = [f32::INFINITY, f32::NEG_INFINITY];
-    let seen = values.iter().zip(seen).filter(|(_, seen)| **seen);
-    let [low, high] = seen.fold(start, |[a, b], (v, _)| [a.min(*v), b.max(*v)]);
+    let join = |a: [f32; 2], b: [f32; 2]| [a[0].min(b[0]), a[1].max(b[1])];
+    let seen = values.par_iter().zip(seen).filter(|(_, seen)| **seen);
+    let [low, high] = seen.map(|(v, _)| [*v; 2]).reduce(|| start, join);
     (low <= high).then_some([low, high].map(f64::from))
 }
 
@@ -110,15 +111,20 @@ fn mean(case: &Case, values: &[f32], seen: &[bool]) -> Option<(f64, Weighting)> 
     Some((mean, weights.weighting))
 }
 
+/// Cells that one thread adds up at a time; sums do not depend on the number of threads.
+const PIECE: usize = 1 << 16;
+
 /// The mean by weights; `None` where none is above 0.
-fn weighted(values: &[f32], seen: &[bool], weight: impl Fn(usize) -> f32) -> Option<f64> {
-    let (mut sum, mut total) = (0.0, 0.0);
-    for (n, (value, seen)) in values.iter().zip(seen).enumerate() {
+fn weighted(values: &[f32], seen: &[bool], weight: impl Fn(usize) -> f32 + Sync) -> Option<f64> {
+    let cells = values.par_iter().zip(seen).enumerate();
+    let add = |[sum, total]: [f64; 2], (n, (value, seen)): (usize, (&f32, &bool))| {
         let weight = f64::from(weight(n));
-        if *seen && !value.is_nan() && weight > 0.0 {
-            sum += weight * f64::from(*value);
-            total += weight;
+        match *seen && !value.is_nan() && weight > 0.0 {
+            true => [sum + weight * f64::from(*value), total + weight],
+            false => [sum, total],
         }
-    }
+    };
+    let pieces: Vec<[f64; 2]> = cells.fold_chunks(PIECE, || [0.0; 2], add).collect();
+    let [sum, total] = [0, 1].map(|n| pieces.iter().map(|piece| piece[n]).sum::<f64>());
     (total > 0.0).then(|| sum / total)
 }
