@@ -17,5 +17,5 @@ pub mod surfaces;
 pub mod transfer;
 pub mod volume;
 
-pub use cells::{drawn_words, ghost_words, values};
+pub use cells::{cell_bits, drawn_words, ghost_words, values};
 pub use compact_grid::{CompactGrid, GridFacts};
