@@ -97,33 +97,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn range_maxima_are_those_of_every_range() {
-        let transfer = TransferFunction {
-            color: vec![(0.0, [1.0; 3])],
-            opacity: vec![(0.0, 0.3), (0.4, 0.0), (0.7, 0.9), (1.0, 0.1)],
-            range: [0.0, 1.0],
-            scale: crate::transfer::Scale::Linear,
-            bands: None,
-            reference_length: 1.0,
-        };
-        let entries = extinctions(&transfer);
-        let maxima = range_maxima(&transfer);
-        let mut random = fastrand::Rng::with_seed(3);
-        let mut unlike_first = 0;
-        for _ in 0..2000 {
-            let first = random.usize(0..entries.len());
-            let last = random.usize(first..entries.len());
-            let level = (last - first + 1).ilog2() as usize;
-            let at = |n: usize| maxima[level * entries.len() + n];
-            let found = at(first).max(at(last + 1 - (1 << level)));
-            let expected = entries[first..=last].iter().copied().fold(0.0, f32::max);
-            assert_eq!(found, expected, "{first} {last}");
-            unlike_first += usize::from(found != entries[first]);
-        }
-        assert!(unlike_first > 500);
-    }
-
-    #[test]
     fn levels_end_with_the_whole() {
         let found: Vec<_> = levels([5, 1, 3]).collect();
         assert_eq!(found, [[5, 1, 3], [3, 1, 2], [2, 1, 1], [1, 1, 1]]);

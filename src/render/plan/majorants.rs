@@ -53,3 +53,37 @@ impl Majorants {
         self.table[..WIDTH].contains(&0.0)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn majorants_are_the_largest_of_every_range() {
+        let transfer = TransferFunction {
+            color: vec![(0.0, [1.0; 3])],
+            opacity: vec![(0.0, 0.3), (0.4, 0.0), (0.7, 0.9), (1.0, 0.1)],
+            range: [0.0, 1.0],
+            scale: crate::transfer::Scale::Linear,
+            bands: None,
+            reference_length: 1.0,
+        };
+        let entries = extinctions(&transfer);
+        let majorants = Majorants::new(&transfer);
+        let position = |n: usize| n as f32 / (entries.len() - 1) as f32;
+        let mut random = fastrand::Rng::with_seed(3);
+        let mut unlike_first = 0;
+        for _ in 0..2000 {
+            let first = random.usize(0..entries.len());
+            let last = random.usize(first..entries.len());
+            let found = majorants.between(position(first), position(last));
+            let expected = entries[first..=last].iter().copied().fold(0.0, f32::max);
+            // Positions are rounded, perhaps to an entry more on either side.
+            let wider = &entries[first.saturating_sub(1)..(last + 2).min(entries.len())];
+            let most = wider.iter().copied().fold(0.0, f32::max);
+            assert!((expected..=most).contains(&found), "{first} {last}");
+            unlike_first += usize::from(found != entries[first]);
+        }
+        assert!(unlike_first > 500);
+    }
+}

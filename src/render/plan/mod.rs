@@ -19,5 +19,5 @@ pub mod transfer;
 pub mod visible;
 pub mod volume;
 
-pub use cells::{drawn_words, ghost_words, values};
+pub use cells::{cell_bits, drawn_words, ghost_words, values};
 pub use compact_grid::{CompactGrid, GridFacts};
