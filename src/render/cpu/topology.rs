@@ -26,6 +26,10 @@ const MOST_TRIED: usize = 4;
 const PAST_FACE: f32 = 1e-2;
 /// A sample that seems to be so far outside of a cell is looked for in the neighbor at once.
 const SURELY_OUTSIDE: f32 = 0.02;
+/// Ends of a way that are tried; halves of it where a cell is bent.
+const MOST_TRIES: usize = 8;
+/// Parameters so near to a face that the rest is straight.
+const AT_FACE: f32 = 0.03;
 /// Samples are interpolated between two of a cell where parameters are off a straight line by less than this.
 const MOST_BENT: f32 = 0.2;
 
@@ -42,6 +46,8 @@ pub struct Track<'a> {
     solution: Solution,
     /// Change of the parameters from a sample to the next.
     rate: Vec3A,
+    /// The last way has ended at a face of its cell.
+    at_face: bool,
     /// The cell that was counted last.
     last: Option<(u32, u32)>,
     /// Samples found in no cell since the last one that was found.
@@ -100,6 +106,7 @@ impl<'a> Track<'a> {
             cell: Cell::default(),
             solution: Solution::default(),
             rate: Vec3A::ZERO,
+            at_face: false,
             last: None,
             gap: 0.0,
             tally,
@@ -193,8 +200,8 @@ impl<'a> Track<'a> {
         stretch
     }
 
-    /// The way through the cell that the ray is in at a place, or comes into behind it; `None` where there is none.
-    /// `joins` says that it came there from the cell before, whose way ends there.
+    /// The way through the cell that the ray is in at a place, or comes into behind it; a part of that way where the
+    /// cell is bent. `None` where there is none. `joins` says that the ray came there by the way before.
     pub fn cross(&mut self, mut from: f32, joins: bool) -> Option<Stretch> {
         if !joins {
             from = self.enter(from)?;
@@ -204,32 +211,52 @@ impl<'a> Track<'a> {
         let rate = self.cell.parameters_along(start, self.ray.advance);
         let mut stretch = Stretch {
             first: from,
-            more: steps_to_face(start, rate),
+            more: steps_to_face(start, rate).max(0.0),
             from: start,
             to: start,
             from_rate: rate,
             to_rate: rate,
         };
+        self.at_face = false;
         let mut expected = start + stretch.more * rate;
-        for _ in 0..MOST_TRIED {
-            let reached = self.solve(from + stretch.more, expected).uvw;
-            stretch.to_rate = self.cell.parameters_along(reached, self.ray.advance);
-            let off = steps_to_face(reached, stretch.to_rate);
-            expected = reached + off * stretch.to_rate;
-            stretch.more += off;
-            // What is left is of the square of this.
-            if (off * stretch.to_rate).abs().max_element() < MOST_BENT {
-                break;
+        for _ in 0..MOST_TRIES {
+            let reached = self.solve(from + stretch.more, expected);
+            let is_near = (reached.uvw - expected).abs().max_element() < MOST_BENT;
+            stretch.to = reached.uvw;
+            stretch.to_rate = self.cell.parameters_along(reached.uvw, self.ray.advance);
+            let off = steps_to_face(reached.uvw, stretch.to_rate);
+            let left = off * stretch.to_rate;
+            let most_left = left.abs().max_element();
+            // What that leaves is of its square.
+            self.at_face = is_near && most_left < AT_FACE;
+            if self.at_face {
+                stretch.more = (stretch.more + off).max(0.0);
+                stretch.to += left;
+            }
+            if self.at_face || (is_near && reached.inside) {
+                self.solution.uvw = stretch.to;
+                return Some(stretch);
+            }
+            if is_near && most_left < MOST_BENT {
+                stretch.more = (stretch.more + off).max(0.0);
+                expected = stretch.to + left;
+            } else {
+                stretch.more *= 0.5;
+                expected = start + stretch.more * rate;
             }
         }
-        stretch.more = stretch.more.max(0.0);
-        stretch.to = expected;
-        self.solution.uvw = expected;
+        // Too bent to be followed: the next place is looked for.
+        self.at_face = true;
+        (stretch.to, stretch.to_rate) = (start + stretch.more * rate, rate);
+        self.solution.uvw = Vec3A::splat(0.5);
         Some(stretch)
     }
 
-    /// Goes on through the face at which the way through a cell ends; false where no cell joins there.
+    /// Goes on where a way has ended, in the same cell or through its face; false where no cell joins there.
     pub fn leave(&mut self) -> bool {
+        if !self.at_face {
+            return true;
+        }
         let mut start = self.solution.uvw;
         let joins = self.step_to_neighbor(&mut start);
         self.tally.steps += u64::from(joins);

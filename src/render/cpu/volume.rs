@@ -42,6 +42,14 @@ impl Voxel for f32 {
     fn of(number: Self) -> Self {
         number
     }
+
+    /// Both faces across the depth in one vector each.
+    #[inline]
+    fn between([a, b, c, d, e, f, g, h]: [Self; 8], [x, y, z]: [f32; 3]) -> Self {
+        let face = Vec4::new(a, b, c, d).lerp(Vec4::new(e, f, g, h), z);
+        let edge = face.xy().lerp(face.zw(), y);
+        edge.x + (edge.y - edge.x) * x
+    }
 }
 
 impl Voxel for Vec4 {
