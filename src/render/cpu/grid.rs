@@ -9,7 +9,7 @@ use super::each::Each;
 use crate::model::{Grid as Model, topology};
 use crate::render::plan::columns::COLUMN_MARGINS;
 use crate::render::plan::layout::{COLUMN_FLAG, LIST_GAPPED, LIST_OFFSET};
-use crate::render::plan::visible::visible_words;
+use crate::render::plan::visible::HeldCells;
 use crate::render::plan::{CompactGrid, drawn_words, ghost_words, values};
 use crate::render::{DeviceBytes, RenderError};
 use crate::scene::Interpolation;
@@ -166,13 +166,15 @@ impl Grid {
 
     /// Bits of the drawn cells in which a view shows something; `None` where rays meet all drawn cells.
     pub fn visible_words(&self, view: &View) -> Option<Vec<u32>> {
-        let range = |slot: usize| {
-            let [column, layer] = [slot as u32 / self.nk(), slot as u32 % self.nk()];
-            let [top, bottom] = self.corner_values(column, layer);
-            let (low, high) = (top.min(bottom), top.max(bottom));
-            [low.min_element(), high.max_element()]
+        let held = HeldCells {
+            nk: self.nk(),
+            interpolation: self.interpolation,
+            lists: &self.compact.column_lists,
+            values: &self.values,
+            drawn: &self.drawn_cells,
+            ghosts: self.ghost_cells.as_deref(),
         };
-        visible_words(view, &self.drawn_cells, self.ghost_cells.as_deref(), range)
+        held.visible(view)
     }
 
     /// True where a cell is an inactive one that is shown.

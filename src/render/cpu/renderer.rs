@@ -22,7 +22,7 @@ use crate::render::job::{Job, Progress};
 use crate::render::line_of_sight::SurfaceTree;
 use crate::render::plan::faces::face_numbers;
 use crate::render::plan::frame::{frame_uniform, ghost};
-use crate::render::plan::visible::by_active_index;
+use crate::render::plan::visible::{by_active_index, can_be_passed};
 use crate::render::revisions::{RevisionCounter, Revisions};
 use crate::render::{DeviceBytes, Frame, Located, RenderError, Renderer, SetupTimes};
 use crate::scene::StrategyKind;
@@ -107,7 +107,7 @@ impl CpuRenderer {
         }
         let (grid, drawn) = view.shown.cells.in_grid(model);
         let faces = |cells: &[bool]| face_numbers(grid, &grid.boundary_faces(cells));
-        let visible = match passes_invisible(view, strategy, &self.grid) {
+        let visible = match can_be_passed(view, &self.grid.compact.facts) {
             true => self.visible.update(now.visible, || {
                 let words = self.grid.visible_words(view);
                 let with_faces = |words: Vec<u32>| {
@@ -163,15 +163,6 @@ impl CpuRenderer {
                 },
         })
     }
-}
-
-/// True where rays can pass the cells in which nothing shows, without a change of the image: a resampled value is
-/// also of cells around, an opaque section shows all cells, and where layers cross, the first one hides the others.
-fn passes_invisible(view: &View, strategy: Strategy, grid: &Grid) -> bool {
-    let has_opaque_cut = view.shown.clip.iter().any(|plane| plane.opaque);
-    matches!(strategy, Strategy::Plts | Strategy::Libc)
-        && !has_opaque_cut
-        && !grid.compact.facts.layers_cross
 }
 
 /// What casts the rays of a view.

@@ -3,55 +3,94 @@
 
 use rayon::prelude::*;
 
+use super::GridFacts;
 use super::frame::ghost;
-use super::layout::per_unit;
+use super::layout::{LIST_GAPPED, LIST_OFFSET, per_unit};
 use super::majorants::Majorants;
 use crate::model::Grid;
+use crate::scene::{Interpolation, StrategyKind};
 use crate::view::View;
 
 /// Hidden cells among the drawn ones below which it does not pay to list boundaries anew.
 const FEWEST_HIDDEN: f64 = 0.05;
 
-/// Bits of the cells, in the order of slots, in which a view shows something: of the drawn ones (`drawn_words`) those
-/// whose smallest and largest value, given by slot, include one with an extinction. `None` where rays meet all drawn
-/// cells.
-pub fn visible_words(
-    view: &View,
-    drawn: &[[u32; 2]],
-    ghosts: Option<&[u32]>,
-    range: impl Fn(usize) -> [f32; 2] + Sync,
-) -> Option<Vec<u32>> {
-    let majorants = Majorants::new(&view.style.transfer);
-    if !majorants.hide_some() {
-        return None;
-    }
-    let values = view.style.transfer.range;
-    let (low, scale) = (values[0] as f32, per_unit(values));
-    let position = |value: f32| ((value - low) * scale).clamp(0.0, 1.0);
-    let shows_ghosts = ghost(view)[3] > 0.0;
-    let is_visible = |slot: usize| {
-        let [low, high] = range(slot).map(position);
-        majorants.between(low, high) > 0.0
-    };
-    let word = |n: usize| {
-        let of_ghosts = ghosts.map_or(0, |ghosts| ghosts[n]);
-        let mut left = drawn[n][0] & !of_ghosts;
-        let mut visible = match shows_ghosts {
-            true => drawn[n][0] & of_ghosts,
-            false => 0,
-        };
-        while left != 0 {
-            let bit = left.trailing_zeros();
-            left &= left - 1;
-            visible |= u32::from(is_visible(32 * n + bit as usize)) << bit;
+/// True where rays can pass the cells in which nothing shows, without a change of the image: a resampled value is also
+/// of cells around, an opaque section shows all cells, and where layers cross, the first of two hides the other.
+pub fn can_be_passed(view: &View, facts: &GridFacts) -> bool {
+    let has_opaque_cut = view.shown.clip.iter().any(|plane| plane.opaque);
+    view.casts_rays()
+        && view.sampling.strategy != StrategyKind::Srg
+        && !has_opaque_cut
+        && !facts.layers_cross
+}
+
+/// The cells of a grid with their values, as executors hold them.
+pub struct HeldCells<'a> {
+    /// Layers.
+    pub nk: u32,
+    /// How values vary inside a cell.
+    pub interpolation: Interpolation,
+    /// Depth lists of the columns.
+    pub lists: &'a [[u32; 4]],
+    /// See [`super::values`].
+    pub values: &'a [f32],
+    /// See [`super::drawn_words`].
+    pub drawn: &'a [[u32; 2]],
+    /// See [`super::ghost_words`].
+    pub ghosts: Option<&'a [u32]>,
+}
+
+impl HeldCells<'_> {
+    /// Bits of the drawn cells, in the order of slots, in which a view shows something: those whose smallest and
+    /// largest value have one with an extinction between them. `None` where these are all but a few.
+    pub fn visible(&self, view: &View) -> Option<Vec<u32>> {
+        let majorants = Majorants::new(&view.style.transfer);
+        if !majorants.hide_some() {
+            return None;
         }
-        visible
-    };
-    let words: Vec<u32> = (0..drawn.len()).into_par_iter().map(word).collect();
-    let count = |words: &mut dyn Iterator<Item = u32>| words.map(u32::count_ones).sum::<u32>();
-    let of_drawn = count(&mut drawn.iter().map(|word| word[0]));
-    let hidden = of_drawn - count(&mut words.iter().copied());
-    (f64::from(hidden) > FEWEST_HIDDEN * f64::from(of_drawn)).then_some(words)
+        let range = view.style.transfer.range;
+        let (low, scale) = (range[0] as f32, per_unit(range));
+        let position = |value: f32| ((value - low) * scale).clamp(0.0, 1.0);
+        let shows_ghosts = ghost(view)[3] > 0.0;
+        let word = |n: usize| {
+            let of_ghosts = self.ghosts.map_or(0, |ghosts| ghosts[n]);
+            let [drawn, before] = self.drawn[n];
+            let mut left = drawn & !of_ghosts;
+            let mut visible = if shows_ghosts { drawn & of_ghosts } else { 0 };
+            while left != 0 {
+                let bit = left.trailing_zeros();
+                left &= left - 1;
+                let rank = before + (drawn & ((1 << bit) - 1)).count_ones();
+                let [low, high] = self.range(32 * n as u32 + bit, rank).map(position);
+                visible |= u32::from(majorants.between(low, high) > 0.0) << bit;
+            }
+            visible
+        };
+        let words: Vec<u32> = (0..self.drawn.len()).into_par_iter().map(word).collect();
+        let [drawn, visible] = [
+            self.drawn.iter().map(|w| w[0].count_ones()).sum::<u32>(),
+            words.iter().map(|w| w.count_ones()).sum(),
+        ];
+        let hidden = f64::from(drawn - visible);
+        (hidden > FEWEST_HIDDEN * f64::from(drawn)).then_some(words)
+    }
+
+    /// Smallest and largest value of a drawn cell, by its slot and its rank among the drawn ones.
+    fn range(&self, slot: u32, rank: u32) -> [f32; 2] {
+        if self.interpolation == Interpolation::Cell {
+            return [self.values[rank as usize]; 2];
+        }
+        let (column, layer) = (slot / self.nk, slot % self.nk);
+        let mut range = [f32::MAX, f32::MIN];
+        for list in self.lists[column as usize] {
+            let layers = if list & LIST_GAPPED != 0 { 2 } else { 1 };
+            let top = ((list & LIST_OFFSET) + layers * layer) as usize;
+            for value in &self.values[top..top + 2] {
+                range = [range[0].min(*value), range[1].max(*value)];
+            }
+        }
+        range
+    }
 }
 
 /// The cells of some bits by active index of the grid that rays pass.
