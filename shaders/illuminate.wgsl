@@ -15,7 +15,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     if 2u * id.x >= slab.size.x || any(id.yz >= slab.size.yz) {
         return;
     }
-    let emitter = emitters[which.x];
+    let emitter = emitter_at(which.x);
     let first = slab.first + vec3u(2u * id.x, id.yz) - vec3u(0u, 0u, which.y);
     var pair = vec2f(0.0);
     for (var side = 0u; side < 2u; side++) {

@@ -27,14 +27,19 @@ override BY_SEGMENT: bool = false;
 // Values vary inside a cell.
 override BY_VERTEX: bool = true;
 
-// Stage and number of rays in `rays`.
+// Rays of the tile that have not ended, as pixel numbers.
+struct Rays {
+    // How many go on after this dispatch.
+    left: atomic<u32>,
+    // Those before this dispatch and those after it, from where the stage says.
+    numbers: array<u32>,
+}
+
+// What the dispatch does, how many rays there are, and where the numbers of rays before and after it begin.
 @group(3) @binding(0) var<uniform> stage: vec4u;
 // Face number + 1 of the next entry, or 0, and the bits of its distance.
 @group(3) @binding(1) var entries: texture_2d<u32>;
-// Rays of the tile that have not ended, as pixel numbers: before and after this dispatch.
-@group(3) @binding(2) var<storage, read> rays: array<u32>;
-@group(3) @binding(3) var<storage, read_write> rays_left: array<u32>;
-@group(3) @binding(4) var<storage, read_write> rays_left_count: atomic<u32>;
+@group(3) @binding(2) var<storage, read_write> rays: Rays;
 
 // What `stage.x` says: 1 where rays take the entries just drawn, 0 where only paused ones go on.
 const ENTERS: u32 = 1u;
@@ -104,7 +109,7 @@ fn frame_of(ray: Ray) -> RayFrame {
 
 fn project_cell(r: RayFrame, column: u32, layer: u32) -> Projected {
     let p = pillar_index(column);
-    let lists = column_lists[column];
+    let lists = column_lists(column);
     let top = depths_at(layer_entries(lists, layer, 0u));
     let bottom = depths_at(layer_entries(lists, layer, 1u));
     let pillar0 = load_pillar(p.x);
@@ -214,7 +219,7 @@ fn set_right(@builtin(global_invocation_id) id: vec3u) {
     if id.x >= stage.y {
         return;
     }
-    let number = rays[id.x];
+    let number = rays.numbers[stage.z + id.x];
     var walk = load_walk(number);
     if walk.phase != STRAYED {
         return;
@@ -239,7 +244,7 @@ fn walk(@builtin(global_invocation_id) id: vec3u) {
     if id.x >= stage.y {
         return;
     }
-    let number = rays[id.x];
+    let number = rays.numbers[stage.z + id.x];
     var walk = load_walk(number);
     let place = in_tile(number);
     var layers = layers_of(tile.origin + place, walk.passed);
@@ -305,7 +310,7 @@ fn finish(number: u32, walk: Walk, sum: Accumulated, layers: Layers, tally: Tall
         var state = walk;
         state.passed = layers.passed;
         store_walk(number, state);
-        rays_left[atomicAdd(&rays_left_count, 1u)] = number;
+        rays.numbers[stage.w + atomicAdd(&rays.left, 1u)] = number;
         count(COUNT_PAUSED, select(0u, 1u, walk.phase != NEEDS_ENTRY));
         count(COUNT_RECOVERED, select(0u, 1u, walk.phase == STRAYED));
     }
@@ -409,8 +414,8 @@ fn step_through(walk: ptr<function, Walk>) {
     if next == NOT_FOUND {
         return;
     }
-    let lists = column_lists[next];
-    if sides_join(side_lists(column_lists[column], face), side_lists(lists, face ^ 1u), layer) {
+    let lists = column_lists(next);
+    if sides_join(side_lists(column_lists(column), face), side_lists(lists, face ^ 1u), layer) {
         if is_drawn(next, layer) {
             (*walk).column = next;
             let turned = vec3f(1.0) - (*walk).uvw;
@@ -425,7 +430,7 @@ fn step_through(walk: ptr<function, Walk>) {
 
 // The drawn layer below or above that the ray comes into, or NOT_FOUND.
 fn next_layer(column: u32, layer: u32, plus: bool) -> u32 {
-    let lists = column_lists[column];
+    let lists = column_lists(column);
     var at = layer;
     let mine = depths_at(layer_entries(lists, layer, select(0u, 1u, plus)));
     while (plus && at + 1u < grid.nk) || (!plus && at > 0u) {
@@ -451,7 +456,7 @@ fn cross_fault(walk: ptr<function, Walk>, r: RayFrame) {
     let face = (*walk).exit_face ^ 1u;
     // Edges have the sense of the face that was left.
     let sense = frame.grid_handedness * face_orientation((*walk).exit_face);
-    let lists = side_lists(column_lists[next], face);
+    let lists = side_lists(column_lists(next), face);
     let numbers = pillar_index(next);
     let pillar_a = load_pillar(numbers[face_corner(face, 0u)]);
     let pillar_b = load_pillar(numbers[face_corner(face, 1u)]);
@@ -510,7 +515,7 @@ fn integrate(walk: ptr<function, Walk>, sum: ptr<function, Accumulated>, layers:
     s.uvw = (*walk).uvw;
     s.along = uvw - s.uvw;
     if BY_VERTEX {
-        let lists = column_lists[(*walk).column];
+        let lists = column_lists((*walk).column);
         s.top = values_at(layer_entries(lists, (*walk).layer, 0u));
         s.bottom = values_at(layer_entries(lists, (*walk).layer, 1u));
     } else {

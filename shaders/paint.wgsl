@@ -10,9 +10,8 @@
 @group(3) @binding(0) var<uniform> paint: PaintInfo;
 // Face number + 1, or 0, and the bits of its distance.
 @group(3) @binding(1) var points: texture_2d<u32>;
-// Faces on faults, in rising order, and the numbers of their colors.
-@group(3) @binding(2) var<storage, read> fault_faces: array<u32>;
-@group(3) @binding(3) var<storage, read> fault_colors: array<u32>;
+// Faces on faults, in rising order, each with the number of its color.
+@group(3) @binding(2) var<storage, read> fault_faces: array<vec2u>;
 
 // A point on a face: its parameters along the face's two axes, and their change from a pixel to the next to
 // the right and below. And the face's normal in grid space, of any length and sense.
@@ -83,23 +82,23 @@ fn fault_color(face: u32) -> vec4f {
     var high = paint.faults;
     while low < high {
         let middle = (low + high) / 2u;
-        if fault_faces[middle] < face {
+        if fault_faces[middle].x < face {
             low = middle + 1u;
         } else {
             high = middle;
         }
     }
-    if low >= paint.faults || fault_faces[low] != face {
+    if low >= paint.faults || fault_faces[low].x != face {
         return vec4f(0.0);
     }
-    return vec4f(paint.palette[fault_colors[low]].rgb, 1.0);
+    return vec4f(paint.palette[fault_faces[low].y].rgb, 1.0);
 }
 
 fn value_on(column: u32, layer: u32, side: u32, at: vec2f) -> f32 {
     if frame.interpolation == INTERPOLATION_CELL {
         return values[drawn_rank(column, layer)];
     }
-    let lists = column_lists[column];
+    let lists = column_lists(column);
     var corners: vec4f;
     for (var n = 0u; n < 4u; n++) {
         let corner = face_corner(side, n);
@@ -111,7 +110,7 @@ fn value_on(column: u32, layer: u32, side: u32, at: vec2f) -> f32 {
 
 // Where the ray, whose frame has its origin there, meets a face: parameters are linear in each triangle.
 fn spot_on(column: u32, layer: u32, side: u32, r: RayFrame, steps: mat2x3f) -> Spot {
-    let lists = column_lists[column];
+    let lists = column_lists(column);
     let numbers = pillar_index(column);
     var corners: array<vec3f, 4>;
     var q: array<vec3f, 4>;

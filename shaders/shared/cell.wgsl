@@ -44,7 +44,7 @@ const NEWTON_LIMIT: u32 = 10u;
 const SURE_STEP: f32 = 0.25;
 
 fn load_cell(column: u32, layer: u32, interpolation: u32) -> Cell {
-    let lists = column_lists[column];
+    let lists = column_lists(column);
     let p = pillar_index(column);
     let top_entries = layer_entries(lists, layer, 0u);
     let bottom_entries = layer_entries(lists, layer, 1u);

@@ -29,7 +29,7 @@ fn cone_transmittance(emitter: Emitter, p: vec3f) -> f32 {
     var depth = 0.0;
     var before = 0.0;
     while n < end {
-        let s = sections[n];
+        let s = section_at(n);
         if s.x > reach || depth > DARK {
             break;
         }
@@ -53,7 +53,7 @@ fn cone_transmittance(emitter: Emitter, p: vec3f) -> f32 {
     n = end;
     end += emitter.threes;
     while n < end {
-        let s = sections[n];
+        let s = section_at(n);
         if s.x > reach || min(depths.x, min(depths.y, depths.z)) > DARK {
             break;
         }
@@ -86,7 +86,7 @@ fn cone_transmittance(emitter: Emitter, p: vec3f) -> f32 {
     n = end;
     end += emitter.sevens;
     while n < end {
-        let s = sections[n];
+        let s = section_at(n);
         let least = min(middle, min(min(depths.x, min(depths.y, depths.z)), min(depths_b.x, min(depths_b.y, depths_b.z))));
         if s.x > reach || least > DARK {
             break;

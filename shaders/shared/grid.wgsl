@@ -3,20 +3,20 @@
 #import layout
 
 @group(1) @binding(0) var<uniform> grid: GridInfo;
-// Three a pillar: x, y at depth 0 of the origin, what rounding to f32 cut off there, and their change
-// per unit of depth.
-@group(1) @binding(1) var<storage, read> pillars: array<vec2f>;
-@group(1) @binding(2) var<storage, read> column_lists: array<vec4u>;
-@group(1) @binding(3) var<storage, read> depths: array<f32>;
-// For each 32 cells, column by column: bits of the drawn ones, and how many are drawn before.
-@group(1) @binding(4) var<storage, read> drawn_cells: array<vec2u>;
+// One after the other, in pairs of words, from where `grid` says:
+// - three pairs a pillar: x, y at depth 0 of the origin, what rounding to f32 cut off there, and their change
+//   per unit of depth;
+// - two pairs a column: its four depth lists;
+// - one a bin of the acceleration grid over x and y: first entry in the list of columns, and the depth range
+//   in 2 x 16 bits;
+// - columns of the bins, two a pair.
+@group(1) @binding(1) var<storage, read> grid_words: array<vec2u>;
+@group(1) @binding(2) var<storage, read> depths: array<f32>;
+// One bit a cell, column by column. A pair for each 32 cells: bits of the drawn ones, and how many are drawn
+// before; then, where inactive cells are shown, the bits of these, two words a pair.
+@group(1) @binding(3) var<storage, read> cell_bits: array<vec2u>;
 // One value a drawn cell, or one a depth-list entry, by frame.interpolation.
-@group(1) @binding(5) var<storage, read> values: array<f32>;
-// Acceleration grid over x and y: first entry in bin_columns, and the depth range in 2 x 16 bits.
-@group(1) @binding(6) var<storage, read> bins: array<vec2u>;
-@group(1) @binding(7) var<storage, read> bin_columns: array<u32>;
-// One bit a cell, column by column: inactive cells that are shown.
-@group(1) @binding(8) var<storage, read> ghost_cells: array<u32>;
+@group(1) @binding(4) var<storage, read> values: array<f32>;
 
 // Inactive cells are shown, and drawn as any other but for their look.
 override GHOSTS: bool = false;
@@ -28,7 +28,23 @@ struct Pillar {
 }
 
 fn load_pillar(index: u32) -> Pillar {
-    return Pillar(pillars[3u * index], pillars[3u * index + 1u], pillars[3u * index + 2u]);
+    let at = 3u * index;
+    return Pillar(bitcast<vec2f>(grid_words[at]), bitcast<vec2f>(grid_words[at + 1u]), bitcast<vec2f>(grid_words[at + 2u]));
+}
+
+// The four depth lists of a column, with their flags.
+fn column_lists(column: u32) -> vec4u {
+    let at = grid.column_lists + 2u * column;
+    return vec4u(grid_words[at], grid_words[at + 1u]);
+}
+
+// First entry of a bin in the list of columns, with its flag, and its depth range.
+fn bin_words(bin: u32) -> vec2u {
+    return grid_words[grid.bins + bin];
+}
+
+fn bin_column(entry: u32) -> u32 {
+    return grid_words[grid.bin_columns + (entry >> 1u)][entry & 1u];
 }
 
 // How far outside its column, in cell widths, a point may seem by the horizontal section: pillars that
@@ -48,7 +64,7 @@ fn pillar_index(column: u32) -> vec4u {
 
 fn is_drawn(column: u32, layer: u32) -> bool {
     let slot = column * grid.nk + layer;
-    return (drawn_cells[slot >> 5u].x >> (slot & 31u) & 1u) == 1u;
+    return (cell_bits[slot >> 5u].x >> (slot & 31u) & 1u) == 1u;
 }
 
 fn is_ghost(column: u32, layer: u32) -> bool {
@@ -56,13 +72,14 @@ fn is_ghost(column: u32, layer: u32) -> bool {
         return false;
     }
     let slot = column * grid.nk + layer;
-    return (ghost_cells[slot >> 5u] >> (slot & 31u) & 1u) == 1u;
+    let word = slot >> 5u;
+    return (cell_bits[grid.ghosts + (word >> 1u)][word & 1u] >> (slot & 31u) & 1u) == 1u;
 }
 
 // Rank among the drawn cells.
 fn drawn_rank(column: u32, layer: u32) -> u32 {
     let slot = column * grid.nk + layer;
-    let word = drawn_cells[slot >> 5u];
+    let word = cell_bits[slot >> 5u];
     return word.y + countOneBits(word.x & ((1u << (slot & 31u)) - 1u));
 }
 

@@ -78,12 +78,18 @@ struct GridInfo {
     nk: u32,
     bins_x: u32,
     bins_y: u32,
-    reserved: u32,
+    // Where the bits of inactive cells begin in the bits of cells, in pairs of words.
+    ghosts: u32,
     bin_origin: vec2f,
     bin_size: vec2f,
     // Depth = depth_low + depth_scale * 16-bit number, relative to the origin.
     depth_low: f32,
     depth_scale: f32,
+    // Where parts of the grid's words begin, in pairs; the pillars come first.
+    column_lists: u32,
+    bins: u32,
+    bin_columns: u32,
+    reserved: u32,
 }
 
 // A volume resampled over a box, in voxels; grid space relative to the origin.
@@ -245,6 +251,10 @@ struct Found {
 const INTERPOLATION_CELL: u32 = 0u;
 const INTERPOLATION_VERTEX: u32 = 1u;
 const LUT_SIZE: u32 = 4096u;
+// Entries in a row of the textures that hold tables: no device has narrower ones.
+const LUT_ROW: u32 = 2048u;
+// Texels of an emitter.
+const EMITTER_TEXELS: u32 = 5u;
 const NOT_FOUND: u32 = 0xffffffffu;
 // Flags in the four list references of a column: its own list has gaps; one bit of the column's:
 // in the first reference that layers cross, in the others the level of its margin, low bit first.

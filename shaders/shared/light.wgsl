@@ -2,20 +2,40 @@
 #import table
 
 @group(2) @binding(2) var<uniform> lighting: LightingInfo;
-@group(2) @binding(3) var<storage, read> emitters: array<Emitter>;
-// Distance from the tip, level of the pyramid, amplitude times attenuation, weight.
-@group(2) @binding(4) var<storage, read> sections: array<vec4f>;
+// In rows of LUT_ROW texels: EMITTER_TEXELS an emitter, then a texel each section of their cones.
+@group(2) @binding(3) var emitters_and_sections: texture_2d<u32>;
 // Representative extinction times the unit of lighting space, and its pyramid.
-@group(2) @binding(5) var extinction: texture_3d<f32>;
+@group(2) @binding(4) var extinction: texture_3d<f32>;
 // Transmittances of cones, one volume an emitter, one above the other.
-@group(2) @binding(6) var light_volumes: texture_3d<f32>;
+@group(2) @binding(5) var light_volumes: texture_3d<f32>;
 // What the pyramid was made from: packed voxels.
-@group(2) @binding(7) var field_volume: texture_3d<u32>;
+@group(2) @binding(6) var field_volume: texture_3d<u32>;
 // Change of the transfer function's position a unit, times presence; and presence.
-@group(2) @binding(8) var gradients: texture_3d<f32>;
-@group(2) @binding(9) var smooth_sampler: sampler;
+@group(2) @binding(7) var gradients: texture_3d<f32>;
+@group(2) @binding(8) var smooth_sampler: sampler;
 // Opacities of a unit of length that nothing has blurred.
-@group(2) @binding(10) var opacities: texture_3d<f32>;
+@group(2) @binding(9) var opacities: texture_3d<f32>;
+
+fn light_texel(at: u32) -> vec4u {
+    return textureLoad(emitters_and_sections, in_rows(at), 0);
+}
+
+fn emitter_at(number: u32) -> Emitter {
+    let first = EMITTER_TEXELS * number;
+    let t0 = light_texel(first);
+    let t1 = bitcast<vec4f>(light_texel(first + 1u));
+    let t2 = bitcast<vec4f>(light_texel(first + 2u));
+    let t3 = light_texel(first + 3u);
+    let t4 = light_texel(first + 4u);
+    let cone = bitcast<vec3f>(t4.xyz);
+    return Emitter(bitcast<vec3f>(t0.xyz), t0.w, t1.xyz, t1.w, t2.xyz, t2.w, t3.x, t3.y, t3.z, t3.w,
+        cone.x, cone.y, cone.z, t4.w);
+}
+
+// Distance from the tip, level of the pyramid, amplitude times attenuation, weight.
+fn section_at(number: u32) -> vec4f {
+    return bitcast<vec4f>(light_texel(EMITTER_TEXELS * lighting.emitters + number));
+}
 
 // Coverage of a packed voxel, 0 to 1; its value, as a part of the range; and whether it is an inactive cell.
 struct FieldVoxel {

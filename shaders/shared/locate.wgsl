@@ -56,11 +56,11 @@ fn locate_quickly(query: Query, advance: vec3f) -> Location {
     result.skip = 1.0;
     let bin_xy = bin_at(point);
     let bin = bin_xy.x + grid.bins_x * bin_xy.y;
-    let range = bins[bin].y;
-    let shallow = grid.depth_low + grid.depth_scale * f32(range & 0xffffu);
-    let deep = grid.depth_low + grid.depth_scale * f32(range >> 16u);
-    let first = bins[bin].x & ~BIN_IS_ODD;
-    let last = bins[bin + 1u].x & ~BIN_IS_ODD;
+    let words = bin_words(bin);
+    let shallow = grid.depth_low + grid.depth_scale * f32(words.y & 0xffffu);
+    let deep = grid.depth_low + grid.depth_scale * f32(words.y >> 16u);
+    let first = words.x & ~BIN_IS_ODD;
+    let last = bin_words(bin + 1u).x & ~BIN_IS_ODD;
     if first == last || point.z < shallow || point.z > deep {
         let low = grid.bin_origin + vec2f(bin_xy) * grid.bin_size;
         var skip = min(steps_to_leave(point.x, advance.x, low.x, low.x + grid.bin_size.x),
@@ -78,9 +78,9 @@ fn locate_quickly(query: Query, advance: vec3f) -> Location {
     let low = grid.bin_origin + vec2f(bin_xy) * grid.bin_size;
     result.skip = min(steps_to_leave(point.x, advance.x, low.x, low.x + grid.bin_size.x),
         steps_to_leave(point.y, advance.y, low.y, low.y + grid.bin_size.y));
-    let is_odd = (bins[bin].x & BIN_IS_ODD) != 0u;
+    let is_odd = (words.x & BIN_IS_ODD) != 0u;
     for (var n = first; n < last && !is_odd && !result.found; n++) {
-        result.found = locate_in_column(bin_columns[n], query, advance, &result);
+        result.found = locate_in_column(bin_column(n), query, advance, &result);
     }
     result.in_doubt = (result.in_doubt || is_odd) && !result.found;
     result.skip = select(max(1.0, ceil(result.skip - 1e-3)), 1.0, result.in_doubt);
@@ -91,9 +91,9 @@ fn locate_quickly(query: Query, advance: vec3f) -> Location {
 fn locate_thoroughly(query: Query, location: ptr<function, Location>) {
     let bin_xy = bin_at(query.point);
     let bin = bin_xy.x + grid.bins_x * bin_xy.y;
-    let last = bins[bin + 1u].x & ~BIN_IS_ODD;
-    for (var n = bins[bin].x & ~BIN_IS_ODD; n < last && (*location).in_doubt && !(*location).found; n++) {
-        (*location).found = search_all_layers(bin_columns[n], query, location);
+    let last = bin_words(bin + 1u).x & ~BIN_IS_ODD;
+    for (var n = bin_words(bin).x & ~BIN_IS_ODD; n < last && (*location).in_doubt && !(*location).found; n++) {
+        (*location).found = search_all_layers(bin_column(n), query, location);
     }
     (*location).in_doubt = false;
     (*location).is_lost = (*location).is_lost && !(*location).found;
@@ -119,7 +119,7 @@ fn locate_in_column(column: u32, query: Query, advance: vec3f, result: ptr<funct
     let q1 = section_corner(pillar1, query);
     let q2 = section_corner(pillar2, query);
     let q3 = section_corner(pillar3, query);
-    let lists = column_lists[column];
+    let lists = column_lists(column);
     let margin = column_margin(lists);
     // Motion across the section in one step.
     let motion = advance.xy - 0.25 * advance.z * (pillar0.slope + pillar1.slope + pillar2.slope + pillar3.slope);
@@ -143,7 +143,7 @@ fn locate_in_column(column: u32, query: Query, advance: vec3f, result: ptr<funct
 fn search_column(
     column: u32, query: Query, uv: vec2f, speed: f32, sinking: f32, result: ptr<function, Location>,
 ) -> bool {
-    let lists = column_lists[column];
+    let lists = column_lists(column);
     let margin = column_margin(lists);
     let inner = clamp(uv, vec2f(0.0), vec2f(1.0));
     let weights = vec4f((1.0 - inner.x) * (1.0 - inner.y), inner.x * (1.0 - inner.y),
@@ -233,7 +233,7 @@ fn height_above(lists: vec4u, layer: u32, bottom: u32, weights: vec4f, depth: f3
 fn search_from_layer(
     column: u32, start: u32, query: Query, uv: vec2f, weights: vec4f, result: ptr<function, Location>,
 ) -> bool {
-    let lists = column_lists[column];
+    let lists = column_lists(column);
     let margin = column_margin(lists);
     var layer = i32(start);
     var direction = 0;
@@ -315,7 +315,7 @@ fn try_cell(column: u32, layer: u32, query: Query, start: vec3f, result: ptr<fun
 
 // Finds the uppermost drawn cell of a column that holds a point, by a thorough search of all of them.
 fn search_all_layers(column: u32, query: Query, result: ptr<function, Location>) -> bool {
-    let lists = column_lists[column];
+    let lists = column_lists(column);
     (*result).work += grid.nk;
     for (var layer = 0u; layer < grid.nk; layer++) {
         if !is_drawn(column, layer) {

@@ -29,7 +29,7 @@ fn face_vertex(face: u32, vertex: u32) -> Corner {
     }
     let corner = face_corner(face % 6u, triangle[number]);
     let pillars_of = pillar_index(column);
-    let lists = column_lists[column];
+    let lists = column_lists(column);
     let pillar = load_pillar(pillars_of[corner & 3u]);
     let depth = depths[list_entry(lists[corner & 3u], layer, corner >> 2u)];
     let from_eye = vec3f((pillar.at - frame.eye.xy) + (pillar.low_bits + pillar.slope * depth), depth - frame.eye.z);

@@ -23,13 +23,13 @@ fn shade(color: vec3f, point: vec3f, is_ghost: bool) -> vec3f {
     let p = in_light(point);
     var light = vec3f(lighting.ambient);
     if OCCLUSION != LIGHT_OFF {
-        light *= 1.0 - lighting.strength * (1.0 - transmittance(OCCLUSION, emitters[0], p));
+        light *= 1.0 - lighting.strength * (1.0 - transmittance(OCCLUSION, emitter_at(0u), p));
     }
     var highlight = vec3f(0.0);
     if LIGHTS {
         let surface = surface_at(p, is_ghost);
         for (var n = 1u; n < lighting.emitters; n++) {
-            let emitter = emitters[n];
+            let emitter = emitter_at(n);
             let way = toward(emitter, p).xyz;
             var arriving = emitter.color;
             if emitter.kind == EMITTER_SPOT {
@@ -39,7 +39,7 @@ fn shade(color: vec3f, point: vec3f, is_ghost: bool) -> vec3f {
                 arriving *= transmittance(SHADOWS, emitter, p);
             }
             if BLINN_PHONG {
-                let half_way = normalize(way + toward(emitters[0], p).xyz + vec3f(1e-6));
+                let half_way = normalize(way + toward(emitter_at(0u), p).xyz + vec3f(1e-6));
                 light += arriving * (1.0 - surface.w + surface.w * abs(dot(surface.xyz, way)));
                 highlight += arriving * SPECULAR * surface.w * pow(abs(dot(surface.xyz, half_way)), SHININESS);
             } else {

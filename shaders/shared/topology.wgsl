@@ -180,10 +180,10 @@ fn step_to_neighbor(track: ptr<function, Track>, uvw: ptr<function, vec3f>, inte
 }
 
 fn faces_join(a: u32, a_layer: u32, b: u32, b_layer: u32, face: u32) -> bool {
-    let a_lists = column_lists[a];
+    let a_lists = column_lists(a);
     if face >= 4u {
         let mine = depths_at(layer_entries(a_lists, a_layer, face & 1u));
         return all_coincide(mine, depths_at(layer_entries(a_lists, b_layer, 1u - (face & 1u))));
     }
-    return sides_join(side_lists(a_lists, face), side_lists(column_lists[b], face ^ 1u), a_layer);
+    return sides_join(side_lists(a_lists, face), side_lists(column_lists(b), face ^ 1u), a_layer);
 }

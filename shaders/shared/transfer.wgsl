@@ -34,7 +34,7 @@ fn transfer_mean(a: f32, b: f32) -> vec4f {
 fn transfer_integral(position: f32) -> vec4f {
     let at = position * f32(LUT_SIZE - 1u);
     let entry = min(u32(at), LUT_SIZE - 2u);
-    return mix(transfer_integrals[entry], transfer_integrals[entry + 1u], at - f32(entry));
+    return mix(integral_entry(entry), integral_entry(entry + 1u), at - f32(entry));
 }
 
 // Front-to-back emission and absorption; colors as they are blended, premultiplied.

@@ -129,6 +129,7 @@ fn sampling(
         step: sampling_step(scene, edges, bounds)?,
         early_termination: early_termination(scene)?,
         libc: scene.libc,
+        plts: scene.plts,
         srg: srg(scene, dims)?,
     })
 }

@@ -113,11 +113,15 @@ fn structs_of_frames(m: &Module) -> Vec<&'static str> {
             nk,
             bins_x,
             bins_y,
-            reserved,
+            ghosts,
             bin_origin,
             bin_size,
             depth_low,
-            depth_scale
+            depth_scale,
+            column_lists,
+            bins,
+            bin_columns,
+            reserved
         ),
     ]
 }
@@ -245,6 +249,8 @@ fn twins() -> BTreeMap<String, Number> {
         ("INTERPOLATION_CELL", layout::INTERPOLATION_CELL),
         ("INTERPOLATION_VERTEX", layout::INTERPOLATION_VERTEX),
         ("LUT_SIZE", layout::LUT_SIZE),
+        ("LUT_ROW", layout::LUT_ROW),
+        ("EMITTER_TEXELS", layout::EMITTER_TEXELS),
         ("NOT_FOUND", layout::NOT_FOUND),
         ("LIST_GAPPED", layout::LIST_GAPPED),
         ("COLUMN_FLAG", layout::COLUMN_FLAG),

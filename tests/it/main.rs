@@ -34,6 +34,7 @@ mod layout;
 mod libc;
 mod light_updates;
 mod lighting;
+mod limits;
 mod metrics;
 mod occlusion;
 mod odd_cells;

@@ -18,8 +18,8 @@ use strataray::image::metrics::{Comparison, fraction_within, psnr_8bit};
 use strataray::image::{Image, Rgb8};
 use strataray::model::{CellField, Grid, VertexField};
 use strataray::reference::{self, Locator};
-use strataray::render::gpu::pyramids::{Bricks, PyramidMaker};
-use strataray::render::gpu::resample::{Resampler, VOXEL_WORK};
+use strataray::render::gpu::pyramids::{self, Bricks};
+use strataray::render::gpu::resample::{self, VOXEL_WORK};
 use strataray::render::gpu::slabs::Slabs;
 use strataray::render::gpu::strategies::srg::Srg;
 use strataray::render::gpu::strategy::{Preparation, RenderStrategy};
@@ -107,15 +107,12 @@ fn volume_of(
     on_device.show(gpu, grid, &shown).unwrap();
     let volume = Volume::new(gpu, voxels::Shape::of(grid.dims(), factor, false));
     let range = range_of(field);
-    let mut resampler = Resampler::new(gpu, false).unwrap();
     let fill = Job::new(|progress| {
-        let (on_device, volume, resampler) = (&on_device, &volume, &mut resampler);
+        let (on_device, volume) = (&on_device, &volume);
         Box::pin(async move {
             let mut pace = Pace::default();
             let mut slabs = Slabs::new(gpu, &mut pace, &progress);
-            resampler
-                .fill(&mut slabs, on_device, volume, range, interpolation)
-                .await
+            resample::fill(&mut slabs, on_device, volume, range, interpolation).await
         })
     });
     fill.run(&|_| true).unwrap();
@@ -358,9 +355,8 @@ fn a_fill_is_split_into_parts_that_the_pace_allows() {
     let volume = Volume::new(&gpu, voxels::Shape::of(case.grid.dims(), 4.0, false));
     let [width, height, depth] = volume.shape.size.map(u64::from);
     let voxels = width * height * depth;
-    let mut resampler = Resampler::new(&gpu, false).unwrap();
     // Voxels of each part, made at a pace that learns from the parts or, the twin, at one that does all at once.
-    let mut parts_at = |mut pace: Pace| {
+    let parts_at = |mut pace: Pace| {
         let done = Cell::new(0.0);
         let parts = std::cell::RefCell::new(Vec::new());
         let progress = |part: f64| {
@@ -371,12 +367,10 @@ fn a_fill_is_split_into_parts_that_the_pace_allows() {
         let range = range_of(&field);
         let fill = Job::new(|told| {
             let (gpu, on_device, volume) = (&gpu, &on_device, &volume);
-            let (pace, resampler) = (&mut pace, &mut resampler);
+            let pace = &mut pace;
             Box::pin(async move {
                 let mut slabs = Slabs::new(gpu, pace, &told);
-                resampler
-                    .fill(&mut slabs, on_device, volume, range, Interpolation::Cell)
-                    .await
+                resample::fill(&mut slabs, on_device, volume, range, Interpolation::Cell).await
             })
         });
         fill.run(&progress).unwrap();
@@ -698,7 +692,6 @@ fn averages_are_means_of_an_odd_number_of_voxels_too() {
     let Some(gpu) = common::gpu() else { return };
     // What a half float leaves of a number below 1.
     const HALF: f64 = 5e-4;
-    let maker = PyramidMaker::new(&gpu).unwrap();
     let mut random = fastrand::Rng::with_seed(5);
     for size in [[3, 5, 7], [7, 3, 5], [6, 9, 1], [4, 8, 16]] {
         let shape = voxels::Shape {
@@ -728,11 +721,11 @@ fn averages_are_means_of_an_odd_number_of_voxels_too() {
         );
         let bricks = Bricks::unused(&gpu, size);
         let average = Job::new(|told| {
-            let (gpu, maker, volume, bricks) = (&gpu, &maker, &volume, &bricks);
+            let (gpu, volume, bricks) = (&gpu, &volume, &bricks);
             Box::pin(async move {
                 let mut pace = Pace::default();
                 let mut slabs = Slabs::new(gpu, &mut pace, &told);
-                maker.average(&mut slabs, volume, bricks).await
+                pyramids::average(&mut slabs, volume, bricks).await
             })
         });
         average.run(&|_| true).unwrap();

@@ -6,6 +6,12 @@ use crate::render::RenderError;
 /// Bind groups that all strategies share: 0 frame, 1 grid, 2 transfer function.
 pub(super) const SHARED_GROUPS: usize = 3;
 
+/// Storage buffers that a shader stage may use, which are as many as WebGPU grants by default: counters and ray states,
+/// four of the grid, a strategy's own.
+const STORAGE_BUFFERS: u32 = 8;
+/// Buffers of parameters that a shader stage may use: frame, tile, grid, light, two of a shader's own.
+const UNIFORM_BUFFERS: u32 = 6;
+
 /// Layouts of the shared bind groups, read from the shaders that declare them.
 ///
 /// So a bind group of the grid or the frame is made once and fits every pipeline.
@@ -31,6 +37,14 @@ impl Parameters {
             "uniform" => Some(Self::Uniform),
             "storage" => Some(Self::Storage),
             _ => None,
+        }
+    }
+
+    /// Storage buffers that a shader stage needs.
+    pub fn storage_buffers(self) -> u32 {
+        match self {
+            Self::Uniform => STORAGE_BUFFERS,
+            Self::Storage => STORAGE_BUFFERS + UNIFORM_BUFFERS,
         }
     }
 
@@ -146,7 +160,10 @@ fn binding_type(
                     sample_type: match kind {
                         wgpu::naga::ScalarKind::Uint => wgpu::TextureSampleType::Uint,
                         wgpu::naga::ScalarKind::Sint => wgpu::TextureSampleType::Sint,
-                        _ => wgpu::TextureSampleType::Float { filterable: true },
+                        // Tables are read texel by texel; adapters need not filter what is as exact as that.
+                        _ => wgpu::TextureSampleType::Float {
+                            filterable: *dim == ImageDimension::D3,
+                        },
                     },
                     view_dimension: dimension(*dim),
                     multisampled: *multi,

@@ -3,6 +3,8 @@
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
 use super::bind_groups::{Parameters, SharedLayouts};
+use super::pipeline::Pipelines;
+use crate::render::plan::layout::LUT_ROW;
 use crate::render::{AdapterFacts, RenderError};
 
 /// The first error of what was recorded or submitted, until someone asks.
@@ -40,6 +42,7 @@ pub struct Gpu {
     pub timestamp_period_ns: Option<f32>,
     /// Layouts of the bind groups that all strategies share.
     pub layouts: SharedLayouts,
+    pub(super) pipelines: Pipelines,
     pub(super) late_error: Arc<LateError>,
     /// Why the device is gone.
     lost: Arc<OnceLock<String>>,
@@ -53,8 +56,20 @@ impl Gpu {
     /// When there is no (such) adapter, it lacks a limit, or [`PARAMETERS`] has an unknown value.
     pub fn new(wanted: Option<&str>) -> Result<Self, RenderError> {
         let adapter = best_adapter(wanted)?;
-        let parameters = parameters_for(&adapter.get_info())?;
-        Self::open(&adapter, parameters)
+        let limits = generous(&adapter);
+        let parameters = parameters_for(&adapter.get_info(), &limits)?;
+        Self::open(&adapter, parameters, limits)
+    }
+
+    /// As [`Gpu::new`], with a device that grants no more than these limits.
+    ///
+    /// # Errors
+    /// When there is no (such) adapter, it does not offer the limits, they are too low, or [`PARAMETERS`] has an
+    /// unknown value.
+    pub fn with_limits(wanted: Option<&str>, limits: wgpu::Limits) -> Result<Self, RenderError> {
+        let adapter = best_adapter(wanted)?;
+        let parameters = parameters_for(&adapter.get_info(), &limits)?;
+        Self::open(&adapter, parameters, limits)
     }
 
     /// Opens the best adapter that is no program on the CPU; `None` where there is none that can be used.
@@ -65,10 +80,11 @@ impl Gpu {
         let Some(best) = ranked().into_iter().next() else {
             return Ok(None);
         };
-        let info = best.get_info();
-        let parameters = parameters_for(&info)?;
-        let is_usable = !is_software(&info) && lacking(&best, parameters).is_none();
-        is_usable.then(|| Self::open(&best, parameters)).transpose()
+        let (info, limits) = (best.get_info(), generous(&best));
+        let parameters = parameters_for(&info, &limits)?;
+        let is_usable = !is_software(&info) && lacking(&limits, parameters).is_none();
+        let open = || Self::open(&best, parameters, limits);
+        is_usable.then(open).transpose()
     }
 
     /// As [`Gpu::new`], with parameters read in a given way.
@@ -79,36 +95,32 @@ impl Gpu {
         wanted: Option<&str>,
         parameters: Parameters,
     ) -> Result<Self, RenderError> {
-        Self::open(&best_adapter(wanted)?, parameters)
+        let adapter = best_adapter(wanted)?;
+        let limits = generous(&adapter);
+        Self::open(&adapter, parameters, limits)
     }
 
-    fn open(adapter: &wgpu::Adapter, parameters: Parameters) -> Result<Self, RenderError> {
+    fn open(
+        adapter: &wgpu::Adapter,
+        parameters: Parameters,
+        limits: wgpu::Limits,
+    ) -> Result<Self, RenderError> {
         let info = adapter.get_info();
         let unsuitable = |reason: String| RenderError::Unsuitable {
             adapter: info.name.clone(),
             reason,
         };
-        let offered = adapter.limits();
-        let needed = storage_buffers(parameters);
-        if let Some(reason) = lacking(adapter, parameters) {
+        if let Some(reason) = lacking(&limits, parameters) {
             return Err(unsuitable(reason));
         }
-        let limits = wgpu::Limits {
-            max_storage_buffers_per_shader_stage: needed,
-            // Depth lists and values of large models are single arrays: take what there is.
-            max_storage_buffer_binding_size: offered.max_storage_buffer_binding_size,
-            max_buffer_size: offered.max_buffer_size,
-            // Pictures as large as the adapter can make.
-            max_texture_dimension_2d: offered.max_texture_dimension_2d,
-            // Resampled grids too.
-            max_texture_dimension_3d: offered.max_texture_dimension_3d,
-            ..wgpu::Limits::default()
-        };
         let features = adapter.features() & wgpu::Features::TIMESTAMP_QUERY;
         let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
             label: Some("strataray"),
             required_features: features,
-            required_limits: limits,
+            required_limits: wgpu::Limits {
+                max_storage_buffers_per_shader_stage: parameters.storage_buffers(),
+                ..limits
+            },
             ..Default::default()
         }))
         .map_err(|e| unsuitable(e.to_string()))?;
@@ -134,6 +146,7 @@ impl Gpu {
         let timestamp_period_ns = (!features.is_empty()).then(|| queue.get_timestamp_period());
         Ok(Self {
             layouts: SharedLayouts::new(&device, parameters)?,
+            pipelines: Pipelines::default(),
             device,
             queue,
             info,
@@ -279,6 +292,41 @@ impl Gpu {
         })
     }
 
+    /// A table as a texture of a format of 16 bytes a texel, in rows of [`LUT_ROW`].
+    ///
+    /// # Errors
+    /// When it has more rows than a texture can have.
+    pub fn table<T: bytemuck::Pod>(
+        &self,
+        what: &'static str,
+        format: wgpu::TextureFormat,
+        texels: &[[T; 4]],
+    ) -> Result<wgpu::TextureView, RenderError> {
+        const { assert!(size_of::<T>() == 4) };
+        let rows = texels.len().div_ceil(LUT_ROW as usize).max(1) as u32;
+        let limit = self.device.limits().max_texture_dimension_2d;
+        if rows > limit {
+            return Err(RenderError::TooLarge {
+                what,
+                needed: 16 * texels.len() as u64,
+                limit: 16 * u64::from(LUT_ROW) * u64::from(limit),
+            });
+        }
+        let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
+        let texture = self.flat_texture(what, [LUT_ROW, rows], format, usage);
+        let mut padded = texels.to_vec();
+        padded.resize((LUT_ROW * rows) as usize, bytemuck::Zeroable::zeroed());
+        let layout = wgpu::TexelCopyBufferLayout {
+            offset: 0,
+            bytes_per_row: Some(16 * LUT_ROW),
+            rows_per_image: None,
+        };
+        let bytes = bytemuck::cast_slice(&padded);
+        self.queue
+            .write_texture(texture.as_image_copy(), bytes, layout, texture.size());
+        Ok(texture.create_view(&wgpu::TextureViewDescriptor::default()))
+    }
+
     /// A bind group from resources in binding order.
     pub fn bind(
         &self,
@@ -338,19 +386,26 @@ impl Gpu {
     }
 }
 
-/// Storage buffers that a shader stage needs: eight arrays of the grid, two transfer tables, emitters and their
-/// sections, counters, ray states, a strategy's own; where they are storage, parameters.
-fn storage_buffers(parameters: Parameters) -> u32 {
-    match parameters {
-        Parameters::Uniform => 17,
-        Parameters::Storage => 23,
+/// What a device can grant: WebGPU's default limits, and more where size matters or parameters are storage.
+fn generous(adapter: &wgpu::Adapter) -> wgpu::Limits {
+    let offered = adapter.limits();
+    wgpu::Limits {
+        max_storage_buffers_per_shader_stage: offered.max_storage_buffers_per_shader_stage,
+        // Depth lists and values of large models are single arrays: take what there is.
+        max_storage_buffer_binding_size: offered.max_storage_buffer_binding_size,
+        max_buffer_size: offered.max_buffer_size,
+        // Pictures as large as the adapter can make.
+        max_texture_dimension_2d: offered.max_texture_dimension_2d,
+        // Resampled grids too.
+        max_texture_dimension_3d: offered.max_texture_dimension_3d,
+        ..wgpu::Limits::default()
     }
 }
 
-/// What an adapter lacks, and what to do; `None` where it has what is needed.
-fn lacking(adapter: &wgpu::Adapter, parameters: Parameters) -> Option<String> {
-    let offered = adapter.limits().max_storage_buffers_per_shader_stage;
-    let needed = storage_buffers(parameters);
+/// What limits lack, and what to do; `None` where they are enough.
+fn lacking(limits: &wgpu::Limits, parameters: Parameters) -> Option<String> {
+    let offered = limits.max_storage_buffers_per_shader_stage;
+    let needed = parameters.storage_buffers();
     (offered < needed).then(|| {
         format!(
             "it offers {offered} storage buffers per shader stage and {needed} are needed; install a Vulkan driver (on Debian the package mesa-vulkan-drivers)"
@@ -362,7 +417,7 @@ fn lacking(adapter: &wgpu::Adapter, parameters: Parameters) -> Option<String> {
 pub fn adapters() -> Vec<AdapterFacts> {
     let facts = |adapter: &wgpu::Adapter| {
         let (info, limits) = (adapter.get_info(), adapter.limits());
-        let parameters = parameters_for(&info);
+        let parameters = parameters_for(&info, &limits);
         let buffer = limits.max_buffer_size;
         AdapterFacts {
             kind: match info.device_type {
@@ -382,7 +437,7 @@ pub fn adapters() -> Vec<AdapterFacts> {
                 limits.max_texture_dimension_3d,
             ],
             lacking: match parameters {
-                Ok(parameters) => lacking(adapter, parameters),
+                Ok(parameters) => lacking(&limits, parameters),
                 Err(error) => Some(error.to_string()),
             },
             name: info.name,
@@ -397,8 +452,9 @@ fn ranked() -> Vec<wgpu::Adapter> {
         wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
     let mut adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::all()));
     adapters.sort_by_cached_key(|adapter| {
-        let info = adapter.get_info();
-        let is_lacking = parameters_for(&info).is_ok_and(|p| lacking(adapter, p).is_some());
+        let (info, limits) = (adapter.get_info(), adapter.limits());
+        let is_lacking =
+            parameters_for(&info, &limits).is_ok_and(|p| lacking(&limits, p).is_some());
         (is_lacking, rank(info.device_type))
     });
     adapters
@@ -421,9 +477,13 @@ fn best_adapter(wanted: Option<&str>) -> Result<wgpu::Adapter, RenderError> {
 }
 
 /// How shaders read their parameters: as [`PARAMETERS`] says, or as suits the adapter.
-fn parameters_for(info: &wgpu::AdapterInfo) -> Result<Parameters, RenderError> {
+fn parameters_for(
+    info: &wgpu::AdapterInfo,
+    limits: &wgpu::Limits,
+) -> Result<Parameters, RenderError> {
     let Some(name) = std::env::var_os(PARAMETERS) else {
-        return Ok(match is_software(info) {
+        let can_store = lacking(limits, Parameters::Storage).is_none();
+        return Ok(match is_software(info) && can_store {
             true => Parameters::Storage,
             false => Parameters::Uniform,
         });

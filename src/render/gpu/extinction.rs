@@ -42,6 +42,55 @@ impl Pyramid {
         }
     }
 
+    /// Makes a pyramid in the place of an existing one.
+    ///
+    /// `group` is bind group 2 with transfer function and values.
+    ///
+    /// # Errors
+    /// When the device reports an error.
+    pub async fn make(
+        slabs: &mut Slabs<'_>,
+        source: &PyramidSource,
+        group: &wgpu::BindGroup,
+        before: Option<Self>,
+    ) -> Result<Self, RenderError> {
+        let size = source.blur.size;
+        let shape = Shape::single(size, MOST_LEVELS);
+        let made = Self::new(slabs.gpu, shape, source, before);
+        let mut below = Volume::new(slabs.gpu, Shape::single(size, 1));
+        opacities(slabs, source, group, &below).await?;
+        for level in 0..shape.levels {
+            if level > 1 {
+                // Blurred from means of what nothing has blurred: what a level loses beyond the box is not
+                // lost to those above.
+                let means = Volume::new(slabs.gpu, Shape::single(shape.at(level - 1), 1));
+                let filter = BlurFilter::Mean;
+                filtered(slabs, source, group, filter, &below, (&means, 0)).await?;
+                below = means;
+            }
+            let filter = BlurFilter::Gaussian(level);
+            let target = (&made.volume, level);
+            filtered(slabs, source, group, filter, &below, target).await?;
+        }
+        Ok(made)
+    }
+
+    /// Makes the opacities of a unit of length alone, without any blur; otherwise as [`Self::make`].
+    ///
+    /// # Errors
+    /// When the device reports an error.
+    pub async fn make_sharp(
+        slabs: &mut Slabs<'_>,
+        source: &PyramidSource,
+        group: &wgpu::BindGroup,
+        before: Option<Self>,
+    ) -> Result<Self, RenderError> {
+        let shape = Shape::single(source.blur.size, 1);
+        let made = Self::new(slabs.gpu, shape, source, before);
+        opacities(slabs, source, group, &made.volume).await?;
+        Ok(made)
+    }
+
     /// Number of levels.
     pub fn levels(&self) -> u32 {
         self.volume.shape.levels
@@ -86,177 +135,101 @@ enum BlurFilter {
     Gaussian(u32),
 }
 
-/// The shaders of the blur, compiled as they are asked for.
-#[derive(Default)]
-pub struct Blurs(Vec<(Pass, Pipeline)>);
-
 /// Loop iterations that a voxel of a pass costs, about.
 const BLUR_WORK: u64 = 8;
-impl Blurs {
-    /// Makes a pyramid in the place of an existing one.
-    ///
-    /// `group` is bind group 2 with transfer function and values.
-    ///
-    /// # Errors
-    /// When the device reports an error.
-    pub async fn make(
-        &mut self,
-        slabs: &mut Slabs<'_>,
-        source: &PyramidSource,
-        group: &wgpu::BindGroup,
-        before: Option<Pyramid>,
-    ) -> Result<Pyramid, RenderError> {
-        let size = source.blur.size;
-        let shape = Shape::single(size, MOST_LEVELS);
-        let made = Pyramid::new(slabs.gpu, shape, source, before);
-        let mut below = Volume::new(slabs.gpu, Shape::single(size, 1));
-        self.opacities(slabs, source, group, &below).await?;
-        for level in 0..shape.levels {
-            if level > 1 {
-                // Blurred from means of what nothing has blurred: what a level loses beyond the box is not
-                // lost to those above.
-                let means = Volume::new(slabs.gpu, Shape::single(shape.at(level - 1), 1));
-                let filter = BlurFilter::Mean;
-                self.filtered(slabs, source, group, filter, &below, (&means, 0))
-                    .await?;
-                below = means;
-            }
-            let filter = BlurFilter::Gaussian(level);
-            let target = (&made.volume, level);
-            self.filtered(slabs, source, group, filter, &below, target)
-                .await?;
-        }
-        Ok(made)
-    }
 
-    /// Makes the opacities of a unit of length alone, without any blur; otherwise as [`Self::make`].
-    ///
-    /// # Errors
-    /// When the device reports an error.
-    pub async fn make_sharp(
-        &mut self,
-        slabs: &mut Slabs<'_>,
-        source: &PyramidSource,
-        group: &wgpu::BindGroup,
-        before: Option<Pyramid>,
-    ) -> Result<Pyramid, RenderError> {
-        let shape = Shape::single(source.blur.size, 1);
-        let made = Pyramid::new(slabs.gpu, shape, source, before);
-        self.opacities(slabs, source, group, &made.volume).await?;
-        Ok(made)
-    }
+/// Opacities of a unit of length from the values.
+async fn opacities(
+    slabs: &mut Slabs<'_>,
+    source: &PyramidSource,
+    group: &wgpu::BindGroup,
+    target: &Volume,
+) -> Result<(), RenderError> {
+    let pass = Pass {
+        work: PassWork::Values,
+        writes_depths: false,
+        clips: source.blur.clip_count > 0,
+    };
+    let line = Line {
+        axis: 0,
+        counts: [target.shape.size[0]; 2],
+        deviation: 0.0,
+    };
+    // Values come from the bind group; this is only there to be bound.
+    let read = Volume::new(slabs.gpu, Shape::single([1; 3], 1)).level(0);
+    pass_over(slabs, source, group, pass, line, &read, (target, 0)).await
+}
 
-    /// Opacities of a unit of length from the values.
-    async fn opacities(
-        &mut self,
-        slabs: &mut Slabs<'_>,
-        source: &PyramidSource,
-        group: &wgpu::BindGroup,
-        target: &Volume,
-    ) -> Result<(), RenderError> {
+/// Filters opacities along x, y and depth in turn: into a level of the pyramid, or into their means.
+async fn filtered(
+    slabs: &mut Slabs<'_>,
+    source: &PyramidSource,
+    group: &wgpu::BindGroup,
+    filter: BlurFilter,
+    below: &Volume,
+    (target, level): (&Volume, u32),
+) -> Result<(), RenderError> {
+    let before = below.shape.size;
+    let after = target.shape.at(level);
+    let partly = |axes: usize| std::array::from_fn(|a| if a < axes { after[a] } else { before[a] });
+    let between = [1, 2].map(|axes| Volume::new(slabs.gpu, Shape::single(partly(axes), 1)));
+    for axis in 0..3 {
+        let read = match axis {
+            0 => below.level(0),
+            _ => between[axis - 1].level(0),
+        };
+        let (work, deviation) = match filter {
+            BlurFilter::Mean => (PassWork::Mean, 0.0),
+            BlurFilter::Gaussian(level) => (
+                PassWork::Gaussian,
+                source.blur.deviation(axis, before[axis], level),
+            ),
+        };
         let pass = Pass {
-            work: PassWork::Values,
-            writes_depths: false,
-            clips: source.blur.clip_count > 0,
+            work,
+            writes_depths: axis == 2 && work == PassWork::Gaussian,
+            clips: false,
         };
         let line = Line {
-            axis: 0,
-            counts: [target.shape.size[0]; 2],
-            deviation: 0.0,
+            axis: axis as u32,
+            counts: [before[axis], after[axis]],
+            deviation,
         };
-        // Values come from the bind group; this is only there to be bound.
-        let read = Volume::new(slabs.gpu, Shape::single([1; 3], 1)).level(0);
-        self.pass(slabs, source, group, pass, line, &read, (target, 0))
-            .await
+        let to = between.get(axis).map_or((target, level), |v| (v, 0));
+        pass_over(slabs, source, group, pass, line, &read, to).await?;
     }
+    Ok(())
+}
 
-    /// Filters opacities along x, y and depth in turn: into a level of the pyramid, or into their means.
-    async fn filtered(
-        &mut self,
-        slabs: &mut Slabs<'_>,
-        source: &PyramidSource,
-        group: &wgpu::BindGroup,
-        filter: BlurFilter,
-        below: &Volume,
-        (target, level): (&Volume, u32),
-    ) -> Result<(), RenderError> {
-        let before = below.shape.size;
-        let after = target.shape.at(level);
-        let partly =
-            |axes: usize| std::array::from_fn(|a| if a < axes { after[a] } else { before[a] });
-        let between = [1, 2].map(|axes| Volume::new(slabs.gpu, Shape::single(partly(axes), 1)));
-        for axis in 0..3 {
-            let read = match axis {
-                0 => below.level(0),
-                _ => between[axis - 1].level(0),
-            };
-            let (work, deviation) = match filter {
-                BlurFilter::Mean => (PassWork::Mean, 0.0),
-                BlurFilter::Gaussian(level) => (
-                    PassWork::Gaussian,
-                    source.blur.deviation(axis, before[axis], level),
-                ),
-            };
-            let pass = Pass {
-                work,
-                writes_depths: axis == 2 && work == PassWork::Gaussian,
-                clips: false,
-            };
-            let line = Line {
-                axis: axis as u32,
-                counts: [before[axis], after[axis]],
-                deviation,
-            };
-            let to = between.get(axis).map_or((target, level), |v| (v, 0));
-            self.pass(slabs, source, group, pass, line, &read, to)
-                .await?;
-        }
-        Ok(())
-    }
-
-    #[allow(clippy::too_many_arguments, reason = "what one pass reads and writes")]
-    async fn pass(
-        &mut self,
-        slabs: &mut Slabs<'_>,
-        source: &PyramidSource,
-        group: &wgpu::BindGroup,
-        pass: Pass,
-        line: Line,
-        read: &wgpu::TextureView,
-        (target, level): (&Volume, u32),
-    ) -> Result<(), RenderError> {
-        let gpu = slabs.gpu;
-        let info = gpu.uniform("blur", &source.blur.info(line));
-        let pipeline = self.pipeline(gpu, pass)?;
-        let dispatch = |encoder: &mut wgpu::CommandEncoder, slab: &Slab, voxels: &wgpu::Buffer| {
-            let slab_info = gpu.uniform("slab", slab);
-            let own = [
-                info.as_entire_binding(),
-                slab_info.as_entire_binding(),
-                wgpu::BindingResource::TextureView(read),
-                voxels.as_entire_binding(),
-            ];
-            let groups = [(2, group), (3, &gpu.bind(&pipeline.own, &own))];
-            let [width, height, depth] = slab.size;
-            pipeline.dispatch(encoder, &groups, [width.div_ceil(2), height, depth]);
-        };
-        target.make_level(slabs, level, BLUR_WORK, &dispatch).await
-    }
-
-    fn pipeline(&mut self, gpu: &Gpu, pass: Pass) -> Result<&Pipeline, RenderError> {
-        let at = match self.0.iter().position(|(p, _)| *p == pass) {
-            Some(at) => at,
-            None => {
-                let constants = [
-                    ("WORK", f64::from(pass.work.number())),
-                    ("WRITES_DEPTHS", flag(pass.writes_depths)),
-                    ("CLIPS", flag(pass.clips)),
-                ];
-                let pipeline = Pipeline::variant(gpu, "extinction", "main", &constants)?;
-                self.0.push((pass, pipeline));
-                self.0.len() - 1
-            }
-        };
-        Ok(&self.0[at].1)
-    }
+#[allow(clippy::too_many_arguments, reason = "what one pass reads and writes")]
+async fn pass_over(
+    slabs: &mut Slabs<'_>,
+    source: &PyramidSource,
+    group: &wgpu::BindGroup,
+    pass: Pass,
+    line: Line,
+    read: &wgpu::TextureView,
+    (target, level): (&Volume, u32),
+) -> Result<(), RenderError> {
+    let gpu = slabs.gpu;
+    let info = gpu.uniform("blur", &source.blur.info(line));
+    let constants = [
+        ("WORK", f64::from(pass.work.number())),
+        ("WRITES_DEPTHS", flag(pass.writes_depths)),
+        ("CLIPS", flag(pass.clips)),
+    ];
+    let pipeline = Pipeline::variant(gpu, "extinction", "main", &constants)?;
+    let dispatch = |encoder: &mut wgpu::CommandEncoder, slab: &Slab, voxels: &wgpu::Buffer| {
+        let slab_info = gpu.uniform("slab", slab);
+        let own = [
+            info.as_entire_binding(),
+            slab_info.as_entire_binding(),
+            wgpu::BindingResource::TextureView(read),
+            voxels.as_entire_binding(),
+        ];
+        let groups = [(2, group), (3, &gpu.bind(&pipeline.own, &own))];
+        let [width, height, depth] = slab.size;
+        pipeline.dispatch(encoder, &groups, [width.div_ceil(2), height, depth]);
+    };
+    target.make_level(slabs, level, BLUR_WORK, &dispatch).await
 }

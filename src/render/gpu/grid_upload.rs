@@ -3,7 +3,7 @@
 use super::device::Gpu;
 use super::pipeline::flag;
 use crate::model::Grid;
-use crate::render::plan::{CompactGrid, GridFacts, drawn_words, ghost_words, values};
+use crate::render::plan::{CompactGrid, GridFacts, cell_bits, drawn_words, ghost_words, values};
 use crate::render::revisions::Revisions;
 use crate::render::{DeviceBytes, RenderError};
 use crate::view::ShownCells;
@@ -36,19 +36,17 @@ pub struct GpuGrid {
     /// Those of what is on the device.
     pub revisions: Revisions,
     info: wgpu::Buffer,
-    pillars: wgpu::Buffer,
-    column_lists: wgpu::Buffer,
+    /// Pillars, columns and bins.
+    words: wgpu::Buffer,
+    /// Of these, bytes of the bins.
+    bin_bytes: u64,
     depths: wgpu::Buffer,
-    bins: wgpu::Buffer,
-    bin_columns: wgpu::Buffer,
-    drawn_cells: wgpu::Buffer,
-    /// What `drawn_cells` holds.
+    cell_bits: wgpu::Buffer,
+    /// The drawn cells in `cell_bits`.
     drawn_words: Vec<[u32; 2]>,
     values: wgpu::Buffer,
     /// Bits of the cells that are ghosts, where they are shown.
-    ghost_cells: Option<wgpu::Buffer>,
-    /// What is bound where they are not.
-    no_ghosts: wgpu::Buffer,
+    ghost_words: Option<Vec<u32>>,
 }
 
 impl GpuGrid {
@@ -58,21 +56,19 @@ impl GpuGrid {
     /// When an array exceeds what the adapter holds.
     pub fn new(gpu: &Gpu, grid: &Grid) -> Result<Self, RenderError> {
         let compact = CompactGrid::new(grid)?;
+        let words = compact.words();
         Ok(Self {
             facts: compact.facts,
             acceleration_time: compact.acceleration_time,
             revisions: Revisions::default(),
             drawn_words: Vec::new(),
             info: gpu.uniform("grid info", &compact.info),
-            pillars: gpu.storage("pillars", &compact.pillars)?,
-            column_lists: gpu.storage("column lists", &compact.column_lists)?,
+            words: gpu.storage("pillars, columns and bins", &words)?,
+            bin_bytes: size_of_val(&words[compact.info.bins as usize..]) as u64,
             depths: gpu.storage("depth lists", &compact.depths)?,
-            bins: gpu.storage("acceleration bins", &compact.bins)?,
-            bin_columns: gpu.storage("acceleration columns", &compact.bin_columns)?,
-            drawn_cells: gpu.storage("drawn cells", &drawn_words(grid, &[]))?,
+            cell_bits: gpu.storage("drawn cells", &drawn_words(grid, &[]))?,
             values: gpu.storage::<f32>("values", &[])?,
-            ghost_cells: None,
-            no_ghosts: gpu.storage::<u32>("ghost cells", &[])?,
+            ghost_words: None,
         })
     }
 
@@ -83,11 +79,10 @@ impl GpuGrid {
     /// As [`Self::new`].
     pub fn of(gpu: &Gpu, model: &Grid, cells: &ShownCells) -> Result<Self, RenderError> {
         let (grid, _) = cells.in_grid(model);
-        let mut made = Self::new(gpu, grid)?;
-        if let Some(words) = ghost_words(model, cells) {
-            made.ghost_cells = Some(gpu.storage("ghost cells", &words)?);
-        }
-        Ok(made)
+        Ok(Self {
+            ghost_words: ghost_words(model, cells),
+            ..Self::new(gpu, grid)?
+        })
     }
 
     /// Puts the drawn cells and their values on the device; `model` is the case's grid.
@@ -98,7 +93,8 @@ impl GpuGrid {
         let (grid, drawn) = cells.in_grid(model);
         let words = drawn_words(grid, drawn);
         if words != self.drawn_words {
-            self.drawn_cells = gpu.storage("drawn cells", &words)?;
+            let bits = cell_bits(&words, self.ghost_words.as_deref());
+            self.cell_bits = gpu.storage("drawn cells", &bits)?;
             self.drawn_words = words;
         }
         self.values = gpu.storage("values", &values(model, cells))?;
@@ -109,14 +105,10 @@ impl GpuGrid {
     pub fn bind(&self, gpu: &Gpu) -> wgpu::BindGroup {
         let buffers = [
             &self.info,
-            &self.pillars,
-            &self.column_lists,
+            &self.words,
             &self.depths,
-            &self.drawn_cells,
+            &self.cell_bits,
             &self.values,
-            &self.bins,
-            &self.bin_columns,
-            self.ghost_cells.as_ref().unwrap_or(&self.no_ghosts),
         ];
         let resources = buffers.map(wgpu::Buffer::as_entire_binding);
         gpu.bind(gpu.layouts.group(1), &resources)
@@ -126,7 +118,7 @@ impl GpuGrid {
     pub fn constants(&self) -> Constants {
         Constants {
             vertical: self.facts.vertical,
-            ghosts: self.ghost_cells.is_some(),
+            ghosts: self.ghost_words.is_some(),
         }
     }
 
@@ -135,7 +127,7 @@ impl GpuGrid {
     pub(crate) fn lose_half(&mut self, gpu: &Gpu, grid: &Grid) -> Result<(), RenderError> {
         let mut compact = CompactGrid::new(grid)?;
         compact.lose_half();
-        self.bins = gpu.storage("acceleration bins", &compact.bins)?;
+        self.words = gpu.storage("pillars, columns and bins", &compact.words())?;
         Ok(())
     }
 
@@ -143,14 +135,9 @@ impl GpuGrid {
     pub fn bytes(&self) -> DeviceBytes {
         let sum = |buffers: &[&wgpu::Buffer]| buffers.iter().map(|b| b.size()).sum();
         DeviceBytes {
-            geometry: sum(&[
-                &self.info,
-                &self.pillars,
-                &self.column_lists,
-                &self.depths,
-                &self.drawn_cells,
-            ]) + self.ghost_cells.as_ref().map_or(0, wgpu::Buffer::size),
-            acceleration: sum(&[&self.bins, &self.bin_columns]),
+            geometry: sum(&[&self.info, &self.words, &self.depths, &self.cell_bits])
+                - self.bin_bytes,
+            acceleration: self.bin_bytes,
             property: sum(&[&self.values]),
             ..DeviceBytes::default()
         }

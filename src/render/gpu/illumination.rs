@@ -7,10 +7,10 @@
 use std::time::Instant;
 
 use super::device::Gpu;
-use super::extinction::{Blurs, Pyramid, PyramidSource};
+use super::extinction::{Pyramid, PyramidSource};
 use super::grid_upload::GpuGrid;
 use super::pipeline::{Pipeline, flag};
-use super::resample::Resampler;
+use super::resample;
 use super::slabs::Slabs;
 use super::tiles::Pace;
 use super::transfer_tables::TransferTables;
@@ -38,17 +38,13 @@ pub struct Made {
 
 /// Makes light and keeps it up to date.
 pub struct Illumination {
-    resampler: Resampler,
-    blurs: Blurs,
-    illuminate: Pipeline,
-    gradient: Pipeline,
     sampler: wgpu::Sampler,
     pace: Pace,
     /// What is bound where there is no volume.
     nothing: [Volume; 3],
     info: wgpu::Buffer,
-    emitters: wgpu::Buffer,
-    sections: wgpu::Buffer,
+    /// Emitters, and the sections of their cones.
+    emitters: wgpu::TextureView,
     work: u32,
     field: Option<Field>,
     pyramid: Option<Pyramid>,
@@ -97,10 +93,10 @@ const MOST_RAY_WORK: f64 = 7_500.0;
 const GRADIENT_WORK: u64 = 60;
 
 impl Illumination {
-    /// Compiles the shaders.
+    /// No light yet.
     ///
     /// # Errors
-    /// When the driver refuses one.
+    /// When the device refuses a table.
     pub fn new(gpu: &Gpu) -> Result<Self, RenderError> {
         let none: [LightingInfo; 1] = bytemuck::Zeroable::zeroed();
         let one = |voxel| Shape {
@@ -108,16 +104,11 @@ impl Illumination {
             ..Shape::single([1; 3], 1)
         };
         Ok(Self {
-            resampler: Resampler::new(gpu, true)?,
-            blurs: Blurs::default(),
-            illuminate: Pipeline::new(gpu, "illuminate")?,
-            gradient: Pipeline::variant(gpu, "illuminate", "gradient", &[])?,
             sampler: gpu.linear_sampler(),
             pace: Pace::default(),
             nothing: [Voxel::Single, Voxel::Packed, Voxel::Quad].map(|v| Volume::new(gpu, one(v))),
             info: gpu.uniform("lighting", &none),
-            emitters: gpu.storage::<Emitter>("emitters", &[bytemuck::Zeroable::zeroed()])?,
-            sections: gpu.storage::<[f32; 4]>("cone sections", &[])?,
+            emitters: gpu.table::<u32>("emitters", wgpu::TextureFormat::Rgba32Uint, &[])?,
             work: 0,
             field: None,
             pyramid: None,
@@ -189,15 +180,8 @@ impl Illumination {
         let volume = before.map_or_else(|| Volume::new(gpu, shape), |f| f.volume);
         let range = view.shown.cells.value_range().unwrap_or([0.0, 1.0]);
         let mut slabs = Slabs::new(gpu, &mut self.pace, progress);
-        self.resampler
-            .fill(
-                &mut slabs,
-                grid,
-                &volume,
-                range,
-                view.shown.cells.interpolation,
-            )
-            .await?;
+        let interpolation = view.shown.cells.interpolation;
+        resample::fill(&mut slabs, grid, &volume, range, interpolation).await?;
         self.made.fields += 1;
         self.field = Some(Field {
             revision: grid.revisions.values,
@@ -232,14 +216,14 @@ impl Illumination {
             self.opacities = None;
         } else if is_stale(&self.opacities) {
             let before = self.opacities.take();
-            let made = self.blurs.make_sharp(&mut slabs, &source, &group, before);
+            let made = Pyramid::make_sharp(&mut slabs, &source, &group, before);
             self.opacities = Some(made.await?);
         }
         if !shading.traces_cones() {
             self.pyramid = None;
         } else if is_stale(&self.pyramid) {
             let before = self.pyramid.take();
-            let made = self.blurs.make(&mut slabs, &source, &group, before);
+            let made = Pyramid::make(&mut slabs, &source, &group, before);
             self.pyramid = Some(made.await?);
             self.made.pyramids += 1;
         }
@@ -258,8 +242,8 @@ impl Illumination {
         let levels = self.pyramid.as_ref().map_or(1, Pyramid::levels);
         let info = emitters.info(&grid.facts, view, levels, range);
         self.info = gpu.uniform("lighting", &info);
-        self.emitters = gpu.storage("emitters", &emitters.emitters)?;
-        self.sections = gpu.storage("cone sections", &emitters.sections)?;
+        let texels = emitters.texels();
+        self.emitters = gpu.table("emitters", wgpu::TextureFormat::Rgba32Uint, &texels)?;
         self.work = emitters.work;
         Ok(())
     }
@@ -306,9 +290,9 @@ impl Illumination {
             let mut slabs = Slabs::new(gpu, &mut self.pace, progress);
             let work = u64::from(emitter.cone_work());
             let range = [from, from + size[2]];
-            let illuminate = &self.illuminate;
+            let illuminate = Pipeline::variant(gpu, "illuminate", "main", &[])?;
             let dispatch = |encoder: &mut _, slab: &Slab, voxels: &wgpu::Buffer| {
-                run(gpu, illuminate, encoder, slab, &which, voxels, &group, 2);
+                run(gpu, &illuminate, encoder, slab, &which, voxels, &group, 2);
             };
             lights
                 .volume
@@ -354,9 +338,9 @@ impl Illumination {
         let group = self.bind(gpu, tables);
         let which = gpu.uniform("emitter", &[0u32; 4]);
         let mut slabs = Slabs::new(gpu, &mut self.pace, progress);
-        let gradient = &self.gradient;
+        let gradient = Pipeline::variant(gpu, "illuminate", "gradient", &[])?;
         let dispatch = |encoder: &mut _, slab: &Slab, voxels: &wgpu::Buffer| {
-            run(gpu, gradient, encoder, slab, &which, voxels, &group, 1);
+            run(gpu, &gradient, encoder, slab, &which, voxels, &group, 1);
         };
         volume
             .make_level(&mut slabs, 0, GRADIENT_WORK, &dispatch)
@@ -375,11 +359,10 @@ impl Illumination {
         let opacities = view(self.opacities.as_ref().map_or(single, |o| &o.volume));
         let gradients = view(self.gradients.as_ref().map_or(quad, |g| &g.volume));
         let resources = [
-            tables.table.as_entire_binding(),
-            tables.integrals.as_entire_binding(),
+            wgpu::BindingResource::TextureView(&tables.table),
+            wgpu::BindingResource::TextureView(&tables.integrals),
             self.info.as_entire_binding(),
-            self.emitters.as_entire_binding(),
-            self.sections.as_entire_binding(),
+            wgpu::BindingResource::TextureView(&self.emitters),
             wgpu::BindingResource::TextureView(&pyramid),
             wgpu::BindingResource::TextureView(&lights),
             wgpu::BindingResource::TextureView(&field),

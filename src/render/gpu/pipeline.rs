@@ -1,11 +1,56 @@
 //! Pipelines, with bind group layouts read from the shaders themselves.
 
-use std::sync::Arc;
+use std::collections::HashMap;
+use std::hash::Hash;
+use std::panic::resume_unwind;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use super::bind_groups::{SHARED_GROUPS, bindings, layout, parse};
 use super::device::{Gpu, LateError};
 use super::shader::compose;
 use crate::render::RenderError;
+
+/// What has been compiled for a device, kept by name and constants: those who come back to a look, and cases that are
+/// opened beside others, find it there.
+#[derive(Default)]
+pub(super) struct Pipelines {
+    shaders: Kept<String, Compiled>,
+    pipelines: Kept<String, Pipeline>,
+}
+
+/// Things by their keys, the last [`MOST_KEPT`] of them at most.
+struct Kept<K, V>(Mutex<HashMap<K, Arc<V>>>);
+
+/// Pipelines that are kept. Some constants are free numbers, so that there is no end to them; who uses a pipeline holds
+/// it beside.
+const MOST_KEPT: usize = 64;
+
+impl<K, V> Default for Kept<K, V> {
+    fn default() -> Self {
+        Self(Mutex::default())
+    }
+}
+
+impl<K: Eq + Hash, V> Kept<K, V> {
+    /// What is kept by a key, or made now: nobody waits meanwhile who wants something else.
+    fn get_or_make(
+        &self,
+        key: K,
+        make: impl FnOnce() -> Result<V, RenderError>,
+    ) -> Result<Arc<V>, RenderError> {
+        let kept = || self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(known) = kept().get(&key) {
+            return Ok(known.clone());
+        }
+        let made = Arc::new(make()?);
+        let mut kept = kept();
+        if kept.len() >= MOST_KEPT {
+            kept.clear();
+        }
+        kept.insert(key, made.clone());
+        Ok(made)
+    }
+}
 
 /// A shader's module with the layout of its pipeline.
 struct Compiled {
@@ -26,6 +71,12 @@ impl Compiled {
                 message: format!("has no entry {entry}"),
             })
     }
+}
+
+/// A shader, compiled once.
+fn compiled(gpu: &Gpu, name: &str) -> Result<Arc<Compiled>, RenderError> {
+    let compile = || compile(gpu, name);
+    gpu.pipelines.shaders.get_or_make(name.to_owned(), compile)
 }
 
 fn compile(gpu: &Gpu, name: &str) -> Result<Compiled, RenderError> {
@@ -100,15 +151,7 @@ pub struct Pipeline {
 }
 
 impl Pipeline {
-    /// Compiles the entry `main` of shader `name`.
-    ///
-    /// # Errors
-    /// When it is not valid, with the compiler's words.
-    pub fn new(gpu: &Gpu, name: &str) -> Result<Self, RenderError> {
-        Self::variant(gpu, name, "main", &[])
-    }
-
-    /// Compiles an entry of shader `name` with values for its `override` constants.
+    /// An entry of shader `name` with values for its `override` constants, compiled where it is not there yet.
     ///
     /// # Errors
     /// When it is not valid, with the compiler's words.
@@ -117,9 +160,39 @@ impl Pipeline {
         name: &str,
         entry: &str,
         constants: &[(&str, f64)],
+    ) -> Result<Arc<Self>, RenderError> {
+        let key = format!("{name} {entry} {constants:?}");
+        let compile = || Self::compile(gpu, name, entry, constants);
+        gpu.pipelines.pipelines.get_or_make(key, compile)
+    }
+
+    /// As [`Self::variant`], several entries with their constants side by side.
+    pub fn variants<const N: usize>(
+        gpu: &Gpu,
+        name: &str,
+        wanted: [(&str, &[(&str, f64)]); N],
+    ) -> [Result<Arc<Self>, RenderError>; N] {
+        // The shader itself is not to be compiled by each of them; each tells what is wrong with it.
+        let _ = checked(gpu, name, || compiled(gpu, name));
+        std::thread::scope(|scope| {
+            let threads = wanted.map(|(entry, constants)| {
+                scope.spawn(move || Self::variant(gpu, name, entry, constants))
+            });
+            let outcome = |thread: std::thread::ScopedJoinHandle<'_, _>| {
+                thread.join().unwrap_or_else(|panic| resume_unwind(panic))
+            };
+            threads.map(outcome)
+        })
+    }
+
+    fn compile(
+        gpu: &Gpu,
+        name: &str,
+        entry: &str,
+        constants: &[(&str, f64)],
     ) -> Result<Self, RenderError> {
         checked(gpu, name, || {
-            let compiled = compile(gpu, name)?;
+            let compiled = compiled(gpu, name)?;
             let workgroup = compiled.workgroup(name, entry)?;
             let descriptor = wgpu::ComputePipelineDescriptor {
                 label: Some(name),
@@ -134,7 +207,7 @@ impl Pipeline {
             };
             Ok(Self {
                 pipeline: gpu.device.create_compute_pipeline(&descriptor),
-                own: compiled.own,
+                own: compiled.own.clone(),
                 workgroup,
                 name: format!("{name}, {entry}"),
                 most_groups: gpu.device.limits().max_compute_workgroups_per_dimension,
@@ -200,7 +273,7 @@ impl RasterPipeline {
         targets: &[wgpu::TextureFormat],
     ) -> Result<Self, RenderError> {
         checked(gpu, name, || {
-            let compiled = compile(gpu, name)?;
+            let compiled = compiled(gpu, name)?;
             let targets: Vec<_> = targets
                 .iter()
                 .map(|&format| {
@@ -242,7 +315,7 @@ impl RasterPipeline {
                 });
             Ok(Self {
                 pipeline,
-                own: compiled.own,
+                own: compiled.own.clone(),
             })
         })
     }

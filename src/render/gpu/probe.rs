@@ -1,5 +1,7 @@
 //! Point location on the device, for many points at once.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 
 use super::device::Gpu;
@@ -29,7 +31,7 @@ pub fn locate(
 
 /// The compiled shader, for those who locate points again and again.
 pub struct Probe {
-    pipeline: Pipeline,
+    pipeline: Arc<Pipeline>,
     constants: Constants,
 }
 

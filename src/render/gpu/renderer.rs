@@ -34,8 +34,8 @@ pub struct GpuRenderer {
     /// Made when surfaces are first shown.
     surfaces: Option<SurfacePainter>,
     strategies: Vec<(StrategyKind, Box<dyn RenderStrategy>)>,
-    /// Made when cells are first shown as solid.
-    solid: Option<Solid>,
+    /// For cells that are shown as solid.
+    solid: Solid,
     /// Made when points are first located.
     probe: Option<Probe>,
     /// Faces of surfaces that were looked at.
@@ -67,7 +67,7 @@ impl GpuRenderer {
             gpu,
             frames: FrameRenderer::default(),
             strategies: Vec::new(),
-            solid: None,
+            solid: Solid::default(),
             probe: None,
             surface_tree: SurfaceTree::default(),
             revisions: RevisionCounter::default(),
@@ -110,7 +110,7 @@ impl GpuRenderer {
             .await?;
         let strategy = match view.casts_rays() {
             true => strategy(gpu, &mut self.strategies, view.sampling.strategy)?,
-            false => solid(gpu, &mut self.solid)?,
+            false => &mut self.solid,
         };
         let faces = match strategy.draws_faces() || SurfacePainter::shares_faces(view) {
             true => Some(faces.update(gpu, grid, on_device, drawn)?),
@@ -224,18 +224,6 @@ fn surfaces_of<'a>(
         None => SurfacePainter::new(gpu)?,
     };
     Ok(Some(compiled.insert(painter)))
-}
-
-/// What draws solid cells, compiled when it is first asked for.
-fn solid<'a>(
-    gpu: &Gpu,
-    compiled: &'a mut Option<Solid>,
-) -> Result<&'a mut dyn RenderStrategy, RenderError> {
-    let solid = match compiled.take() {
-        Some(known) => known,
-        None => Solid::new(gpu)?,
-    };
-    Ok(compiled.insert(solid))
 }
 
 /// The strategy of a kind, compiled when it is first asked for.

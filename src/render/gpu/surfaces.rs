@@ -6,6 +6,7 @@
 //! place among those of the pixel by its distance.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use super::device::Gpu;
 use super::faces::{self, FORMAT, FaceList, FaceTarget};
@@ -37,9 +38,9 @@ pub fn constants(surfaces: Surfaces) -> [(&'static str, f64); 5] {
 /// Finds surface points and gives them colors.
 pub struct SurfacePainter {
     peel: RasterPipeline,
-    paint: Pipeline,
-    /// Constants that it was compiled with.
-    look: (Surfaces, Shading),
+    /// Compiled when it is first asked for.
+    paint: Option<Arc<Pipeline>>,
+    surfaces: Surfaces,
     shown: Option<ShownSurfaces>,
     gap: f32,
     blending: Blending,
@@ -57,21 +58,21 @@ struct ShownSurfaces {
     hull: Option<FaceList>,
     /// Faces that are sheets by themselves.
     sheets: Option<FaceList>,
+    /// Of each the number and that of its color.
     fault_faces: wgpu::Buffer,
-    fault_colors: wgpu::Buffer,
     faults: u32,
 }
 
 impl SurfacePainter {
-    /// Compiles the shaders.
+    /// Compiles the shader that finds points.
     ///
     /// # Errors
-    /// When the driver refuses one.
+    /// When the driver refuses it.
     pub fn new(gpu: &Gpu) -> Result<Self, RenderError> {
         Ok(Self {
             peel: RasterPipeline::new(gpu, "peel", &[FORMAT])?,
-            paint: Pipeline::new(gpu, "paint")?,
-            look: <(Surfaces, Shading)>::default(),
+            paint: None,
+            surfaces: Surfaces::default(),
             shown: None,
             gap: 0.0,
             blending: Blending::default(),
@@ -102,13 +103,10 @@ impl SurfacePainter {
         boundary: Option<&FaceList>,
         work: u32,
     ) -> Result<(), RenderError> {
-        let look = (view.style.surfaces, Shading::of(&view.style.lighting));
-        if look != self.look {
-            let surfaces = constants(look.0).into_iter();
-            let constants: Vec<_> = surfaces.chain(look.1.pairs()).collect();
-            self.paint = Pipeline::variant(gpu, "paint", "main", &constants)?;
-            self.look = look;
-        }
+        self.surfaces = view.style.surfaces;
+        let shading = Shading::of(&view.style.lighting);
+        let constants = [&constants(self.surfaces)[..], &shading.pairs()].concat();
+        self.paint = Some(Pipeline::variant(gpu, "paint", "main", &constants)?);
         let is_known = |s: &ShownSurfaces| s.revision == grid.revisions.surfaces;
         let shown = match self.shown.take().filter(is_known) {
             Some(known) => known,
@@ -128,7 +126,7 @@ impl SurfacePainter {
 
     /// Layers that a ray can have.
     pub fn layers(&self) -> u32 {
-        layers(self.look.0).len() as u32
+        layers(self.surfaces).len() as u32
     }
 
     /// Loop iterations that a pixel of a layer costs, about.
@@ -141,7 +139,7 @@ impl SurfacePainter {
         let Some(shown) = &self.shown else {
             return;
         };
-        let layers = layers(self.look.0);
+        let layers = layers(self.surfaces);
         self.targets.resize_with(layers.len(), || None);
         let mut before = self.nothing.clone();
         for (n, (layer, slot)) in layers.iter().zip(&mut self.targets).enumerate() {
@@ -182,10 +180,10 @@ impl SurfacePainter {
         encoder: &mut wgpu::CommandEncoder,
     ) {
         let target = self.targets.get(layer as usize).and_then(Option::as_ref);
-        let (Some(shown), Some(target)) = (&self.shown, target) else {
+        let (Some(shown), Some(target), Some(paint)) = (&self.shown, target, &self.paint) else {
             return;
         };
-        let kinds = layers(self.look.0);
+        let kinds = layers(self.surfaces);
         let (look, [facing, edge_on]) = match kinds.get(layer as usize) {
             Some(Layer::Front) => (layout::LOOK_FAINT, FAINT_FRONT),
             Some(Layer::Ground) => (layout::LOOK_FAINT, FAINT_BEHIND),
@@ -208,17 +206,16 @@ impl SurfacePainter {
             info.as_entire_binding(),
             wgpu::BindingResource::TextureView(&target.met),
             shown.fault_faces.as_entire_binding(),
-            shown.fault_colors.as_entire_binding(),
         ];
-        let own = round.gpu.bind(&self.paint.own, &own);
+        let own = round.gpu.bind(&paint.own, &own);
         let size = [round.size[0], rows.len() as u32];
-        round.compute(encoder, &self.paint, Some(&own), size, Place::Only);
+        round.compute(encoder, paint, Some(&own), size, Place::Only);
     }
 
     /// Bytes of the lists that are this one's own.
     pub fn bytes(&self, view: &View) -> u64 {
         self.shown.as_ref().map_or(0, |shown| {
-            let faults = shown.fault_faces.size() + shown.fault_colors.size();
+            let faults = shown.fault_faces.size();
             let hull = shown.hull.iter().filter(|_| !Self::shares_faces(view));
             faults + hull.chain(&shown.sheets).map(FaceList::bytes).sum::<u64>()
         })
@@ -235,10 +232,12 @@ impl ShownSurfaces {
     ) -> Result<Self, RenderError> {
         let surfaces = view.style.surfaces;
         let faults = match surfaces.faults {
-            true => faults(model, view)?,
+            true => faults(model, view)?
+                .into_iter()
+                .map(<[u32; 2]>::from)
+                .collect(),
             false => Vec::new(),
         };
-        let (numbers, colors): (Vec<u32>, Vec<u32>) = faults.into_iter().unzip();
         let hull = match (surfaces.has_hull(), boundary) {
             (false, _) => None,
             (true, Some(boundary)) if SurfacePainter::shares_faces(view) => Some(boundary.clone()),
@@ -249,15 +248,17 @@ impl ShownSurfaces {
         };
         let sheets = match surfaces.hull {
             Hull::Opaque => None,
-            _ => Some(FaceList::new(gpu, grid, &numbers)?),
+            _ => {
+                let numbers: Vec<u32> = faults.iter().map(|[face, _]| *face).collect();
+                Some(FaceList::new(gpu, grid, &numbers)?)
+            }
         };
         Ok(Self {
             revision: grid.revisions.surfaces,
             hull,
             sheets,
-            fault_faces: gpu.storage("fault faces", &numbers)?,
-            fault_colors: gpu.storage("fault colors", &colors)?,
-            faults: numbers.len() as u32,
+            fault_faces: gpu.storage("fault faces", &faults)?,
+            faults: faults.len() as u32,
         })
     }
 }

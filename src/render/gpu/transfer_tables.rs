@@ -5,14 +5,16 @@ use crate::render::RenderError;
 use crate::render::plan::transfer::{transfer_integrals, transfer_table};
 use crate::view::View;
 
+const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
+
 /// Its table and the integrals over it, for one transfer function and blending.
 pub struct TransferTables {
     /// See [`crate::render::revisions::Revisions::transfer`].
     pub revision: u64,
     /// Color, as it is blended, and extinction at equal distances over the range.
-    pub table: wgpu::Buffer,
+    pub table: wgpu::TextureView,
     /// Integrals over the position of extinction times color, and of extinction.
-    pub integrals: wgpu::Buffer,
+    pub integrals: wgpu::TextureView,
 }
 
 impl TransferTables {
@@ -23,8 +25,8 @@ impl TransferTables {
     pub fn new(gpu: &Gpu, view: &View, revision: u64) -> Result<Self, RenderError> {
         let table = transfer_table(view);
         Ok(Self {
-            integrals: gpu.storage("transfer integrals", &transfer_integrals(&table))?,
-            table: gpu.storage("transfer table", &table)?,
+            integrals: gpu.table("transfer integrals", FORMAT, &transfer_integrals(&table))?,
+            table: gpu.table("transfer table", FORMAT, &table)?,
             revision,
         })
     }

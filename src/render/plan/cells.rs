@@ -2,6 +2,7 @@
 
 use rayon::prelude::*;
 
+use super::compact_grid::pairs;
 use crate::model::{ColumnBits, Dims, Grid, Ijk, VertexField};
 use crate::scene::Interpolation;
 use crate::view::ShownCells;
@@ -44,6 +45,12 @@ pub fn ghost_words(model: &Grid, cells: &ShownCells) -> Option<Vec<u32>> {
     let all = grid.active_cells().iter();
     let is_ghost: Vec<bool> = all.map(|c| model.active_index(*c).is_none()).collect();
     Some(drawn_words(grid, &is_ghost).iter().map(|w| w[0]).collect())
+}
+
+/// The bits of the drawn cells, and behind them those of the ghosts, two words a pair.
+pub fn cell_bits(drawn: &[[u32; 2]], ghosts: Option<&[u32]>) -> Vec<[u32; 2]> {
+    let ghosts = pairs(ghosts.unwrap_or_default());
+    drawn.iter().copied().chain(ghosts).collect()
 }
 
 /// The values of what is shown of the case's grid `model`: one for each cell that rays meet, in the order of slots,

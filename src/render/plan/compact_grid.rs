@@ -68,6 +68,8 @@ impl CompactGrid {
         let accel = AccelGrid::new(grid, &shapes, origin);
         let acceleration_time = start.elapsed();
         let dims = grid.dims();
+        let lists = 3 * grid.pillars().len();
+        let bins = lists + 2 * dims.columns();
         Ok(Self {
             facts: GridFacts {
                 origin,
@@ -87,11 +89,15 @@ impl CompactGrid {
                 nk: dims.nk as u32,
                 bins_x: accel.size[0],
                 bins_y: accel.size[1],
-                reserved: 0,
+                ghosts: dims.cells().div_ceil(32) as u32,
                 bin_origin: accel.origin.as_vec2().to_array(),
                 bin_size: accel.bin.as_vec2().to_array(),
                 depth_low: accel.depth[0] as f32,
                 depth_scale: accel.depth[1] as f32,
+                column_lists: lists as u32,
+                bins: bins as u32,
+                bin_columns: (bins + accel.bins.len()) as u32,
+                reserved: 0,
             },
             pillars: pillars(grid, origin),
             column_lists: column_lists(grid, &shapes),
@@ -99,6 +105,15 @@ impl CompactGrid {
             bins: accel.bins,
             bin_columns: accel.columns,
         })
+    }
+
+    /// Pillars, depth lists of columns, bins and their columns one after the other, from where [`Self::info`] says.
+    pub fn words(&self) -> Vec<[u32; 2]> {
+        let pillars: &[[u32; 2]] = bytemuck::cast_slice(&self.pillars);
+        let lists: &[[u32; 2]] = bytemuck::cast_slice(&self.column_lists);
+        let mut words = [pillars, lists, &self.bins].concat();
+        words.extend(pairs(&self.bin_columns));
+        words
     }
 
     /// Empties the bins of the lower half of x, so that tests have a grid in which points are lost.
@@ -110,6 +125,14 @@ impl CompactGrid {
             row[..half].iter_mut().for_each(|bin| bin[0] = next);
         }
     }
+}
+
+/// Words two by two; the last one of an odd number has a zero beside it.
+pub fn pairs(words: &[u32]) -> impl Iterator<Item = [u32; 2]> {
+    words.chunks(2).map(|pair| match *pair {
+        [a, b] => [a, b],
+        _ => [pair[0], 0],
+    })
 }
 
 /// The middle of the model, rounded so coarsely that coordinates that were f32 in the file stay

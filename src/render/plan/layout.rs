@@ -68,11 +68,15 @@ pub struct GridInfo {
     pub nk: u32,
     pub bins_x: u32,
     pub bins_y: u32,
-    pub reserved: u32,
+    pub ghosts: u32,
     pub bin_origin: [f32; 2],
     pub bin_size: [f32; 2],
     pub depth_low: f32,
     pub depth_scale: f32,
+    pub column_lists: u32,
+    pub bins: u32,
+    pub bin_columns: u32,
+    pub reserved: u32,
 }
 
 /// A volume resampled over a box.
@@ -238,6 +242,10 @@ pub fn per_unit([low, high]: [f64; 2]) -> f32 {
 
 /// Entries of the transfer table.
 pub const LUT_SIZE: u32 = 4096;
+/// Entries in a row of the textures that hold tables: no device has narrower ones.
+pub const LUT_ROW: u32 = 2048;
+/// Texels of an emitter.
+pub const EMITTER_TEXELS: u32 = 5;
 /// Column of a point that lies in no cell.
 pub const NOT_FOUND: u32 = u32::MAX;
 /// Flag of a depth list with gaps.

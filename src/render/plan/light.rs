@@ -183,6 +183,13 @@ impl Emitters {
         self.emitters.push(emitter);
     }
 
+    /// All emitters and behind them all sections, in texels of four words.
+    pub fn texels(&self) -> Vec<[u32; 4]> {
+        let emitters: &[[u32; 4]] = bytemuck::cast_slice(&self.emitters);
+        let sections: &[[u32; 4]] = bytemuck::cast_slice(&self.sections);
+        [emitters, sections].concat()
+    }
+
     /// The sections of an emitter.
     pub fn of(&self, emitter: usize) -> &[[f32; 4]] {
         let e = &self.emitters[emitter];

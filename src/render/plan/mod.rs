@@ -12,10 +12,12 @@ pub mod faces;
 pub mod frame;
 pub mod layout;
 pub mod light;
+pub mod majorants;
 pub mod srg;
 pub mod surfaces;
 pub mod transfer;
+pub mod visible;
 pub mod volume;
 
-pub use cells::{drawn_words, ghost_words, values};
+pub use cells::{cell_bits, drawn_words, ghost_words, values};
 pub use compact_grid::{CompactGrid, GridFacts};

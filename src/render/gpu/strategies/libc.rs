@@ -5,6 +5,8 @@
 //! and exit of a cell (campagnolo-2021, 4.1.2). Cost: one step a cell, whatever the number of samples;
 //! one drawing of the faces a peel.
 
+use std::sync::Arc;
+
 use crate::render::RenderError;
 use crate::render::gpu::faces::{FaceMode, FaceRaster, FaceTarget};
 use crate::render::gpu::strategy::{Common, Preparation, RenderStrategy};
@@ -15,19 +17,27 @@ use crate::scene::{Integration, Interpolation, LibcSettings};
 
 /// The strategy with its compiled shaders.
 pub struct Libc {
-    begin: Pipeline,
-    walk: Pipeline,
-    set_right: Pipeline,
-    variant: Variant,
+    /// Compiled when they are first asked for.
+    pipelines: Option<Pipelines>,
     faces: FaceRaster,
     target: Option<FaceTarget>,
-    /// Rays left before and after a round, in turn.
-    rays: [wgpu::Buffer; 2],
-    rays_count: wgpu::Buffer,
+    /// Number of rays that are left after a round, and the lists of those before and after it.
+    rays: wgpu::Buffer,
+    /// The list of those before a round; the other one is of those after it, in turn.
+    list: u32,
 }
 
+struct Pipelines {
+    begin: Arc<Pipeline>,
+    walk: Arc<Pipeline>,
+    set_right: Arc<Pipeline>,
+}
+
+/// Bytes of the number of rays left.
+const COUNT_BYTES: u64 = 4;
+
 /// Options that are constants of the walk's pipeline.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy)]
 struct Variant {
     settings: LibcSettings,
     interpolation: Interpolation,
@@ -35,7 +45,7 @@ struct Variant {
 }
 
 impl Variant {
-    fn compile(self, gpu: &Gpu) -> Result<Pipeline, RenderError> {
+    fn compile(self, gpu: &Gpu) -> Result<Pipelines, RenderError> {
         // Many rays a sample are more than a segment can wait for.
         let by_segment =
             self.settings.integration == Integration::Segments && !self.common.casts_rays();
@@ -47,31 +57,30 @@ impl Variant {
                 flag(self.interpolation == Interpolation::Vertex),
             ),
         ];
-        let constants: Vec<_> = own.into_iter().chain(self.common.pairs()).collect();
-        Pipeline::variant(gpu, "libc", "walk", &constants)
+        let common: Vec<_> = self.common.pairs().collect();
+        let all = [&own[..], &common].concat();
+        let wanted: [(_, &[_]); 3] = [("begin", &common), ("walk", &all), ("set_right", &common)];
+        let [begin, walk, set_right] = Pipeline::variants(gpu, "libc", wanted);
+        Ok(Pipelines {
+            begin: begin?,
+            walk: walk?,
+            set_right: set_right?,
+        })
     }
 }
 
 impl Libc {
-    /// Compiles the shaders.
+    /// Compiles the shader of the faces.
     ///
     /// # Errors
     /// When the driver refuses one.
     pub fn new(gpu: &Gpu) -> Result<Self, RenderError> {
-        let variant = Variant {
-            settings: LibcSettings::default(),
-            interpolation: Interpolation::Vertex,
-            common: Common::default(),
-        };
         Ok(Self {
-            begin: Pipeline::variant(gpu, "libc", "begin", &[])?,
-            walk: variant.compile(gpu)?,
-            set_right: Pipeline::variant(gpu, "libc", "set_right", &[])?,
-            variant,
+            pipelines: None,
             faces: FaceRaster::new(gpu)?,
             target: None,
-            rays: [0, 1].map(|_| gpu.scratch("rays left", 4 * tiles::MAX_AREA)),
-            rays_count: gpu.scratch("number of rays left", 16),
+            rays: gpu.scratch("rays left", COUNT_BYTES + 2 * 4 * tiles::MAX_AREA),
+            list: 0,
         })
     }
 }
@@ -106,15 +115,7 @@ impl RenderStrategy for Libc {
                 interpolation: what.view.shown.cells.interpolation,
                 common: Common::of(what),
             };
-            if variant != self.variant {
-                if variant.common != self.variant.common {
-                    let common: Vec<_> = variant.common.pairs().collect();
-                    self.begin = Pipeline::variant(what.gpu, "libc", "begin", &common)?;
-                    self.set_right = Pipeline::variant(what.gpu, "libc", "set_right", &common)?;
-                }
-                self.walk = variant.compile(what.gpu)?;
-                self.variant = variant;
-            }
+            self.pipelines = Some(variant.compile(what.gpu)?);
             let margin = match what.grid.facts.layers_cross {
                 // Cells may overlap anywhere: every entry counts.
                 true => f32::MAX,
@@ -126,39 +127,52 @@ impl RenderStrategy for Libc {
     }
 
     fn encode(&mut self, round: &Round<'_>, encoder: &mut wgpu::CommandEncoder) {
+        let Some(pipelines) = &self.pipelines else {
+            return;
+        };
         let target = FaceTarget::fitting(self.target.take(), round.gpu, round.size);
-        let [before, after] = &self.rays;
+        let [before, after] = [self.list, 1 - self.list].map(|n| n * tiles::MAX_AREA as u32);
         let record = |encoder: &mut _, pipeline: &Pipeline, stage: Stage, size, place| {
             let stage = round
                 .gpu
-                .uniform("stage", &[stage as u32, round.rays_left, 0, 0]);
+                .uniform("stage", &[stage as u32, round.rays_left, before, after]);
             let own = [
                 stage.as_entire_binding(),
                 wgpu::BindingResource::TextureView(&target.met),
-                before.as_entire_binding(),
-                after.as_entire_binding(),
-                self.rays_count.as_entire_binding(),
+                self.rays.as_entire_binding(),
             ];
             let own = round.gpu.bind(&pipeline.own, &own);
             round.compute(encoder, pipeline, Some(&own), size, place);
         };
         let rays = [round.rays_left, 1];
-        encoder.clear_buffer(&self.rays_count, 0, None);
+        encoder.clear_buffer(&self.rays, 0, Some(COUNT_BYTES));
         if round.starts {
-            record(encoder, &self.begin, Stage::GoesOn, round.size, Place::Only);
+            record(
+                encoder,
+                &pipelines.begin,
+                Stage::GoesOn,
+                round.size,
+                Place::Only,
+            );
         } else if round.paused > 0 {
             let mut place = Place::Only;
             if round.strayed > 0 {
-                record(encoder, &self.set_right, Stage::GoesOn, rays, Place::First);
+                record(
+                    encoder,
+                    &pipelines.set_right,
+                    Stage::GoesOn,
+                    rays,
+                    Place::First,
+                );
                 place = Place::Last;
             }
-            record(encoder, &self.walk, Stage::GoesOn, rays, place);
+            record(encoder, &pipelines.walk, Stage::GoesOn, rays, place);
         } else {
             self.faces
                 .draw(round, encoder, &target, FaceMode::Peel, Place::First);
-            record(encoder, &self.walk, Stage::Enters, rays, Place::Last);
+            record(encoder, &pipelines.walk, Stage::Enters, rays, Place::Last);
         }
-        self.rays.swap(0, 1);
+        self.list = 1 - self.list;
         self.target = Some(target);
     }
 }

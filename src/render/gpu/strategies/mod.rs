@@ -17,7 +17,7 @@ use crate::scene::StrategyKind;
 pub fn create(kind: StrategyKind, gpu: &Gpu) -> Result<Box<dyn RenderStrategy>, RenderError> {
     Ok(match kind {
         StrategyKind::Libc => Box::new(libc::Libc::new(gpu)?),
-        StrategyKind::Plts => Box::new(plts::Plts::new(gpu)?),
+        StrategyKind::Plts => Box::new(plts::Plts::default()),
         StrategyKind::Srg => Box::new(srg::Srg::new(gpu)?),
     })
 }

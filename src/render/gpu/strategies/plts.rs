@@ -5,31 +5,16 @@
 //! acceleration grid where the topology ends (campagnolo-2021, 4.1.3). Cost: about one Newton iteration
 //! a sample inside a cell, a point location at each entry into the model.
 
-use crate::render::RenderError;
+use std::sync::Arc;
+
 use crate::render::gpu::strategy::{Common, Preparation, RenderStrategy};
-use crate::render::gpu::{Gpu, Pipeline, Place, Round};
+use crate::render::gpu::{Pipeline, Place, Round};
 use crate::render::job::Work;
 use crate::render::plan::layout::RAY_STATE;
 
-/// The strategy with its compiled shader.
-pub struct Plts {
-    pipeline: Pipeline,
-    /// Constants that it was compiled with.
-    constants: Common,
-}
-
-impl Plts {
-    /// Compiles the shader.
-    ///
-    /// # Errors
-    /// When the driver refuses it.
-    pub fn new(gpu: &Gpu) -> Result<Self, RenderError> {
-        Ok(Self {
-            pipeline: Pipeline::new(gpu, "plts")?,
-            constants: Common::default(),
-        })
-    }
-}
+/// The strategy with its shader, compiled when it is first asked for.
+#[derive(Default)]
+pub struct Plts(Option<Arc<Pipeline>>);
 
 impl RenderStrategy for Plts {
     fn ray_state_bytes(&self) -> u64 {
@@ -38,17 +23,15 @@ impl RenderStrategy for Plts {
 
     fn prepare<'a>(&'a mut self, what: &'a Preparation<'a>) -> Work<'a, ()> {
         Box::pin(async move {
-            let constants = Common::of(what);
-            if constants != self.constants {
-                let pairs: Vec<_> = constants.pairs().collect();
-                self.pipeline = Pipeline::variant(what.gpu, "plts", "main", &pairs)?;
-                self.constants = constants;
-            }
+            let constants: Vec<_> = Common::of(what).pairs().collect();
+            self.0 = Some(Pipeline::variant(what.gpu, "plts", "main", &constants)?);
             Ok(())
         })
     }
 
     fn encode(&mut self, round: &Round<'_>, encoder: &mut wgpu::CommandEncoder) {
-        round.compute(encoder, &self.pipeline, None, round.size, Place::Only);
+        if let Some(pipeline) = &self.0 {
+            round.compute(encoder, pipeline, None, round.size, Place::Only);
+        }
     }
 }

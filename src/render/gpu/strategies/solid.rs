@@ -1,30 +1,15 @@
 //! Solid cells among nothing: their surfaces and sections are all of the picture. No strategy of its own that
 //! users choose, for there are no rays to cast.
 
-use crate::render::RenderError;
+use std::sync::Arc;
+
 use crate::render::gpu::strategy::{Common, Preparation, RenderStrategy};
-use crate::render::gpu::{Gpu, Pipeline, Place, Round, flag};
+use crate::render::gpu::{Pipeline, Place, Round, flag};
 use crate::render::job::Work;
 
-/// What blends surfaces and sections, with its compiled shader.
-pub struct Solid {
-    pipeline: Pipeline,
-    /// Whether clip planes have opaque sections, and the other constants that it was compiled with.
-    constants: (bool, Common),
-}
-
-impl Solid {
-    /// Compiles the shader.
-    ///
-    /// # Errors
-    /// When the driver refuses it.
-    pub fn new(gpu: &Gpu) -> Result<Self, RenderError> {
-        Ok(Self {
-            pipeline: Pipeline::new(gpu, "solid")?,
-            constants: (false, Common::default()),
-        })
-    }
-}
+/// What blends surfaces and sections, with its shader, compiled when it is first asked for.
+#[derive(Default)]
+pub struct Solid(Option<Arc<Pipeline>>);
 
 impl RenderStrategy for Solid {
     fn ray_state_bytes(&self) -> u64 {
@@ -38,18 +23,16 @@ impl RenderStrategy for Solid {
     fn prepare<'a>(&'a mut self, what: &'a Preparation<'a>) -> Work<'a, ()> {
         Box::pin(async move {
             let sections = what.view.shown.clip.iter().any(|plane| plane.opaque);
-            let constants = (sections, Common::of(what));
-            if constants != self.constants {
-                let own = [("SECTIONS", flag(sections))];
-                let pairs: Vec<_> = own.into_iter().chain(constants.1.pairs()).collect();
-                self.pipeline = Pipeline::variant(what.gpu, "solid", "main", &pairs)?;
-                self.constants = constants;
-            }
+            let own = [("SECTIONS", flag(sections))];
+            let constants: Vec<_> = own.into_iter().chain(Common::of(what).pairs()).collect();
+            self.0 = Some(Pipeline::variant(what.gpu, "solid", "main", &constants)?);
             Ok(())
         })
     }
 
     fn encode(&mut self, round: &Round<'_>, encoder: &mut wgpu::CommandEncoder) {
-        round.compute(encoder, &self.pipeline, None, round.size, Place::Only);
+        if let Some(pipeline) = &self.0 {
+            round.compute(encoder, pipeline, None, round.size, Place::Only);
+        }
     }
 }

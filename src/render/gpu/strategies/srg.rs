@@ -6,9 +6,11 @@
 //! or drawn cells change. Faults and thin layers are blurred by about a voxel. Pyramids over the volume
 //! shorten the way (volumetric-ray-tracing survey, 8).
 
+use std::sync::Arc;
+
 use crate::render::gpu::faces::{FaceMode, FaceRaster, FaceTarget};
-use crate::render::gpu::pyramids::{Bricks, PyramidMaker};
-use crate::render::gpu::resample::Resampler;
+use crate::render::gpu::pyramids::{self, Bricks};
+use crate::render::gpu::resample;
 use crate::render::gpu::slabs::Slabs;
 use crate::render::gpu::strategy::{Common, Preparation, RenderStrategy};
 use crate::render::gpu::tiles::Pace;
@@ -25,11 +27,8 @@ use crate::view::voxels::Shape;
 
 /// The strategy with its compiled shaders, and the volume.
 pub struct Srg {
-    begin: Pipeline,
-    march: Pipeline,
-    variant: Variant,
-    resampler: Resampler,
-    pyramids: PyramidMaker,
+    /// What begins rays and what takes them further, compiled when they are first asked for.
+    pipelines: Option<[Arc<Pipeline>; 2]>,
     sampler: wgpu::Sampler,
     faces: FaceRaster,
     /// For the first entries and the last exits.
@@ -52,7 +51,7 @@ struct Filled {
 }
 
 /// Options that are constants of the pipelines.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy)]
 struct Variant {
     sections: bool,
     weighted: bool,
@@ -63,7 +62,7 @@ struct Variant {
 }
 
 impl Variant {
-    fn compile(self, gpu: &Gpu, entry: &str) -> Result<Pipeline, RenderError> {
+    fn compile(self, gpu: &Gpu) -> Result<[Arc<Pipeline>; 2], RenderError> {
         let own = [
             ("SECTIONS", flag(self.sections)),
             ("WEIGHTED", flag(self.weighted)),
@@ -72,7 +71,9 @@ impl Variant {
             ("ROULETTE", self.roulette),
         ];
         let constants: Vec<_> = own.into_iter().chain(self.common.pairs()).collect();
-        Pipeline::variant(gpu, "srg", entry, &constants)
+        let wanted: [(_, &[_]); 2] = [("begin", &constants), ("march", &constants)];
+        let [begin, march] = Pipeline::variants(gpu, "srg", wanted);
+        Ok([begin?, march?])
     }
 
     fn of(settings: &SrgSettings, sections: bool, common: Common) -> Self {
@@ -88,18 +89,13 @@ impl Variant {
 }
 
 impl Srg {
-    /// Compiles the shaders.
+    /// Compiles the shader of the faces.
     ///
     /// # Errors
     /// When the driver refuses one.
     pub fn new(gpu: &Gpu) -> Result<Self, RenderError> {
-        let variant = Variant::of(&SrgSettings::default(), false, Common::default());
         Ok(Self {
-            begin: variant.compile(gpu, "begin")?,
-            march: variant.compile(gpu, "march")?,
-            variant,
-            resampler: Resampler::new(gpu, false)?,
-            pyramids: PyramidMaker::new(gpu)?,
+            pipelines: None,
             sampler: gpu.linear_sampler(),
             faces: FaceRaster::new(gpu)?,
             targets: [None, None],
@@ -127,10 +123,8 @@ impl Srg {
         let bricks = Bricks::unused(what.gpu, shape.size);
         let mut slabs = slabs(what, &mut self.pace);
         let interpolation = what.view.shown.cells.interpolation;
-        self.resampler
-            .fill(&mut slabs, what.grid, &volume, range, interpolation)
-            .await?;
-        self.pyramids.average(&mut slabs, &volume, &bricks).await?;
+        resample::fill(&mut slabs, what.grid, &volume, range, interpolation).await?;
+        pyramids::average(&mut slabs, &volume, &bricks).await?;
         self.fills += 1;
         self.filled = Some(Filled {
             revision,
@@ -156,9 +150,7 @@ impl Srg {
         if !limits.are_never() && !filled.bricks.are_used() {
             let bricks = Bricks::new(what.gpu, filled.volume.shape.size);
             let mut slabs = slabs(what, &mut self.pace);
-            self.pyramids
-                .summarize(&mut slabs, &filled.volume, &bricks)
-                .await?;
+            pyramids::summarize(&mut slabs, &filled.volume, &bricks).await?;
             filled.bricks = bricks;
             filled.classified = None;
         }
@@ -171,8 +163,7 @@ impl Srg {
                 weighted: settings.weighted,
             };
             let (volume, bricks) = (&filled.volume, &filled.bricks);
-            self.pyramids
-                .classify(what.gpu, volume, bricks, &classifier)?;
+            pyramids::classify(what.gpu, volume, bricks, &classifier)?;
             filled.classified = Some(by);
         }
         Ok(())
@@ -207,11 +198,7 @@ impl RenderStrategy for Srg {
             let settings = useful(view);
             let sections = view.shown.clip.iter().any(|plane| plane.opaque);
             let variant = Variant::of(&settings, sections, Common::of(what));
-            if variant != self.variant {
-                self.begin = variant.compile(what.gpu, "begin")?;
-                self.march = variant.compile(what.gpu, "march")?;
-                self.variant = variant;
-            }
+            self.pipelines = Some(variant.compile(what.gpu)?);
             self.faces.update(what.gpu, what.faces, 0.0);
             let budget = settings.budget_bytes();
             let limit = what.gpu.device.limits().max_texture_dimension_3d;
@@ -231,7 +218,7 @@ impl RenderStrategy for Srg {
     }
 
     fn encode(&mut self, round: &Round<'_>, encoder: &mut wgpu::CommandEncoder) {
-        let Some(filled) = &self.filled else {
+        let (Some(filled), Some([begin, march])) = (&self.filled, &self.pipelines) else {
             return;
         };
         let [first, last] = std::array::from_fn(|n| {
@@ -258,11 +245,11 @@ impl RenderStrategy for Srg {
             ] {
                 self.faces.draw(round, encoder, target, mode, place);
             }
-            let own = own(&self.begin);
-            round.compute(encoder, &self.begin, Some(&own), round.size, Place::Last);
+            let own = own(begin);
+            round.compute(encoder, begin, Some(&own), round.size, Place::Last);
         } else {
-            let own = own(&self.march);
-            round.compute(encoder, &self.march, Some(&own), round.size, Place::Only);
+            let own = own(march);
+            round.compute(encoder, march, Some(&own), round.size, Place::Only);
         }
         self.targets = [Some(first), Some(last)];
     }
