@@ -96,11 +96,8 @@ impl HeldCells<'_> {
 /// The cells of some bits by active index of the grid that rays pass.
 pub fn by_active_index(grid: &Grid, words: &[u32]) -> Vec<bool> {
     let dims = grid.dims();
-    let cells = grid.active_cells().par_iter();
-    let is_there = |&cell| {
-        let ijk = dims.ijk(cell);
-        let slot = (ijk.i + dims.ni * ijk.j) * dims.nk + ijk.k;
+    grid.map_active(|column, k| {
+        let slot = (column.i + dims.ni * column.j) * dims.nk + k;
         words[slot / 32] >> (slot % 32) & 1 == 1
-    };
-    cells.map(is_there).collect()
+    })
 }
