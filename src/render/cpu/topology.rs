@@ -22,6 +22,8 @@ const TOPOLOGICAL_LIMIT: u32 = 6;
 const MARCH_ENOUGH: f32 = 1e-2;
 /// Cells of boundary faces that are tried for a sample, at most.
 const MOST_TRIED: usize = 4;
+/// How far behind the face that it seems to begin at a cell is looked for again, in samples.
+const LATER: f32 = 0.1;
 /// Surely past a face, in samples.
 const PAST_FACE: f32 = 1e-2;
 /// A sample that seems to be so far outside of a cell is looked for in the neighbor at once.
@@ -268,11 +270,16 @@ impl<'a> Track<'a> {
     fn enter(&mut self, from: f32) -> Option<f32> {
         // At the face itself the cell that was left seems to hold the ray still.
         let (mut n, mut known) = (from + PAST_FACE, from);
+        let mut tries = 0;
         loop {
             let passed = self.find(n, known);
             if passed == 0.0 {
                 break;
             }
+            // Behind a bent face the cell may begin a little later.
+            let begins = tries < MOST_TRIES && self.boundary.is_some_and(|b| b.depth(n) > 0);
+            let passed = if begins { passed.min(LATER) } else { passed };
+            tries = if begins { tries + 1 } else { 0 };
             self.gap += passed;
             known = n;
             n += passed;
