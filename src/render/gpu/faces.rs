@@ -1,5 +1,7 @@
 //! Faces of cells on the device, and the boundary faces rasterized: where the rays of a tile come in and go out.
 
+use std::sync::Arc;
+
 use super::device::Gpu;
 use super::grid_upload::GpuGrid;
 use super::pipeline::RasterPipeline;
@@ -31,6 +33,8 @@ pub struct FaceList {
     pub revision: u64,
     /// `(column * nk + layer) * 6 + face` of each.
     pub numbers: wgpu::Buffer,
+    /// The same in memory.
+    pub listed: Arc<[u32]>,
     /// How many there are.
     pub count: u32,
 }
@@ -44,6 +48,7 @@ impl FaceList {
         Ok(Self {
             revision: grid.revisions.drawn,
             numbers: gpu.storage("faces", numbers)?,
+            listed: numbers.into(),
             count: numbers.len() as u32,
         })
     }

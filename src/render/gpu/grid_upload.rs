@@ -3,6 +3,7 @@
 use super::device::Gpu;
 use super::pipeline::flag;
 use crate::model::Grid;
+use crate::render::plan::layout::GridInfo;
 use crate::render::plan::{CompactGrid, GridFacts, cell_bits, drawn_words, ghost_words, values};
 use crate::render::revisions::Revisions;
 use crate::render::{DeviceBytes, RenderError};
@@ -35,6 +36,8 @@ pub struct GpuGrid {
     pub acceleration_time: std::time::Duration,
     /// Those of what is on the device.
     pub revisions: Revisions,
+    /// Sizes of it and of its acceleration grid.
+    pub sizes: GridInfo,
     info: wgpu::Buffer,
     /// Pillars, columns and bins.
     words: wgpu::Buffer,
@@ -62,6 +65,7 @@ impl GpuGrid {
             acceleration_time: compact.acceleration_time,
             revisions: Revisions::default(),
             drawn_words: Vec::new(),
+            sizes: compact.info,
             info: gpu.uniform("grid info", &compact.info),
             words: gpu.storage("pillars, columns and bins", &words)?,
             bin_bytes: size_of_val(&words[compact.info.bins as usize..]) as u64,

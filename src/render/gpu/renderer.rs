@@ -112,7 +112,7 @@ impl GpuRenderer {
             true => strategy(gpu, &mut self.strategies, view.sampling.strategy)?,
             false => &mut self.solid,
         };
-        let faces = match strategy.draws_faces() || SurfacePainter::shares_faces(view) {
+        let faces = match strategy.needs_faces() || SurfacePainter::shares_faces(view) {
             true => Some(faces.update(gpu, grid, on_device, drawn)?),
             false => None,
         };
