@@ -1,18 +1,22 @@
 // PLTS: point location with topological search (campagnolo-2021, 4.1.3).
 //
 // One thread = one pixel; dispatch covers the tile. Reads the grid and the transfer table, writes
-// the target and the counters. The first sample of a ray is located through the acceleration grid;
-// each next one by Newton's method in the same cell, then in the neighbor across the face that the
-// result overshoots most, and through the acceleration grid again where the cells do not join.
+// the target and the counters. The first sample of a ray that lies in a cell is found behind the boundary
+// face that the ray passes; each next one by Newton's method in the same cell, then in the neighbor across the
+// face that the result overshoots most, and behind a boundary face again where the cells do not join.
 // Departures from the paper: the start value is extrapolated with the last inverse Jacobian, so that
 // one iteration usually does; where the neighbor is not drawn, the grid is asked at once and no other
-// neighbor; and empty bins are skipped instead of rasterizing the hull. A ray that
+// neighbor; and the hull is met in bins instead of rasterized. A ray that
 // has done tile.work_limit loop iterations pauses: drivers end long loops without a word (llvmpipe
 // after 65,535 iterations of all loops together), and no submission may run for long.
+#import boundary
 #import section
 #import shading
 #import surfaces
 #import topology
+
+// There are lists of boundary faces; else all samples are searched.
+override BY_FACES: bool = false;
 
 // State of a ray: its sums; then the number of the next sample, layers of surfaces that are blended and above them
 // the gap before the sample, column of the last cell, and its layer with whether there is one.
@@ -52,10 +56,18 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     var layers = layers_of(pixel, passed);
     let ray = before_hull(whole, layers);
     var samples = 0u;
+    if track.has_last && track.gap == 0.0 {
+        // It paused in the midst of cells.
+        track.has_cell = try_from(&track, track.last, ray.base + n * ray.advance, frame.interpolation);
+    }
     // Two phases, so that rays side by side locate together and march together.
     while n < ray.count && is_open(sum) && track.work < tile.work_limit {
         while needs_cell(track) && n < ray.count && track.work < tile.work_limit {
-            n += find(&track, ray.base + n * ray.advance, ray.advance, frame.interpolation);
+            if BY_FACES {
+                n += find_behind_faces(&track, ray, n);
+            } else {
+                n += find(&track, ray.base + n * ray.advance, ray.advance, frame.interpolation);
+            }
         }
         n += settle(&track, ray.base + n * ray.advance, ray.advance, ray.count - n, frame.interpolation);
         while track.has_cell {

@@ -123,11 +123,28 @@ fn lost_at_ends(track: Track, point: vec3f, advance: vec3f, interpolation: u32) 
 
 // Goes on to the next sample of a line that has a cell; it has none where the cells do not join.
 fn follow(track: ptr<function, Track>, point: vec3f, advance: vec3f, interpolation: u32) {
+    (*track).has_cell = false;
+    if (column_lists((*track).cell.column).x & COLUMN_FLAG) != 0u {
+        // Layers cross: a point of several cells belongs to the first of them, so each sample is located.
+        return;
+    }
     let last = (*track).solution;
     // Extrapolated with the last inverse Jacobian, so that one iteration usually does.
     let ahead = vec3f(dot(last.inverse_u, advance), dot(last.inverse_v, advance), dot(last.inverse_w, advance));
-    var start = clamp(last.uvw + ahead, vec3f(-1.0), vec3f(2.0));
-    (*track).has_cell = false;
+    if walk_to(track, point, clamp(last.uvw + ahead, vec3f(-1.0), vec3f(2.0)), interpolation) {
+        arrive(track, false);
+    }
+}
+
+// Looks for a sample in a drawn cell, by column and layer, and in those that join.
+fn try_from(track: ptr<function, Track>, cell: vec2u, point: vec3f, interpolation: u32) -> bool {
+    (*track).cell = load_cell(cell.x, cell.y, interpolation);
+    return walk_to(track, point, vec3f(0.5), interpolation);
+}
+
+// Looks for a sample in the current cell, from parameters that it may have there, and in those that join.
+fn walk_to(track: ptr<function, Track>, point: vec3f, first: vec3f, interpolation: u32) -> bool {
+    var start = first;
     for (var attempt = 0u; attempt <= TOPOLOGICAL_LIMIT; attempt++) {
         let s = solve((*track).cell, relative_to((*track).cell, point), start, MARCH_ENOUGH);
         (*track).solution = s;
@@ -135,7 +152,6 @@ fn follow(track: ptr<function, Track>, point: vec3f, advance: vec3f, interpolati
         (*track).work += s.iterations + 2u;
         if s.inside {
             (*track).has_cell = true;
-            arrive(track, false);
             break;
         }
         start = s.uvw;
@@ -144,10 +160,11 @@ fn follow(track: ptr<function, Track>, point: vec3f, advance: vec3f, interpolati
         }
         (*track).topological_steps += 1u;
     }
+    return (*track).has_cell;
 }
 
 // Loads the drawn cell that shares the whole face which `uvw` overshoots most; `uvw` becomes a start
-// in it. False where the cells do not join: hull, fault, gap, a cell that is not drawn.
+// in it. False where the cells do not join: hull, fault, gap, a cell that is not met.
 fn step_to_neighbor(track: ptr<function, Track>, uvw: ptr<function, vec3f>, interpolation: u32) -> bool {
     let here = (*track).cell.column;
     let q = *uvw;
@@ -169,7 +186,7 @@ fn step_to_neighbor(track: ptr<function, Track>, uvw: ptr<function, vec3f>, inte
         }
         next_layer = select(layer - 1u, layer + 1u, plus);
     }
-    if !is_drawn(column, next_layer) || !faces_join(here, layer, column, next_layer, face) {
+    if !is_met(column, next_layer) || !faces_join(here, layer, column, next_layer, face) {
         return false;
     }
     (*track).cell = load_cell(column, next_layer, interpolation);

@@ -53,8 +53,9 @@ pub struct FrameStats {
     /// count where rays are set not to walk across. SRG: rays that meet the model, once each. None where cells are
     /// solid, for there no ray is cast.
     pub entries: u64,
-    /// Lookups of a point without a cell to start from: those of `grid_fallbacks`, which are all of PLTS's that no
-    /// neighbor answers and those that set LIBC's rays right, and points of opaque sections. SRG looks up no others,
+    /// Lookups of a point without a cell to start from: those of `grid_fallbacks`, which are all of PLTS's that
+    /// neither a neighbor nor the cell of a boundary face answers and those that set LIBC's rays right, and points of
+    /// opaque sections. SRG looks up no others,
     /// for its samples come from the volume.
     pub point_locations: u64,
     /// Cells that rays passed through, each time. PLTS: in which they have samples; LIBC: all, down to those between

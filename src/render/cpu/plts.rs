@@ -1,7 +1,7 @@
 //! PLTS, point location with topological search (campagnolo-2021, 4.1.3): every sample in its cell, or every cell from
 //! where a ray comes in to where it leaves. The twin of `shaders/plts.wgsl`.
 //!
-//! Departures from the shader: rays know where they pass the boundary of what is drawn, and search nowhere else. Of
+//! Departures from the shader: rays know all passages of the boundary of what is drawn at once. Of
 //! the samples in a cell the first and the last one are located by Newton's method, and parameters in between are a
 //! cubic that has the places and tangents of both.
 

@@ -189,6 +189,14 @@ impl Gpu {
         self.check()
     }
 
+    /// Bytes that one storage buffer can have.
+    pub fn most_bytes(&self) -> u64 {
+        let limits = self.device.limits();
+        limits
+            .max_storage_buffer_binding_size
+            .min(limits.max_buffer_size)
+    }
+
     /// A read-only storage buffer with `content`; never empty, as bindings may not be.
     ///
     /// # Errors
@@ -200,10 +208,7 @@ impl Gpu {
     ) -> Result<wgpu::Buffer, RenderError> {
         let bytes: &[u8] = bytemuck::cast_slice(content);
         let needed = bytes.len() as u64;
-        let limits = self.device.limits();
-        let limit = limits
-            .max_storage_buffer_binding_size
-            .min(limits.max_buffer_size);
+        let limit = self.most_bytes();
         if needed > limit {
             return Err(RenderError::TooLarge {
                 what,

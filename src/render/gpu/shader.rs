@@ -26,6 +26,7 @@ sources! {
         "table"
         "transfer"
         "topology"
+        "boundary"
         "section"
         "facing"
         "raster"

@@ -18,7 +18,7 @@ pub struct Preparation<'a> {
     pub grid: &'a GpuGrid,
     /// What is looked at.
     pub view: &'a View,
-    /// The boundary faces of the drawn cells, for a strategy that draws them.
+    /// The boundary faces of the drawn cells, for a strategy that needs them.
     pub faces: Option<&'a FaceList>,
     /// Told the fraction done.
     pub progress: &'a Progress,
@@ -70,8 +70,8 @@ pub trait RenderStrategy {
         500
     }
 
-    /// True where it draws boundary faces: then they are listed before it prepares.
-    fn draws_faces(&self) -> bool {
+    /// True where it goes by the boundary faces: then they are listed before it prepares.
+    fn needs_faces(&self) -> bool {
         false
     }
 

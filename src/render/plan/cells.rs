@@ -47,10 +47,14 @@ pub fn ghost_words(model: &Grid, cells: &ShownCells) -> Option<Vec<u32>> {
     Some(drawn_words(grid, &is_ghost).iter().map(|w| w[0]).collect())
 }
 
-/// The bits of the drawn cells, and behind them those of the ghosts, two words a pair.
-pub fn cell_bits(drawn: &[[u32; 2]], ghosts: Option<&[u32]>) -> Vec<[u32; 2]> {
-    let ghosts = pairs(ghosts.unwrap_or_default());
-    drawn.iter().copied().chain(ghosts).collect()
+/// The bits of the drawn cells, and behind them, two words a pair, those of the ghosts and of the visible cells.
+pub fn cell_bits(
+    drawn: &[[u32; 2]],
+    ghosts: Option<&[u32]>,
+    visible: Option<&[u32]>,
+) -> Vec<[u32; 2]> {
+    let [ghosts, visible] = [ghosts, visible].map(|bits| pairs(bits.unwrap_or_default()));
+    drawn.iter().copied().chain(ghosts).chain(visible).collect()
 }
 
 /// The values of what is shown of the case's grid `model`: one for each cell that rays meet, in the order of slots,

@@ -7,6 +7,8 @@ use rayon::prelude::*;
 
 use super::accel::AccelGrid;
 use super::columns::{self, ColumnShape};
+#[cfg(test)]
+use super::layout::BIN_IS_ODD;
 use super::layout::{COLUMN_FLAG, GridInfo, LIST_GAPPED, LIST_OFFSET};
 use crate::model::{DepthList, Grid};
 use crate::render::RenderError;
@@ -97,7 +99,7 @@ impl CompactGrid {
                 column_lists: lists as u32,
                 bins: bins as u32,
                 bin_columns: (bins + accel.bins.len()) as u32,
-                reserved: 0,
+                visible: 0,
             },
             pillars: pillars(grid, origin),
             column_lists: column_lists(grid, &shapes),
@@ -121,7 +123,8 @@ impl CompactGrid {
     pub(crate) fn lose_half(&mut self) {
         for row in self.bins.chunks_exact_mut(self.info.bins_x as usize) {
             let half = row.len() / 2;
-            let next = row[half][0];
+            // Odd ones are searched, whatever faces are there.
+            let next = row[half][0] | BIN_IS_ODD;
             row[..half].iter_mut().for_each(|bin| bin[0] = next);
         }
     }

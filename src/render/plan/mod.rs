@@ -8,6 +8,7 @@ pub mod columns;
 mod compact_grid;
 pub mod cones;
 pub mod extinction;
+mod face_bins;
 pub mod faces;
 pub mod frame;
 pub mod layout;
@@ -21,3 +22,4 @@ pub mod volume;
 
 pub use cells::{cell_bits, drawn_words, ghost_words, values};
 pub use compact_grid::{CompactGrid, GridFacts};
+pub use face_bins::face_bins;

@@ -104,7 +104,7 @@ impl RenderStrategy for Libc {
         32
     }
 
-    fn draws_faces(&self) -> bool {
+    fn needs_faces(&self) -> bool {
         true
     }
 

@@ -188,7 +188,7 @@ impl RenderStrategy for Srg {
         12
     }
 
-    fn draws_faces(&self) -> bool {
+    fn needs_faces(&self) -> bool {
         true
     }
 
