@@ -302,7 +302,7 @@ fn err_impossible_dimensions() {
         );
     }
     assert_eq!(refusal(2, 2, 1), None);
-    assert!(Recipe::named("r6").is_none());
+    assert!(Recipe::named("r7").is_none());
 }
 
 #[test]
