@@ -92,7 +92,7 @@ pub fn find(
         let extents = cells.map(|c| (c.extent, c.weight()));
         return Some(Opacity {
             curve: vec![(0.0, opacity), (1.0, opacity)],
-            reference_length: shares_below(extents, [0.5])?[0],
+            reference_length: shares_below(&extents, [0.5])?[0],
         });
     }
     let weighted = |c: Cell| {
@@ -101,7 +101,7 @@ pub fn find(
     };
     let [veil, body] = [HAZE_SHARE, BODY_SHARES[0]];
     let weights = cells.clone().map(weighted);
-    let rich = shares_below(weights, [veil, body, BODY_SHARES[1]])?;
+    let rich = shares_below(&weights, [veil, body, BODY_SHARES[1]])?;
     let rising = rising(rich);
     // The length at which each cell just shows; the haze is decided after it.
     let lengths = cells.map(|cell| {
@@ -111,7 +111,7 @@ pub fn find(
         (cell.extent / needed, weight)
     });
     let lengths: Vec<Weighted> = lengths.collect();
-    let [reference_length] = shares_below(lengths.par_iter().copied(), [1.0 - SHOWN])?;
+    let [reference_length] = shares_below(&lengths.par_iter().copied(), [1.0 - SHOWN])?;
     let layers = (model_extent / reference_length).max(1.0);
     let haze = (1.0 - (1.0 - HAZE).powf(1.0 / layers)).min(MOST_HAZE);
     Some(Opacity {

@@ -15,7 +15,7 @@ pub(super) type Weighted = (f64, f64);
 ///
 /// Found by sums over bins, and over bins of the one bin that a share ends in: nothing is sorted.
 pub(super) fn shares_below<const N: usize>(
-    values: impl IndexedParallelIterator<Item = Weighted> + Clone,
+    values: &(impl IndexedParallelIterator<Item = Weighted> + Clone),
     shares: [f64; N],
 ) -> Option<[f64; N]> {
     let bins = Bins::of(values.clone())?;
@@ -102,7 +102,7 @@ mod tests {
             .collect();
         values.push((1e6, 2.0));
         let shares = [1e-6, 0.015, 0.4, 0.5, 0.7, 0.99, 1.0];
-        let found = shares_below(values.par_iter().copied(), shares).unwrap();
+        let found = shares_below(&values.par_iter().copied(), shares).unwrap();
         let mut sorted: Vec<_> = values.into_iter().filter(|v| v.1 > 0.0).collect();
         sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
         let total: f64 = sorted.iter().map(|v| v.1).sum();
@@ -114,6 +114,6 @@ mod tests {
             });
             assert_eq!(expected.unwrap().0, found, "{share}");
         }
-        assert_eq!(shares_below([(1.0, 0.0)].par_iter().copied(), [0.5]), None);
+        assert_eq!(shares_below(&[(1.0, 0.0)].par_iter().copied(), [0.5]), None);
     }
 }

@@ -68,7 +68,7 @@ fn the_default_limits_of_webgpu_are_enough() {
     let lit = json!([{"kind": "directional", "direction": [1, 1, -2]}]);
     let view = view::resolve(&scene(&lit), &case).unwrap();
     let dark = view::resolve(&scene(&json!([])), &case).unwrap();
-    let least = Gpu::with_limits(None, Limits::default()).unwrap();
+    let least = Gpu::with_limits(None, &Limits::default()).unwrap();
     assert_eq!(least.device.limits(), Limits::default());
     let least = pictures(least, &case, &view);
     let usual = pictures(Gpu::new(None).unwrap(), &case, &view);
@@ -83,7 +83,7 @@ fn the_default_limits_of_webgpu_are_enough() {
 #[test]
 fn err_a_buffer_less_is_refused() {
     let Some(gpu) = common::gpu() else { return };
-    match Gpu::with_limits(None, with_buffers(7)) {
+    match Gpu::with_limits(None, &with_buffers(7)) {
         Err(RenderError::Unsuitable { adapter, reason }) => {
             assert_eq!(adapter, gpu.info.name);
             let words = "it offers 7 storage buffers per shader stage and 8 are needed";
@@ -105,7 +105,7 @@ fn parameters_are_storage_only_where_there_are_buffers_for_them() {
         (needed - 1, Parameters::Uniform),
         (needed, Parameters::Storage),
     ] {
-        let gpu = Gpu::with_limits(None, with_buffers(buffers)).unwrap();
+        let gpu = Gpu::with_limits(None, &with_buffers(buffers)).unwrap();
         assert_eq!(gpu.layouts.parameters(), parameters);
     }
 }

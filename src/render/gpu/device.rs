@@ -58,7 +58,7 @@ impl Gpu {
         let adapter = best_adapter(wanted)?;
         let limits = generous(&adapter);
         let parameters = parameters_for(&adapter.get_info(), &limits)?;
-        Self::open(&adapter, parameters, limits)
+        Self::open(&adapter, parameters, &limits)
     }
 
     /// As [`Gpu::new`], with a device that grants no more than these limits.
@@ -66,9 +66,9 @@ impl Gpu {
     /// # Errors
     /// When there is no (such) adapter, it does not offer the limits, they are too low, or [`PARAMETERS`] has an
     /// unknown value.
-    pub fn with_limits(wanted: Option<&str>, limits: wgpu::Limits) -> Result<Self, RenderError> {
+    pub fn with_limits(wanted: Option<&str>, limits: &wgpu::Limits) -> Result<Self, RenderError> {
         let adapter = best_adapter(wanted)?;
-        let parameters = parameters_for(&adapter.get_info(), &limits)?;
+        let parameters = parameters_for(&adapter.get_info(), limits)?;
         Self::open(&adapter, parameters, limits)
     }
 
@@ -83,7 +83,7 @@ impl Gpu {
         let (info, limits) = (best.get_info(), generous(&best));
         let parameters = parameters_for(&info, &limits)?;
         let is_usable = !is_software(&info) && lacking(&limits, parameters).is_none();
-        let open = || Self::open(&best, parameters, limits);
+        let open = || Self::open(&best, parameters, &limits);
         is_usable.then(open).transpose()
     }
 
@@ -97,20 +97,20 @@ impl Gpu {
     ) -> Result<Self, RenderError> {
         let adapter = best_adapter(wanted)?;
         let limits = generous(&adapter);
-        Self::open(&adapter, parameters, limits)
+        Self::open(&adapter, parameters, &limits)
     }
 
     fn open(
         adapter: &wgpu::Adapter,
         parameters: Parameters,
-        limits: wgpu::Limits,
+        limits: &wgpu::Limits,
     ) -> Result<Self, RenderError> {
         let info = adapter.get_info();
         let unsuitable = |reason: String| RenderError::Unsuitable {
             adapter: info.name.clone(),
             reason,
         };
-        if let Some(reason) = lacking(&limits, parameters) {
+        if let Some(reason) = lacking(limits, parameters) {
             return Err(unsuitable(reason));
         }
         let features = adapter.features() & wgpu::Features::TIMESTAMP_QUERY;
@@ -119,7 +119,7 @@ impl Gpu {
             required_features: features,
             required_limits: wgpu::Limits {
                 max_storage_buffers_per_shader_stage: parameters.storage_buffers(),
-                ..limits
+                ..limits.clone()
             },
             ..Default::default()
         }))
