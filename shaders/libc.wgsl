@@ -416,7 +416,7 @@ fn step_through(walk: ptr<function, Walk>) {
     }
     let lists = column_lists(next);
     if sides_join(side_lists(column_lists(column), face), side_lists(lists, face ^ 1u), layer) {
-        if is_drawn(next, layer) {
+        if is_met(next, layer) {
             (*walk).column = next;
             let turned = vec3f(1.0) - (*walk).uvw;
             (*walk).uvw = vec3f(select((*walk).uvw.x, turned.x, face < 2u), select((*walk).uvw.y, turned.y, face >= 2u),
@@ -428,7 +428,7 @@ fn step_through(walk: ptr<function, Walk>) {
     }
 }
 
-// The drawn layer below or above that the ray comes into, or NOT_FOUND.
+// The layer below or above that the ray comes into, or NOT_FOUND.
 fn next_layer(column: u32, layer: u32, plus: bool) -> u32 {
     let lists = column_lists(column);
     var at = layer;
@@ -438,7 +438,7 @@ fn next_layer(column: u32, layer: u32, plus: bool) -> u32 {
         if !all_coincide(mine, depths_at(layer_entries(lists, at, select(1u, 0u, plus)))) {
             return NOT_FOUND;
         }
-        if is_drawn(column, at) {
+        if is_met(column, at) {
             return at;
         }
         // A layer without thickness hides nothing; what is behind it joins.
@@ -471,7 +471,7 @@ fn cross_fault(walk: ptr<function, Walk>, r: RayFrame) {
         }
     }
     (*walk).phase = NEEDS_ENTRY;
-    if low < grid.nk && is_drawn(next, low) && is_below(r, pillar_a, pillar_b, lists, low, 0u, sense) {
+    if low < grid.nk && is_met(next, low) && is_below(r, pillar_a, pillar_b, lists, low, 0u, sense) {
         (*walk).phase = WALKS;
         (*walk).column = next;
         (*walk).layer = low;

@@ -92,8 +92,14 @@ const PIECE: usize = 1 << 14;
 pub(crate) fn first_not<T: Sync>(values: &[T], is: impl Fn(&T) -> bool + Sync) -> Option<usize> {
     let pieces = values.chunks(PIECE).enumerate().collect();
     let found = parallel::map(pieces, |(piece, values)| {
-        let at = values.iter().position(|v| !is(v))?;
-        Some(piece * PIECE + at + 1)
+        // All at once first, which takes a fraction of the time of one after the other.
+        let all = values.iter().fold(true, |all, v| all & is(v));
+        let at = if all {
+            None
+        } else {
+            values.iter().position(|v| !is(v))
+        };
+        Some(piece * PIECE + at? + 1)
     });
     found.into_iter().flatten().next()
 }

@@ -13,7 +13,8 @@
 @group(1) @binding(1) var<storage, read> grid_words: array<vec2u>;
 @group(1) @binding(2) var<storage, read> depths: array<f32>;
 // One bit a cell, column by column. A pair for each 32 cells: bits of the drawn ones, and how many are drawn
-// before; then, where inactive cells are shown, the bits of these, two words a pair.
+// before; then, two words a pair, where inactive cells are shown the bits of these, and where rays pass what shows
+// nothing those of the cells that they meet.
 @group(1) @binding(3) var<storage, read> cell_bits: array<vec2u>;
 // One value a drawn cell, or one a depth-list entry, by frame.interpolation.
 @group(1) @binding(4) var<storage, read> values: array<f32>;
@@ -67,13 +68,23 @@ fn is_drawn(column: u32, layer: u32) -> bool {
     return (cell_bits[slot >> 5u].x >> (slot & 31u) & 1u) == 1u;
 }
 
-fn is_ghost(column: u32, layer: u32) -> bool {
-    if !GHOSTS {
-        return false;
+// True where rays meet a cell: where something shows in it, if it is told which these are, and else where it is drawn.
+fn is_met(column: u32, layer: u32) -> bool {
+    if grid.visible == 0u {
+        return is_drawn(column, layer);
     }
+    return has_bit(grid.visible, column, layer);
+}
+
+// The bit of a cell among those that begin at a pair of words.
+fn has_bit(first: u32, column: u32, layer: u32) -> bool {
     let slot = column * grid.nk + layer;
     let word = slot >> 5u;
-    return (cell_bits[grid.ghosts + (word >> 1u)][word & 1u] >> (slot & 31u) & 1u) == 1u;
+    return (cell_bits[first + (word >> 1u)][word & 1u] >> (slot & 31u) & 1u) == 1u;
+}
+
+fn is_ghost(column: u32, layer: u32) -> bool {
+    return GHOSTS && has_bit(grid.ghosts, column, layer);
 }
 
 // Rank among the drawn cells.

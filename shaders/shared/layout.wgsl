@@ -89,7 +89,8 @@ struct GridInfo {
     column_lists: u32,
     bins: u32,
     bin_columns: u32,
-    reserved: u32,
+    // Where the bits of the cells that rays meet begin, as `ghosts`; 0 where these are all drawn cells.
+    visible: u32,
 }
 
 // A volume resampled over a box, in voxels; grid space relative to the origin.

@@ -166,7 +166,7 @@ fn walk_to(track: ptr<function, Track>, point: vec3f, first: vec3f, interpolatio
 }
 
 // Loads the drawn cell that shares the whole face which `uvw` overshoots most; `uvw` becomes a start
-// in it. False where the cells do not join: hull, fault, gap, a cell that is not drawn.
+// in it. False where the cells do not join: hull, fault, gap, a cell that is not met.
 fn step_to_neighbor(track: ptr<function, Track>, uvw: ptr<function, vec3f>, interpolation: u32) -> bool {
     let here = (*track).cell.column;
     let q = *uvw;
@@ -188,7 +188,7 @@ fn step_to_neighbor(track: ptr<function, Track>, uvw: ptr<function, vec3f>, inte
         }
         next_layer = select(layer - 1u, layer + 1u, plus);
     }
-    if !is_drawn(column, next_layer) || !faces_join(here, layer, column, next_layer, face) {
+    if !is_met(column, next_layer) || !faces_join(here, layer, column, next_layer, face) {
         return false;
     }
     (*track).cell = load_cell(column, next_layer, interpolation);

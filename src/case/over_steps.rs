@@ -1,8 +1,10 @@
 //! What the values of a property are like over all steps: read once, then kept by name.
 
 use std::collections::HashMap;
+use std::convert::Infallible;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
+use glam::DVec3;
 use rayon::prelude::*;
 
 use super::weights::{Extent, Weights};
@@ -11,6 +13,9 @@ use crate::model::{CellField, derivatives};
 use crate::transfer::Scale;
 use crate::transfer::boundaries::{self, Boundary};
 use crate::transfer::opacity::Opacity;
+
+/// Values that one thread looks through at a time.
+const PIECE: usize = 1 << 14;
 
 /// Smallest and largest value.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -26,14 +31,24 @@ pub struct ValueRange {
 impl ValueRange {
     /// That of the defined values of a field; `None` where there is none.
     pub fn of(field: &CellField) -> Option<Self> {
-        let values = field.values().par_iter().map(|v| f64::from(*v));
-        let one = |v: f64| Self {
-            min: v,
-            max: v,
-            least_positive: (v > 0.0).then_some(v),
+        let start = [f32::INFINITY, f32::NEG_INFINITY, f32::INFINITY];
+        // No comparison holds for what is undefined.
+        let add = |[min, max, least]: [f32; 3], v: &f32| {
+            [
+                if *v < min { *v } else { min },
+                if *v > max { *v } else { max },
+                if *v > 0.0 && *v < least { *v } else { least },
+            ]
         };
-        let defined = values.filter(|v| !v.is_nan());
-        defined.map(one).reduce_with(Self::with)
+        let pieces = field.values().par_chunks(PIECE);
+        let ends = pieces.map(|values| values.iter().fold(start, add));
+        let join = |a: [f32; 3], b: [f32; 3]| [a[0].min(b[0]), a[1].max(b[1]), a[2].min(b[2])];
+        let [min, max, least] = ends.reduce(|| start, join).map(f64::from);
+        (min <= max).then(|| Self {
+            min,
+            max,
+            least_positive: least.is_finite().then_some(least),
+        })
     }
 
     fn with(self, other: Self) -> Self {
@@ -96,6 +111,8 @@ pub struct OverSteps {
     opacities: Kept<Option<Opacity>>,
     weights: OnceLock<Weights>,
     extents: OnceLock<Arc<Vec<Extent>>>,
+    /// By exaggeration.
+    mean_edges: Kept<DVec3>,
     throws: OnceLock<Arc<[Option<f64>]>>,
 }
 
@@ -106,6 +123,12 @@ impl OverSteps {
 
     pub(super) fn extents(&self, find: impl FnOnce() -> Arc<Vec<Extent>>) -> Arc<Vec<Extent>> {
         self.extents.get_or_init(find).clone()
+    }
+
+    pub(super) fn mean_edges(&self, exaggeration: f64, find: impl FnOnce() -> DVec3) -> DVec3 {
+        let find = || Ok::<_, Infallible>(find());
+        let Ok(edges) = self.mean_edges.get(&exaggeration.to_string(), find);
+        edges
     }
 
     /// The opacity that is known by a key that says what it was found for, or the one that `find` finds.
@@ -243,8 +266,6 @@ impl Case {
 
 #[cfg(test)]
 mod tests {
-    use std::convert::Infallible;
-
     use super::*;
 
     fn field(values: &[f32]) -> CellField {

@@ -2,11 +2,12 @@
 
 use std::sync::Arc;
 
+use glam::{DVec3, DVec4};
 use rayon::prelude::*;
 
 use super::{Case, Kind};
-use crate::model::Ijk;
-use crate::model::derived::{Derived, thickness};
+use crate::model::Column;
+use crate::model::derived::Derived;
 
 /// What cells are weighted by.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -29,7 +30,7 @@ pub struct Weights {
 }
 
 /// Extents of an active cell in grid space.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Extent {
     /// The shorter of its mean edges along i and j.
     pub lateral: f32,
@@ -56,7 +57,7 @@ impl Case {
         if let Some(porv) = field("PORV") {
             return Weights {
                 weighting: Weighting::PoreVolume,
-                values: Arc::new(porv.values().iter().map(|v| kept(*v)).collect()),
+                values: Arc::new(porv.values().par_iter().map(|v| kept(*v)).collect()),
             };
         }
         let bulk = Derived::Volume.field(&self.grid);
@@ -79,16 +80,33 @@ impl Case {
     /// The extents of each active cell. Found at the first call.
     pub fn extents(&self) -> Arc<Vec<Extent>> {
         self.over_steps.extents(|| {
-            let grid = &self.grid;
-            let extent = |ijk: Ijk| {
-                let edges = grid.hexahedron(ijk).mean_edges();
+            let extent = |column: &Column<'_>, k: usize| {
+                let edges = column.hexahedron(k).mean_edges();
                 Extent {
                     lateral: edges.x.min(edges.y) as f32,
-                    vertical: thickness(grid, ijk) as f32,
+                    vertical: column.thickness(k) as f32,
                 }
             };
-            let cells = grid.active_cells().par_iter();
-            Arc::new(cells.map(|c| extent(grid.dims().ijk(*c))).collect())
+            Arc::new(self.grid.map_active(extent))
+        })
+    }
+
+    /// Mean edge lengths along i, j and k of the cells with a thickness, in world space. Found at the first call for
+    /// an exaggeration.
+    pub fn mean_edges(&self, exaggeration: f64) -> DVec3 {
+        self.over_steps.mean_edges(exaggeration, || {
+            let edges_and_one = |column: &Column<'_>, k: usize| {
+                if !column.has_thickness(k) {
+                    return DVec4::ZERO;
+                }
+                let mut hexahedron = column.hexahedron(k);
+                for corner in &mut hexahedron.0 {
+                    corner.z *= exaggeration;
+                }
+                hexahedron.mean_edges().extend(1.0)
+            };
+            let sum = self.grid.sum_active(edges_and_one);
+            (sum.truncate() / sum.w.max(1.0)).max(DVec3::splat(1e-6))
         })
     }
 
@@ -99,18 +117,9 @@ impl Case {
         let extents = self.extents();
         let sum =
             |of: &dyn Fn(&Extent) -> f32| extents.iter().map(|e| f64::from(of(e))).sum::<f64>();
-        let mut columns: Vec<usize> = self
-            .grid
-            .active_cells()
-            .iter()
-            .map(|c| {
-                let ijk = dims.ijk(*c);
-                ijk.i + ijk.j * dims.ni
-            })
-            .collect();
-        columns.sort_unstable();
-        columns.dedup();
-        let vertical = exaggeration * sum(&|e| e.vertical) / columns.len().max(1) as f64;
+        let has_cells = |column: &Column<'_>| column.active().next().is_some();
+        let columns = self.grid.columns().filter(has_cells).count();
+        let vertical = exaggeration * sum(&|e| e.vertical) / columns.max(1) as f64;
         let lateral = sum(&|e| e.lateral) / extents.len().max(1) as f64;
         vertical.min(lateral * dims.ni.min(dims.nj) as f64)
     }

@@ -12,7 +12,7 @@ use super::progress::Reporter;
 
 #[derive(clap::Args)]
 #[command(
-    after_help = "r1 to r5 have the dimensions and active cells of published test models, \
+    after_help = "r1 to r5 have the dimensions and active cells of published test models, r6 has 50 million cells, \
 `faulted` is a field of any size, `box` a plain box with linear properties.
 Examples:
   strataray sample faulted -o models

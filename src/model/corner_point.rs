@@ -6,16 +6,6 @@ use glam::{DMat3, DVec3};
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hexahedron(pub [DVec3; 8]);
 
-/// Corners of the faces, turning so that the normal points out of a right-handed cell.
-const FACES_OUTWARD: [[usize; 4]; 6] = [
-    [0, 4, 6, 2],
-    [1, 3, 7, 5],
-    [0, 1, 5, 4],
-    [2, 6, 7, 3],
-    [0, 2, 3, 1],
-    [4, 5, 7, 6],
-];
-
 impl Hexahedron {
     /// The point at parameters (s, t, r) in [-1, 1]^3.
     pub fn at(&self, str: DVec3) -> DVec3 {
@@ -40,15 +30,15 @@ impl Hexahedron {
 
     /// Volume of the trilinear map, negative where the corner order is left-handed.
     ///
-    /// The cones from corner 0 over the six faces; below a bilinear face lies exactly the mean of what
-    /// lies below its two triangulations.
+    /// Three products instead of one for each triangle of the faces (Grandy 1997, efficient computation of volume
+    /// of hexahedral cells): below a bilinear face lies the mean of what lies below its two triangulations.
     pub fn signed_volume(&self) -> f64 {
-        let p = self.0.map(|corner| corner - self.0[0]);
-        let cone = |a: usize, b: usize, c: usize| p[a].dot(p[b].cross(p[c]));
-        let under = |[a, b, c, d]: [usize; 4]| {
-            cone(a, b, c) + cone(a, c, d) + cone(a, b, d) + cone(b, c, d)
-        };
-        FACES_OUTWARD.map(under).iter().sum::<f64>() / 12.0
+        let way = |from: usize, to: usize| self.0[to] - self.0[from];
+        let product = |u: DVec3, v: DVec3, w: DVec3| u.dot(v.cross(w));
+        let products = product(way(1, 2) + way(3, 6), way(2, 7), way(0, 3))
+            + product(way(2, 4) + way(6, 5), way(4, 7), way(0, 6))
+            + product(way(4, 1) + way(5, 3), way(1, 7), way(0, 5));
+        products / 12.0
     }
 
     /// Mean of the eight corners.

@@ -1,10 +1,7 @@
 //! Properties that follow from the geometry alone.
 
-use rayon::prelude::*;
-
 use super::fields::CellField;
 use super::grid::Grid;
-use super::ids::Ijk;
 
 /// A property computed from the grid.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -39,18 +36,18 @@ impl Derived {
 
     /// The property over the active cells of a grid.
     pub fn field(self, grid: &Grid) -> CellField {
-        let dims = grid.dims();
-        let of = |ijk: Ijk| match self {
-            Self::Depth => grid.hexahedron(ijk).center().z,
-            Self::Thickness => thickness(grid, ijk),
-            Self::Volume => grid.hexahedron(ijk).signed_volume().abs(),
-            Self::I => (ijk.i + 1) as f64,
-            Self::J => (ijk.j + 1) as f64,
-            Self::K => (ijk.k + 1) as f64,
-            Self::Actnum => 1.0,
-        };
-        let values = grid.active_cells().par_iter();
-        CellField::new(values.map(|&cell| of(dims.ijk(cell)) as f32).collect())
+        CellField::new(grid.map_active(|column, k| {
+            let value = match self {
+                Self::Depth => column.hexahedron(k).center().z,
+                Self::Thickness => column.thickness(k),
+                Self::Volume => column.hexahedron(k).signed_volume().abs(),
+                Self::I => (column.i + 1) as f64,
+                Self::J => (column.j + 1) as f64,
+                Self::K => (k + 1) as f64,
+                Self::Actnum => 1.0,
+            };
+            value as f32
+        }))
     }
 }
 
@@ -86,12 +83,6 @@ pub fn rest_of_saturations(phases: i32, has: impl Fn(&str) -> bool) -> Option<Sa
     };
     of.extend(["SSOLVENT", "SSOL"].into_iter().find(|name| has(name)));
     Some(SaturationRest { name, of, lacks })
-}
-
-/// Mean length of a cell's four edges along the pillars, measured vertically, in the grid's length unit.
-pub fn thickness(grid: &Grid, ijk: Ijk) -> f64 {
-    let edge = |c: usize| grid.corner_depth(ijk, c + 4) - grid.corner_depth(ijk, c);
-    (0..4).map(edge).sum::<f64>() / 4.0
 }
 
 #[cfg(test)]

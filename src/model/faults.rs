@@ -5,7 +5,7 @@ use std::ops::RangeInclusive;
 
 use super::grid::Grid;
 use super::ids::Ijk;
-use super::topology::{Behind, Face};
+use super::topology::Face;
 
 /// Layers of a column, and the number of the fault that their faces lie on.
 type Layers = (RangeInclusive<usize>, usize);
@@ -90,12 +90,20 @@ impl Grid {
     /// of equal k is displaced, and those that lie on a named fault, whatever its throw. A face between
     /// two drawn cells is there twice, once for each.
     pub fn fault_faces_of(&self, drawn: &[bool], named: &FaultFaces) -> Vec<(Ijk, Face)> {
-        let is_lateral = |face: Face| !matches!(face, Face::KMinus | Face::KPlus);
-        let has_name =
-            |ijk: Ijk, face: Face| !named.is_empty() && named.fault_of(ijk, face).is_some();
-        self.faces_where(drawn, |ijk, face| {
-            let is_displaced = matches!(self.behind(ijk, face), Behind::Displaced(_));
-            is_lateral(face) && (is_displaced || has_name(ijk, face))
+        let drawn = self.bits_of(drawn);
+        self.faces_where(&drawn, |column, face| {
+            if matches!(face, Face::KMinus | Face::KPlus) {
+                return vec![0; drawn.column(column).len()];
+            }
+            let mut faces = self.displaced(&drawn, column, face);
+            if !named.is_empty() {
+                let (i, j) = (column % self.dims().ni, column / self.dims().ni);
+                let has_name = |k: &usize| named.fault_of(Ijk { i, j, k: *k }, face).is_some();
+                for k in drawn.layers(column).filter(has_name) {
+                    faces[k / 64] |= 1 << (k % 64);
+                }
+            }
+            faces
         })
     }
 }

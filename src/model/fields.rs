@@ -4,7 +4,6 @@ use rayon::prelude::*;
 
 use super::grid::Grid;
 use super::ids::{CellIndex, Ijk};
-use super::topology::COINCIDENT;
 
 /// Absolute values from here on mean "undefined" in simulators' files.
 const UNDEFINED: f32 = 1e19;
@@ -41,11 +40,11 @@ pub struct Statistics {
 impl CellField {
     /// A field from one value for each active cell; 1e20-like and non-finite values are undefined.
     pub fn new(mut values: Vec<f32>) -> Self {
-        for v in &mut values {
+        values.par_iter_mut().for_each(|v| {
             if v.is_nan() || v.abs() >= UNDEFINED {
                 *v = f32::NAN;
             }
-        }
+        });
         Self(values)
     }
 
@@ -100,21 +99,11 @@ impl VertexField {
 
     /// [`Self::new`] of the cells that `kept` (by active index) names, where it is given.
     pub fn of(grid: &Grid, field: &CellField, kept: Option<&[bool]>) -> Self {
-        let dims = grid.dims();
-        let value = |ijk: Ijk| {
-            let active = grid.active_index(dims.cell(ijk))?.0 as usize;
-            let value = field.0[active];
-            (!value.is_nan() && kept.is_none_or(|kept| kept[active])).then_some(value)
+        let value = |active: usize| {
+            let counts = kept.is_none_or(|kept| kept[active]);
+            if counts { field.0[active] } else { f32::NAN }
         };
-        let pillars: Vec<Vec<(usize, f32)>> = (0..dims.pillars())
-            .into_par_iter()
-            .map(|pillar| average_on_pillar(grid, value, pillar))
-            .collect();
-        let mut values = vec![f32::NAN; grid.depths().len()];
-        for (entry, value) in pillars.into_iter().flatten() {
-            values[entry] = value;
-        }
-        Self(values)
+        Self(super::vertices::means(grid, value))
     }
 
     /// The values by depth-pool position.
@@ -122,82 +111,10 @@ impl VertexField {
         &self.0
     }
 
-    /// The same, with 0 where no defined active cell touches.
-    pub fn into_defined(mut self) -> Vec<f32> {
-        for value in self.0.iter_mut().filter(|v| v.is_nan()) {
-            *value = 0.0;
-        }
-        self.0
-    }
-
     /// The eight corner values of a cell.
     pub fn corners(&self, grid: &Grid, ijk: Ijk) -> [f64; 8] {
         std::array::from_fn(|c| f64::from(self.0[grid.corner_entry(ijk, c)]))
     }
-}
-
-/// A cell's corner on a pillar.
-struct Touch {
-    depth: f64,
-    entry: usize,
-    cell: u32,
-    value: f64,
-}
-
-/// Means at the distinct depths of one pillar, by depth-pool position.
-fn average_on_pillar(
-    grid: &Grid,
-    value: impl Fn(Ijk) -> Option<f32>,
-    pillar: usize,
-) -> Vec<(usize, f32)> {
-    let mut touching = touching(grid, value, pillar);
-    touching.sort_by(|a, b| a.depth.total_cmp(&b.depth));
-    let mut means = Vec::with_capacity(touching.len());
-    let mut rest = touching.as_slice();
-    while let Some(first) = rest.first() {
-        let count = rest.partition_point(|t| t.depth - first.depth <= COINCIDENT);
-        let (vertex, next) = rest.split_at(count);
-        let (mut sum, mut n) = (0.0, 0.0);
-        for (at, touch) in vertex.iter().enumerate() {
-            // A cell collapsed on this pillar touches the vertex once, not twice.
-            if !vertex[..at].iter().any(|t| t.cell == touch.cell) {
-                sum += touch.value;
-                n += 1.0;
-            }
-        }
-        means.extend(vertex.iter().map(|t| (t.entry, (sum / n) as f32)));
-        rest = next;
-    }
-    means
-}
-
-/// Top and bottom corners on a pillar of the cells around it that have a value.
-fn touching(grid: &Grid, value: impl Fn(Ijk) -> Option<f32>, pillar: usize) -> Vec<Touch> {
-    let dims = grid.dims();
-    let (pi, pj) = (pillar % (dims.ni + 1), pillar / (dims.ni + 1));
-    let mut touching = Vec::new();
-    for corner in 0..4 {
-        let (i, j) = (pi.wrapping_sub(corner & 1), pj.wrapping_sub(corner >> 1));
-        if i >= dims.ni || j >= dims.nj {
-            continue;
-        }
-        for k in 0..dims.nk {
-            let ijk = Ijk { i, j, k };
-            let cell = dims.cell(ijk);
-            let Some(value) = value(ijk) else {
-                continue;
-            };
-            for entry in [corner, corner + 4].map(|c| grid.corner_entry(ijk, c)) {
-                touching.push(Touch {
-                    depth: grid.depths()[entry],
-                    entry,
-                    cell: cell.0,
-                    value: f64::from(value),
-                });
-            }
-        }
-    }
-    touching
 }
 
 #[cfg(test)]

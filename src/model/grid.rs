@@ -16,13 +16,15 @@
 //! ```
 
 use std::iter::Sum;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
+use super::activity::{Activity, ColumnBits};
+use super::column::{Column, Corner};
 use super::corner_point::Hexahedron;
-use super::depth_lists::DepthList;
+use super::depth_lists::{DepthList, Lists, UsedDepths};
 use super::ids::{ActiveIndex, CellIndex, Dims, Ijk};
 use super::spaces::MapAxes;
 
@@ -114,14 +116,24 @@ pub struct Grid {
     pillars: Arc<[Pillar]>,
     /// Of the pillars: corners are asked for much more often than pillars are made.
     slopes: Arc<[DVec2]>,
-    lists: Arc<[DepthList]>,
-    depths: Arc<[f64]>,
+    lists: Arc<Vec<DepthList>>,
+    depths: Arc<Vec<f64>>,
+    /// By column: true where depth grows with the layer, or stays, on all pillars.
+    sorted: Arc<Vec<bool>>,
     active_cells: Vec<CellIndex>,
-    active_rank: Vec<u32>,
+    activity: Activity,
     map_axes: Option<MapAxes>,
+    found: Found,
 }
 
-const INACTIVE: u32 = u32::MAX;
+/// What was found out of the active cells, at the first question.
+#[derive(Debug, Clone, Default)]
+struct Found {
+    bounds: OnceLock<Option<[DVec3; 2]>>,
+    signed_volume: OnceLock<f64>,
+    thick: OnceLock<Arc<[bool]>>,
+    used_depths: OnceLock<Arc<UsedDepths>>,
+}
 
 impl Grid {
     /// Builds the compact form.
@@ -132,7 +144,7 @@ impl Grid {
     pub fn new<C, Z>(input: &GridInput<'_, C, Z>) -> Result<Self, ModelError>
     where
         C: Copy + Into<f64> + Sync,
-        Z: Copy + Into<f64> + Sync,
+        Z: Copy + Into<f64> + Send + Sync,
     {
         let dims = input.dims;
         check(input)?;
@@ -144,24 +156,25 @@ impl Grid {
                 bottom: DVec3::new(c[3], c[4], c[5]),
             })
             .collect();
-        let (lists, depths) = super::depth_lists::build(dims, input.zcorn);
-        let mut active_cells = Vec::new();
-        let mut active_rank = vec![INACTIVE; dims.cells()];
-        for (cell, rank) in active_rank.iter_mut().enumerate() {
-            if input.actnum.is_none_or(|actnum| actnum[cell] != 0) {
-                *rank = active_cells.len() as u32;
-                active_cells.push(CellIndex(cell as u32));
-            }
-        }
+        let Lists {
+            lists,
+            depths,
+            sorted,
+        } = super::depth_lists::build(dims, input.zcorn);
+        let is_active = |cell: &u32| input.actnum.is_none_or(|a| a[*cell as usize] != 0);
+        let active_cells = (0..dims.cells() as u32).filter(is_active).map(CellIndex);
+        let active_cells: Vec<CellIndex> = active_cells.collect();
         Ok(Self {
             dims,
             slopes: pillars.iter().map(Pillar::slope).collect(),
             pillars,
-            lists: lists.into(),
-            depths: depths.into(),
+            lists: Arc::new(lists),
+            depths: Arc::new(depths),
+            sorted: Arc::new(sorted),
+            activity: Activity::new(dims, &active_cells),
             active_cells,
-            active_rank,
             map_axes: input.map_axes,
+            found: Found::default(),
         })
     }
 
@@ -180,32 +193,33 @@ impl Grid {
         &self.pillars[self.pillar_index(i, j, corner)]
     }
 
-    fn pillar_index(&self, i: usize, j: usize, corner: usize) -> usize {
+    /// The number of that pillar.
+    pub fn pillar_index(&self, i: usize, j: usize, corner: usize) -> usize {
         (i + (corner & 1)) + (self.dims.ni + 1) * (j + (corner >> 1 & 1))
     }
 
     /// The same grid with its inactive cells active too.
     pub fn with_inactive(&self) -> Self {
-        let cells = self.dims.cells() as u32;
+        let active_cells: Vec<CellIndex> = (0..self.dims.cells() as u32).map(CellIndex).collect();
         Self {
             dims: self.dims,
             pillars: self.pillars.clone(),
             slopes: self.slopes.clone(),
             lists: self.lists.clone(),
             depths: self.depths.clone(),
-            active_cells: (0..cells).map(CellIndex).collect(),
-            active_rank: (0..cells).collect(),
+            sorted: self.sorted.clone(),
+            activity: Activity::new(self.dims, &active_cells),
+            active_cells,
             map_axes: self.map_axes,
+            found: Found::default(),
         }
     }
 
     /// Makes all cells inactive that `keep` does not hold for.
     pub fn retain_active(&mut self, keep: impl Fn(CellIndex) -> bool) {
         self.active_cells.retain(|&cell| keep(cell));
-        self.active_rank.fill(INACTIVE);
-        for (rank, cell) in self.active_cells.iter().enumerate() {
-            self.active_rank[cell.0 as usize] = rank as u32;
-        }
+        self.activity = Activity::new(self.dims, &self.active_cells);
+        self.found = Found::default();
     }
 
     /// Sets the map coordinate system.
@@ -227,6 +241,21 @@ impl Grid {
     /// The pool of all depth lists.
     pub fn depths(&self) -> &[f64] {
         &self.depths
+    }
+
+    /// The part of the pool that columns with active cells need. Found at the first call.
+    pub fn used_depths(&self) -> &UsedDepths {
+        self.found.used_depths.get_or_init(|| {
+            let columns = (0..self.dims.columns()).into_par_iter();
+            let has_cells = |column: &usize| {
+                let words = self.active_bits().column(*column);
+                words.iter().any(|word| *word != 0)
+            };
+            let lists = columns
+                .filter(has_cells)
+                .flat_map_iter(|c| self.column_lists(c));
+            Arc::new(UsedDepths::new(lists.collect(), self.dims.nk))
+        })
     }
 
     /// Depth-pool position of corner `corner` (`di + 2 dj + 4 dk`) of a cell.
@@ -259,36 +288,114 @@ impl Grid {
         &self.active_cells
     }
 
-    /// The active cells of a column (`i + ni * j`), downward.
-    pub fn active_in_column(&self, column: usize) -> impl Iterator<Item = Ijk> + '_ {
+    /// A column (`i + ni * j`).
+    pub fn column(&self, column: usize) -> Column<'_> {
         let (i, j) = (column % self.dims.ni, column / self.dims.ni);
-        let layers = (0..self.dims.nk).map(move |k| Ijk { i, j, k });
-        layers.filter(|&ijk| self.is_active(ijk))
+        let corner = |c: usize| {
+            let pillar = self.pillar_index(i, j, c);
+            let list = self.lists[4 * column + c];
+            Corner {
+                top: self.pillars[pillar].top,
+                slope: self.slopes[pillar],
+                depths: &self.depths[list.entries(self.dims.nk)],
+                step: list.step(),
+            }
+        };
+        Column {
+            i,
+            j,
+            is_sorted: self.sorted[column],
+            active: self.activity.columns().column(column),
+            corners: std::array::from_fn(corner),
+        }
+    }
+
+    /// All columns, i fastest.
+    pub fn columns(&self) -> impl IndexedParallelIterator<Item = Column<'_>> {
+        let columns = (0..self.dims.columns()).into_par_iter();
+        columns.map(|column| self.column(column))
     }
 
     /// The active cells column by column: the order in which their depths lie in memory, for work on
     /// all of them whose order does not matter.
     pub fn active_by_column(&self) -> impl ParallelIterator<Item = Ijk> + '_ {
         let columns = (0..self.dims.columns()).into_par_iter();
-        columns.flat_map_iter(|column| self.active_in_column(column))
+        columns.flat_map_iter(|column| {
+            let (i, j) = (column % self.dims.ni, column / self.dims.ni);
+            let layers = self.activity.columns().layers(column);
+            layers.map(move |k| Ijk { i, j, k })
+        })
     }
 
-    /// The sum of a quantity over the active cells; the same bits with any number of threads.
-    pub fn sum_active<T: Sum + Send>(&self, of: impl Fn(Ijk) -> T + Sync) -> T {
-        let columns = (0..self.dims.columns()).into_par_iter();
-        let sums = columns.map(|column| self.active_in_column(column).map(&of).sum());
+    /// Bits of the active cells, column by column.
+    pub fn active_bits(&self) -> &ColumnBits {
+        self.activity.columns()
+    }
+
+    /// Bits of the cells that `chosen` (by active index) names, column by column.
+    pub fn bits_of(&self, chosen: &[bool]) -> ColumnBits {
+        self.activity
+            .bits_of(|rank| chosen.get(rank) == Some(&true))
+    }
+
+    /// The active cells of the row along i of one j and k: i and active index of each.
+    pub fn active_in_row(&self, j: usize, k: usize) -> impl Iterator<Item = (usize, usize)> + '_ {
+        self.activity.row(self.dims.ni * (j + self.dims.nj * k))
+    }
+
+    /// The sum of a quantity over the active cells, given by column and layer; the same bits with any number of
+    /// threads.
+    pub fn sum_active<T: Sum + Send>(&self, of: impl Fn(&Column<'_>, usize) -> T + Sync) -> T {
+        let sums = self.columns().map(|c| c.active().map(|k| of(&c, k)).sum());
         sums.collect::<Vec<T>>().into_iter().sum()
+    }
+
+    /// A value for each active cell, by active index, made from its column and layer.
+    pub fn map_active<T: Clone + Default + Send>(
+        &self,
+        of: impl Fn(&Column<'_>, usize) -> T + Sync,
+    ) -> Vec<T> {
+        let Dims { ni, nj, nk } = self.dims;
+        let mut values = vec![T::default(); self.active_cells.len()];
+        // Of each row of columns the places for its values, layer by layer.
+        let mut rows: Vec<Vec<_>> = (0..nj).map(|_| Vec::with_capacity(nk)).collect();
+        let mut rest = values.as_mut_slice();
+        let mut before = 0;
+        for k in 0..nk {
+            for (j, row) in rows.iter_mut().enumerate() {
+                let end = self.activity.before(ni * (j + nj * k) + ni) as usize;
+                let (places, behind) = rest.split_at_mut(end - before);
+                row.push(places.iter_mut());
+                (rest, before) = (behind, end);
+            }
+        }
+        rows.into_par_iter().enumerate().for_each(|(j, mut row)| {
+            for i in 0..ni {
+                let column = self.column(i + ni * j);
+                for k in column.active() {
+                    if let Some(place) = row[k].next() {
+                        *place = of(&column, k);
+                    }
+                }
+            }
+        });
+        values
     }
 
     /// Rank of a cell among the active ones, `None` where it is inactive.
     pub fn active_index(&self, cell: CellIndex) -> Option<ActiveIndex> {
-        let rank = self.active_rank[cell.0 as usize];
-        (rank != INACTIVE).then_some(ActiveIndex(rank))
+        self.activity.rank(cell.0 as usize).map(ActiveIndex)
     }
 
     /// True when the cell is active.
     pub fn is_active(&self, ijk: Ijk) -> bool {
         self.active_index(self.dims.cell(ijk)).is_some()
+    }
+
+    /// By active index: true where [`Self::has_thickness`] holds. Found at the first call.
+    pub fn thick(&self) -> &[bool] {
+        let thick = &self.found.thick;
+        thick.get_or_init(|| self.map_active(|column, k| column.has_thickness(k)).into())
     }
 
     /// True when at least one of the four edges along the pillars has a length.
@@ -303,14 +410,26 @@ impl Grid {
         self.map_axes
     }
 
-    /// Sum of the active cells' volumes, negative where the grid is left-handed (x, y, depth).
+    /// Sum of the active cells' volumes, negative where the grid is left-handed (x, y, depth). Found at the first
+    /// call.
     pub fn signed_bulk_volume(&self) -> f64 {
-        self.sum_active(|ijk| self.hexahedron(ijk).signed_volume())
+        let volume = |column: &Column<'_>, k: usize| column.hexahedron(k).signed_volume();
+        let found = &self.found.signed_volume;
+        *found.get_or_init(|| self.sum_active(volume))
     }
 
-    /// Smallest and largest corner of the active cells in grid space; `None` without any.
+    /// Smallest and largest corner of the active cells in grid space; `None` without any. Found at the first call.
     pub fn bounds(&self) -> Option<[DVec3; 2]> {
-        self.bounds_of(self.active_by_column())
+        let of_column = |column: Column<'_>| {
+            let ends = column.ends(column.active())?;
+            let ends = ends.as_flattened();
+            let start = [ends[0]; 2];
+            Some(ends.iter().fold(start, |[a, b], &c| [a.min(c), b.max(c)]))
+        };
+        *self.found.bounds.get_or_init(|| {
+            let each = self.columns().filter_map(of_column);
+            each.reduce_with(|a, b| [a[0].min(b[0]), a[1].max(b[1])])
+        })
     }
 
     /// Smallest and largest corner of some cells in grid space; `None` of none.
@@ -356,8 +475,16 @@ fn finite<T: Copy + Into<f64> + Sync>(
 ) -> Result<(), ModelError> {
     let pieces = values.par_chunks(PIECE).enumerate();
     let bad = pieces.find_map_first(|(piece, values)| {
-        let at = values.iter().position(|&v| !v.into().is_finite())?;
-        Some(piece * PIECE + at + 1)
+        // All at once first, which takes a fraction of the time of one after the other.
+        let all = values
+            .iter()
+            .fold(true, |all, &v| all & v.into().is_finite());
+        let at = if all {
+            None
+        } else {
+            values.iter().position(|&v| !v.into().is_finite())
+        };
+        Some(piece * PIECE + at? + 1)
     });
     bad.map_or(Ok(()), |index| {
         Err(ModelError::NotFinite { keyword, index })

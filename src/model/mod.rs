@@ -1,5 +1,7 @@
 //! The reservoir in f64: corner-point geometry, topology and fields. No files, no GPU.
 
+mod activity;
+mod column;
 pub mod corner_point;
 mod depth_lists;
 pub mod derivatives;
@@ -13,8 +15,12 @@ pub mod spaces;
 pub mod summary;
 pub mod synthetic;
 pub mod topology;
+mod vertices;
 
+pub use activity::ColumnBits;
+pub use column::Column;
 pub use corner_point::Hexahedron;
+pub use depth_lists::{DepthList, UsedDepths};
 pub use face_tree::{FaceHit, FaceTree};
 pub use faults::FaultFaces;
 pub use fields::{CellField, Statistics, VertexField};

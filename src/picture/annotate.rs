@@ -312,6 +312,7 @@ pub(super) mod tests {
                 step: 1.0,
                 early_termination: 0.0,
                 libc: crate::scene::LibcSettings::default(),
+                plts: crate::scene::PltsSettings::default(),
                 srg: crate::scene::SrgSettings::default(),
             },
             shown: Shown {

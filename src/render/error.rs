@@ -30,7 +30,7 @@ pub enum RenderError {
     },
     /// A buffer is larger than the adapter allows.
     #[error(
-        "the model does not fit this adapter: {what} needs {needed} bytes and one binding holds {limit}"
+        "the model does not fit this adapter: {what} needs {needed} bytes and one binding holds {limit}; choose the CPU (`--adapter cpu`), which has no such limit, or an adapter with larger bindings"
     )]
     TooLarge {
         /// Which array.

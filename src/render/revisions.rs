@@ -19,6 +19,8 @@ pub struct Revisions {
     pub values: u64,
     /// Colors and opacities. The tables of the transfer function.
     pub transfer: u64,
+    /// The drawn cells in which something shows. Their bits, and lists of their boundary faces.
+    pub visible: u64,
     /// The faces that are hull or faults. Their lists.
     pub surfaces: u64,
     /// Opacity at points of space. The extinction pyramid, and all light volumes.
@@ -47,13 +49,16 @@ impl RevisionCounter {
         let values = drawn || changes(|a, b| !a.shown.cells.is_same(&b.shown.cells));
         let transfer = changes(|a, b| colors(a) != colors(b));
         let surfaces = drawn || changes(|a, b| surfaces(a) != surfaces(b));
+        let opacities = changes(|a, b| opacities(a) != opacities(b));
+        let visible = values || opacities;
         let space = changes(|a, b| space(a) != space(b));
-        let extinction = values || space || changes(|a, b| opacities(a) != opacities(b));
+        let extinction = values || space || opacities;
         let gradients = values || space || changes(|a, b| range(a) != range(b));
         for (revision, changes) in [
             (&mut self.now.grid, grid),
             (&mut self.now.drawn, drawn),
             (&mut self.now.values, values),
+            (&mut self.now.visible, visible),
             (&mut self.now.transfer, transfer),
             (&mut self.now.surfaces, surfaces),
             (&mut self.now.extinction, extinction),

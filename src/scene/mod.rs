@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 pub use camera::{AutomaticCamera, CameraSpec, ExplicitCamera, FramingCamera, Projection};
 pub use filter::{Filter, Indices, PropertyFilter};
 pub use lighting::{LightMode, LightingSpec};
-pub use settings::{ClipSpec, CutFace, Integration, LibcSettings, SrgSettings};
+pub use settings::{ClipSpec, CutFace, Integration, LibcSettings, PltsSettings, SrgSettings};
 pub use strategy::StrategyKind;
 pub use surfaces::{Hull, ShownFaults};
 pub use transfer::{
@@ -64,6 +64,8 @@ pub struct Scene {
     pub srg: SrgSettings,
     /// Settings of the cell-to-cell strategy.
     pub libc: LibcSettings,
+    /// Settings of PLTS.
+    pub plts: PltsSettings,
     /// Occlusion and lights.
     pub lighting: LightingSpec,
     /// Which cells are drawn.
@@ -94,6 +96,7 @@ impl Default for Scene {
             early_termination: 0.01,
             srg: SrgSettings::default(),
             libc: LibcSettings::default(),
+            plts: PltsSettings::default(),
             lighting: LightingSpec::default(),
             filter: Filter::default(),
             clip: Vec::new(),

@@ -45,13 +45,29 @@ impl Default for LibcSettings {
     }
 }
 
-/// What a cell-to-cell walk integrates.
+/// Settings of the strategy PLTS.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct PltsSettings {
+    /// What is integrated.
+    pub integration: Integration,
+}
+
+impl Default for PltsSettings {
+    fn default() -> Self {
+        Self {
+            integration: Integration::Samples,
+        }
+    }
+}
+
+/// What rays integrate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Integration {
     /// The samples of the lattice that all strategies share.
     Samples,
-    /// Each segment in a cell as a whole, with integrals of the transfer function.
+    /// The part of a ray in each cell as a whole, with integrals of the transfer function.
     Segments,
 }
 

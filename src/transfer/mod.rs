@@ -7,6 +7,7 @@ pub mod kinds;
 pub mod opacity;
 pub mod presets;
 mod scale;
+mod shares;
 
 pub use function::{Curve, TransferFunction};
 pub use scale::Scale;

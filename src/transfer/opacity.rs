@@ -4,6 +4,7 @@
 use rayon::prelude::*;
 
 use super::function::Curve;
+use super::shares::{Weighted, shares_below};
 
 /// Which end of a property's range one looks for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -27,6 +28,18 @@ pub struct Cell {
     pub volume: f64,
     /// Its thinnest extent in world space.
     pub extent: f64,
+}
+
+impl Cell {
+    /// True where the cell has all that its opacity follows from.
+    fn counts(&self) -> bool {
+        self.position.is_finite() && self.volume > 0.0 && self.extent > 0.0
+    }
+
+    /// Its volume, where it counts.
+    fn weight(&self) -> f64 {
+        if self.counts() { self.volume } else { 0.0 }
+    }
 }
 
 /// An opacity curve and the length in world space that it refers to.
@@ -64,40 +77,41 @@ const CONSTANT: f64 = 0.95;
 /// saturation that is the volume of the phase. The curve rises at fixed shares of that weight, and the
 /// reference length is so chosen that cells with 96.5 % of it have an opacity of [`SHOWS`] or more each,
 /// through their own thinnest extent.
-pub fn find(interest: Interest, cells: &[Cell], model_extent: f64) -> Option<Opacity> {
-    let valid = |c: &&Cell| c.position.is_finite() && c.volume > 0.0 && c.extent > 0.0;
-    let cells: Vec<Cell> = cells.par_iter().filter(valid).copied().collect();
-    let (low, high) = ends(&cells)?;
+pub fn find(
+    interest: Interest,
+    cells: impl IndexedParallelIterator<Item = Cell> + Clone,
+    model_extent: f64,
+) -> Option<Opacity> {
+    let (low, high) = ends(cells.clone())?;
     if interest == Interest::Alike || high - low < 1e-6 {
         let opacity = if interest == Interest::Alike {
             ALIKE
         } else {
             CONSTANT
         };
-        let extents = cells.iter().map(|c| (c.extent, c.volume)).collect();
+        let extents = cells.map(|c| (c.extent, c.weight()));
         return Some(Opacity {
             curve: vec![(0.0, opacity), (1.0, opacity)],
             reference_length: shares_below(extents, [0.5])?[0],
         });
     }
-    let weighted = |c: &Cell| {
+    let weighted = |c: Cell| {
         let richness = interest.richness(c.position);
-        (richness, c.volume * richness)
+        (richness, c.weight() * richness)
     };
-    let weights: Vec<(f64, f64)> = cells.par_iter().map(weighted).collect();
     let [veil, body] = [HAZE_SHARE, BODY_SHARES[0]];
-    let rich = shares_below(weights.clone(), [veil, body, BODY_SHARES[1]])?;
+    let weights = cells.clone().map(weighted);
+    let rich = shares_below(weights, [veil, body, BODY_SHARES[1]])?;
     let rising = rising(rich);
     // The length at which each cell just shows; the haze is decided after it.
-    let lengths = cells
-        .par_iter()
-        .zip(&weights)
-        .map(|(cell, (richness, weight))| {
-            let opacity = at_richness(&rising, *richness);
-            let needed = (1.0 - SHOWS).ln() / (1.0 - opacity).ln();
-            (cell.extent / needed, *weight)
-        });
-    let [reference_length] = shares_below(lengths.collect(), [1.0 - SHOWN])?;
+    let lengths = cells.map(|cell| {
+        let (richness, weight) = weighted(cell);
+        let opacity = at_richness(&rising, richness);
+        let needed = (1.0 - SHOWS).ln() / (1.0 - opacity).ln();
+        (cell.extent / needed, weight)
+    });
+    let lengths: Vec<Weighted> = lengths.collect();
+    let [reference_length] = shares_below(lengths.par_iter().copied(), [1.0 - SHOWN])?;
     let layers = (model_extent / reference_length).max(1.0);
     let haze = (1.0 - (1.0 - HAZE).powf(1.0 / layers)).min(MOST_HAZE);
     Some(Opacity {
@@ -106,28 +120,10 @@ pub fn find(interest: Interest, cells: &[Cell], model_extent: f64) -> Option<Opa
     })
 }
 
-fn ends(cells: &[Cell]) -> Option<(f64, f64)> {
-    let ends = cells.par_iter().map(|c| (c.position, c.position));
+fn ends(cells: impl ParallelIterator<Item = Cell>) -> Option<(f64, f64)> {
+    let counting = cells.filter(Cell::counts);
+    let ends = counting.map(|c| (c.position, c.position));
     ends.reduce_with(|a, b| (a.0.min(b.0), a.1.max(b.1)))
-}
-
-/// The values below which the given shares, rising, of the weight lie; `None` without weight.
-fn shares_below<const N: usize>(mut values: Vec<(f64, f64)>, shares: [f64; N]) -> Option<[f64; N]> {
-    values.par_sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
-    let total: f64 = values.iter().map(|v| v.1).sum();
-    let mut rising = values.iter();
-    let mut sum = 0.0;
-    let mut last = values.first()?.0;
-    let below = shares.map(|share| {
-        while sum < share * total {
-            let Some((value, weight)) = rising.next() else {
-                break;
-            };
-            (last, sum) = (*value, sum + weight);
-        }
-        last
-    });
-    (total > 0.0).then_some(below)
 }
 
 /// Opacity by richness from where the veil begins, without haze.
@@ -243,7 +239,7 @@ mod tests {
                     ..c
                 })
                 .collect();
-            let mut found = find(Interest::High, &scaled, 40.0 * scale).unwrap();
+            let mut found = find(Interest::High, scaled.into_par_iter(), 40.0 * scale).unwrap();
             found.reference_length /= scale;
             assert!(share_that_shows(&found, |p| p) >= 0.96);
             // A length three times as long hides more than it may.
@@ -255,7 +251,7 @@ mod tests {
     #[test]
     fn the_rich_end_is_solid_and_the_rest_a_haze() {
         let at = |interest, position| {
-            let found = find(interest, &cells(), 40.0).unwrap();
+            let found = find(interest, cells().into_par_iter(), 40.0).unwrap();
             let rising = found.curve.is_sorted_by(|a, b| a.0 <= b.0);
             assert!(rising && found.curve[0].0 == 0.0 && found.curve.last().unwrap().0 == 1.0);
             let (a, b, f) = segment(&found.curve, position);
@@ -266,7 +262,7 @@ mod tests {
         assert!(at(Interest::Ends, 0.0) > 0.9 && at(Interest::Ends, 1.0) > 0.9);
         assert!(at(Interest::Ends, 0.5) < 0.2);
         assert!(at(Interest::High, 0.0) > 0.0);
-        let alike = find(Interest::Alike, &cells(), 40.0).unwrap();
+        let alike = find(Interest::Alike, cells().into_par_iter(), 40.0).unwrap();
         assert_eq!(alike.curve[0].1, alike.curve[1].1);
     }
 
@@ -276,21 +272,21 @@ mod tests {
             .into_iter()
             .map(|c| Cell { position: 0.5, ..c })
             .collect();
-        let found = find(Interest::High, &same, 40.0).unwrap();
+        let found = find(Interest::High, same.into_par_iter(), 40.0).unwrap();
         assert!(found.curve.iter().all(|p| p.1 == CONSTANT));
-        assert_eq!(find(Interest::High, &[], 1.0), None);
+        assert_eq!(find(Interest::High, rayon::iter::empty(), 1.0), None);
         let empty = [Cell {
             position: 0.2,
             volume: 0.0,
             extent: 1.0,
         }];
-        assert_eq!(find(Interest::High, &empty, 1.0), None);
+        assert_eq!(find(Interest::High, empty.into_par_iter(), 1.0), None);
         // All at the poor end: nothing that one looks for, so that only the ends of the range differ.
         let odd = [f64::NAN, 0.0, 1.0].map(|position| Cell {
             position,
             volume: 1.0,
             extent: 1.0,
         });
-        assert!(find(Interest::High, &odd, 1.0).is_some());
+        assert!(find(Interest::High, odd.into_par_iter(), 1.0).is_some());
     }
 }

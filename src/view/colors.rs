@@ -300,7 +300,7 @@ fn automatic(
             return Ok(None);
         };
         let field = scale.field(&field, range[0]);
-        let (weights, extents) = (case.weights(), case.extents());
+        let (weights, extents) = rayon::join(|| case.weights(), || case.extents());
         let [low, high] = range;
         // Where the range is empty all values are at its low end; what is undefined stays so.
         let width = if high > low {
@@ -314,17 +314,16 @@ fn automatic(
             extent: f64::from(extent.lateral).min(exaggeration * f64::from(extent.vertical)),
         };
         let cells = field.values().par_iter();
-        let cells: Vec<_> = cells
+        let cells = cells
             .zip(weights.values.par_iter().zip(extents.par_iter()))
-            .map(cell)
-            .collect();
+            .map(cell);
         let interest = match scale {
             Scale::Categories(_) => Interest::Alike,
             _ => Quantity::of(asked.property).interest(),
         };
         Ok(opacity::find(
             interest,
-            &cells,
+            cells,
             case.thinnest_extent(exaggeration),
         ))
     })

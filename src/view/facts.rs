@@ -51,9 +51,11 @@ impl Facts {
         let has_mean = scene.transfer.coloring != Coloring::Categories
             && Quantity::of(property) != Quantity::Region;
         let all = values.values();
-        let valued = all.iter().filter(|v| !v.is_nan()).count();
-        let drawn = seen.iter().filter(|s| **s).count();
-        let range = range(all, seen);
+        let Counted {
+            valued,
+            drawn,
+            range,
+        } = Counted::of(all, seen);
         let values = range.map(|[min, max]| Values {
             min,
             max,
@@ -96,29 +98,74 @@ fn reaches(plane: &ClipPlane, corners: &[DVec3]) -> bool {
     corners.any(|c| (*c - plane.point).dot(plane.normal) > 0.0)
 }
 
-fn range(values: &[f32], seen: &[bool]) -> Option<[f64; 2]> {
-    let start = [f32::INFINITY, f32::NEG_INFINITY];
-    let seen = values.iter().zip(seen).filter(|(_, seen)| **seen);
-    let [low, high] = seen.fold(start, |[a, b], (v, _)| [a.min(*v), b.max(*v)]);
-    (low <= high).then_some([low, high].map(f64::from))
+/// Cells that one thread looks at at a time; sums over them do not depend on the number of threads.
+const PIECE: usize = 1 << 16;
+
+/// Numbers of cells.
+struct Counted {
+    /// With a value.
+    valued: usize,
+    /// Seen.
+    drawn: usize,
+    /// Smallest and largest value of those that are seen.
+    range: Option<[f64; 2]>,
+}
+
+impl Counted {
+    fn of(values: &[f32], seen: &[bool]) -> Self {
+        type Sums = (usize, usize, [f32; 2]);
+        let none: Sums = (0, 0, [f32::INFINITY, f32::NEG_INFINITY]);
+        let add = |(valued, drawn, [low, high]): Sums, (value, seen): (&f32, &bool)| {
+            let ends = match seen {
+                true => [value.min(low), value.max(high)],
+                false => [low, high],
+            };
+            (
+                valued + usize::from(!value.is_nan()),
+                drawn + usize::from(*seen),
+                ends,
+            )
+        };
+        let pieces = values.par_chunks(PIECE).zip(seen.par_chunks(PIECE));
+        let pieces = pieces.map(|(values, seen)| values.iter().zip(seen).fold(none, add));
+        let (valued, drawn, [low, high]) = pieces.reduce(
+            || none,
+            |a, b| {
+                let [low, high] = b.2;
+                (a.0 + b.0, a.1 + b.1, [a.2[0].min(low), a.2[1].max(high)])
+            },
+        );
+        Self {
+            valued,
+            drawn,
+            range: (low <= high).then_some([low, high].map(f64::from)),
+        }
+    }
 }
 
 /// The mean by pore volume, or by what stands in for it.
 fn mean(case: &Case, values: &[f32], seen: &[bool]) -> Option<(f64, Weighting)> {
     let weights = case.weights();
-    let mean = weighted(values, seen, |n| weights.values[n])?;
+    let mean = weighted(values, seen, &weights.values)?;
     Some((mean, weights.weighting))
 }
 
 /// The mean by weights; `None` where none is above 0.
-fn weighted(values: &[f32], seen: &[bool], weight: impl Fn(usize) -> f32) -> Option<f64> {
-    let (mut sum, mut total) = (0.0, 0.0);
-    for (n, (value, seen)) in values.iter().zip(seen).enumerate() {
-        let weight = f64::from(weight(n));
-        if *seen && !value.is_nan() && weight > 0.0 {
-            sum += weight * f64::from(*value);
-            total += weight;
+fn weighted(values: &[f32], seen: &[bool], weights: &[f32]) -> Option<f64> {
+    let add = |[sum, total]: [f64; 2], ((value, seen), weight): ((&f32, &bool), &f32)| {
+        let weight = f64::from(*weight);
+        match *seen && !value.is_nan() && weight > 0.0 {
+            true => [sum + weight * f64::from(*value), total + weight],
+            false => [sum, total],
         }
-    }
+    };
+    let pieces = values.par_chunks(PIECE).zip(seen.par_chunks(PIECE));
+    let pieces = pieces.zip(weights.par_chunks(PIECE));
+    let sums = pieces.map(|((values, seen), weights)| {
+        let cells = values.iter().zip(seen).zip(weights);
+        cells.fold([0.0; 2], add)
+    });
+    let sums: Vec<[f64; 2]> = sums.collect();
+    let [sum, total] = [0, 1].map(|n| sums.iter().map(|sum| sum[n]).sum::<f64>());
     (total > 0.0).then(|| sum / total)
 }

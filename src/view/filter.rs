@@ -79,13 +79,12 @@ pub(super) fn drawn(
     let dims = grid.dims();
     let [i, j, k] = kept(filter, dims)?;
     let passes = |ijk: Ijk| i[ijk.i] && j[ijk.j] && k[ijk.k];
-    let mut drawn: Vec<bool> = grid
-        .active_cells()
-        .par_iter()
+    let has_all = [&i, &j, &k].iter().all(|kept| !kept.contains(&false));
+    let cells = grid.active_cells().par_iter().zip(grid.thick());
+    let mut drawn: Vec<bool> = cells
         .zip(field.values())
-        .map(|(&cell, value)| {
-            let ijk = dims.ijk(cell);
-            !value.is_nan() && passes(ijk) && grid.has_thickness(ijk)
+        .map(|((&cell, is_thick), value)| {
+            *is_thick && !value.is_nan() && (has_all || passes(dims.ijk(cell)))
         })
         .collect();
     for property in &filter.properties {

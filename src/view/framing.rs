@@ -7,7 +7,7 @@ use super::bounds::box_corners;
 use super::camera::{Framed, MARGINS, Margins, middle};
 use super::{Camera, View};
 use crate::case::Case;
-use crate::model::{Grid, Spaces};
+use crate::model::{Column, ColumnBits, Grid, Spaces};
 use crate::scene::{CameraSpec, Filter, Projection};
 
 /// The cells that a camera frames: those that pass every filter that does not change with time, so that the
@@ -161,8 +161,8 @@ impl Subject {
     /// Of the chosen active cells of a grid, by active index; of all where none is chosen. `None` where no cell
     /// is active.
     pub fn of(grid: &Grid, chosen: &[bool], spaces: &Spaces) -> Option<Self> {
-        let found = Columns::of(grid, |active| chosen.get(active).is_some_and(|c| *c));
-        let found = found.or_else(|| Columns::of(grid, |_| true))?;
+        let found = Columns::of(grid, &grid.bits_of(chosen));
+        let found = found.or_else(|| Columns::of(grid, grid.active_bits()))?;
         let [low, high] = bounds(&found.points);
         let along_axes = box_corners(spaces, [low, high]);
         let to_world = |p: &DVec3| spaces.world_from_grid.transform_point3(*p);
@@ -301,7 +301,7 @@ fn bounds(points: &[DVec3]) -> [DVec3; 2] {
 
 /// The chosen cells of the columns of a grid, in grid space.
 struct Columns {
-    /// The highest and lowest corner on each pillar of each column: all others lie between them.
+    /// The highest and lowest corner on each pillar: all others lie between them.
     points: Vec<DVec3>,
     /// Sums of the ways across the columns along I and J.
     ways: [DVec3; 2],
@@ -310,46 +310,34 @@ struct Columns {
 }
 
 impl Columns {
-    fn of(grid: &Grid, is_chosen: impl Fn(usize) -> bool + Sync) -> Option<Self> {
-        let dims = grid.dims();
-        let column = |column: usize| {
-            let cells = grid.active_in_column(column).filter(|ijk| {
-                let active = grid.active_index(dims.cell(*ijk));
-                active.is_some_and(|a| is_chosen(a.0 as usize))
-            });
-            let mut depths = [[f64::INFINITY, f64::NEG_INFINITY]; 4];
-            let mut layers = [usize::MAX, 0];
-            for ijk in cells {
-                layers = [layers[0].min(ijk.k), layers[1].max(ijk.k)];
-                for corner in 0..8 {
-                    let [high, low] = &mut depths[corner & 3];
-                    let depth = grid.corner_depth(ijk, corner);
-                    (*high, *low) = (high.min(depth), low.max(depth));
-                }
-            }
-            (layers[0] <= layers[1]).then_some((column, depths, layers))
+    fn of(grid: &Grid, chosen: &ColumnBits) -> Option<Self> {
+        let of_column = |(number, column): (usize, Column<'_>)| {
+            let layers = || chosen.layers(number);
+            let ends = column.ends(layers())?;
+            let [first, last] = [layers().next()?, layers().last()?];
+            Some(([column.i, column.j], ends, [first, last]))
         };
-        let columns = (0..dims.columns()).into_par_iter();
-        let columns: Vec<_> = columns.filter_map(column).collect();
-        let mut points = Vec::with_capacity(8 * columns.len());
+        let columns = grid.columns().enumerate();
+        let columns: Vec<_> = columns.filter_map(of_column).collect();
+        let mut on_pillars: Vec<Option<[DVec3; 2]>> = vec![None; grid.dims().pillars()];
         let mut ways = [DVec3::ZERO; 2];
         let mut cells = [[usize::MAX, 0]; 3];
-        for (column, depths, [first, last]) in &columns {
-            let (i, j) = (column % dims.ni, column / dims.ni);
-            for (range, at) in cells.iter_mut().zip([[i, i], [j, j], [*first, *last]]) {
+        for &([i, j], ends, layers) in &columns {
+            for (range, at) in cells.iter_mut().zip([[i, i], [j, j], layers]) {
                 *range = [range[0].min(at[0]), range[1].max(at[1])];
             }
-            let ends = |corner: usize| {
-                let pillar = grid.pillar(i, j, corner);
-                depths[corner].map(|depth| pillar.at(depth))
-            };
-            let [a, b, c, d] = [0, 1, 2, 3].map(ends);
+            let [a, b, c, d] = ends;
             ways[0] += b[0] - a[0] + d[0] - c[0];
             ways[1] += c[0] - a[0] + d[0] - b[0];
-            points.extend([a, b, c, d].as_flattened());
+            for (corner, [high, low]) in ends.into_iter().enumerate() {
+                let known = &mut on_pillars[grid.pillar_index(i, j, corner)];
+                let [a, b] = known.unwrap_or([high, low]);
+                let high = if high.z < a.z { high } else { a };
+                *known = Some([high, if low.z > b.z { low } else { b }]);
+            }
         }
         (!columns.is_empty()).then(|| Self {
-            points,
+            points: on_pillars.into_iter().flatten().flatten().collect(),
             ways: ways.map(|way| way.with_z(0.0)),
             cells: cells.map(|[first, last]| last - first + 1),
         })

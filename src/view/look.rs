@@ -115,6 +115,10 @@ pub fn default_property(case: &Case) -> String {
 
 /// The value of a property that is the same in all cells at all steps.
 fn constant(case: &Case, property: &str) -> Option<f64> {
+    // Spares the other steps where the values of the last one differ.
+    if varies(case, property) {
+        return None;
+    }
     let range = case.range_over_steps(property).ok().flatten()?;
     (range.min == range.max).then_some(range.min)
 }

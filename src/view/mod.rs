@@ -38,7 +38,9 @@ pub use surfaces::Surfaces;
 
 use crate::image::Blending;
 use crate::model::{CellField, FaultFaces, Grid, Spaces};
-use crate::scene::{CameraSpec, Interpolation, LibcSettings, SrgSettings, StrategyKind};
+use crate::scene::{
+    CameraSpec, Interpolation, LibcSettings, PltsSettings, SrgSettings, StrategyKind,
+};
 use crate::transfer::TransferFunction;
 use bounds::box_corners;
 use ghosts::Ghosts;
@@ -128,6 +130,8 @@ pub struct Sampling {
     pub early_termination: f64,
     /// Settings of the cell-to-cell strategy.
     pub libc: LibcSettings,
+    /// Settings of point location with topological search.
+    pub plts: PltsSettings,
     /// Settings of the resampled-grid strategy.
     pub srg: SrgSettings,
 }

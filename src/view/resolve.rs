@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use glam::{DVec3, DVec4};
+use glam::DVec3;
 
 use super::bounds::{automatic_exaggeration, bounds_of, box_corners, box_edges};
 use super::colors::{self, ColorRequest, Colors, interpolation};
@@ -19,7 +19,7 @@ use super::{
     filter, surfaces,
 };
 use crate::case::Case;
-use crate::model::{CellField, CellIndex, Dims, Grid, Ijk, Spaces};
+use crate::model::{CellField, Dims, Grid, Ijk, Spaces};
 use crate::scene::{CameraSpec, Inactive, Mode, Scene, SrgSettings};
 use crate::transfer::presets;
 
@@ -40,7 +40,7 @@ pub(super) fn resolve_over(
     check_version(scene)?;
     let exaggeration = exaggeration(scene, active_bounds(case)?)?;
     let spaces = Spaces::new(case.grid.map_axes(), exaggeration);
-    let edges = mean_world_edges(case, exaggeration);
+    let edges = case.mean_edges(exaggeration);
     let property = scene.property.clone();
     let property = property.unwrap_or_else(|| default_property(case));
     let step = step_of(case, &scene.step, case.is_dynamic(&property))?;
@@ -129,6 +129,7 @@ fn sampling(
         step: sampling_step(scene, edges, bounds)?,
         early_termination: early_termination(scene)?,
         libc: scene.libc,
+        plts: scene.plts,
         srg: srg(scene, dims)?,
     })
 }
@@ -136,10 +137,9 @@ fn sampling(
 /// The box in grid space of the cells that can be shown.
 fn active_bounds(case: &Case) -> Result<[DVec3; 2], SceneError> {
     let grid = &case.grid;
-    let has_thickness = |c: &CellIndex| grid.has_thickness(grid.dims().ijk(*c));
     match grid.bounds() {
         None => Err(SceneError::Empty),
-        Some(_) if !grid.active_cells().iter().any(has_thickness) => Err(SceneError::Flat),
+        Some(_) if !grid.thick().contains(&true) => Err(SceneError::Flat),
         Some(bounds) => Ok(bounds),
     }
 }
@@ -223,23 +223,6 @@ fn srg(scene: &Scene, dims: Dims) -> Result<SrgSettings, SceneError> {
         }
     }
     Ok(settings)
-}
-
-/// Mean edge lengths of the drawn cells along s, t and r, in world space.
-fn mean_world_edges(case: &Case, exaggeration: f64) -> DVec3 {
-    let grid = &case.grid;
-    let edges_and_one = |ijk: Ijk| {
-        if !grid.has_thickness(ijk) {
-            return DVec4::ZERO;
-        }
-        let mut hexahedron = grid.hexahedron(ijk);
-        for corner in &mut hexahedron.0 {
-            corner.z *= exaggeration;
-        }
-        hexahedron.mean_edges().extend(1.0)
-    };
-    let sum = grid.sum_active(edges_and_one);
-    (sum.truncate() / sum.w.max(1.0)).max(DVec3::splat(1e-6))
 }
 
 /// Which cells are drawn, and what follows from that.

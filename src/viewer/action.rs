@@ -5,8 +5,8 @@ use serde::{Deserialize, Serialize};
 use super::slices::Slicing;
 use super::state::{Comparison, CurvePlots, Playback, State};
 use crate::scene::{
-    CameraSpec, ClipSpec, Filter, Interpolation, LibcSettings, LightingSpec, Mode, RangeSpec,
-    Scene, Show, SrgSettings, StepSpec, StrategyKind, TransferSpec,
+    CameraSpec, ClipSpec, Filter, Interpolation, LibcSettings, LightingSpec, Mode, PltsSettings,
+    RangeSpec, Scene, Show, SrgSettings, StepSpec, StrategyKind, TransferSpec,
 };
 
 /// A change of a tab's state.
@@ -30,6 +30,8 @@ pub enum Action {
     Srg(SrgSettings),
     /// Settings of LIBC.
     Libc(LibcSettings),
+    /// Settings of PLTS.
+    Plts(PltsSettings),
     /// Distance of samples; `None` for the default.
     SamplingStep(Option<f64>),
     /// Occlusion and lights.
@@ -84,7 +86,7 @@ impl Action {
             Self::Range(_) => "color range",
             Self::Transfer(_) => "transfer function",
             Self::Strategy(_) => "strategy",
-            Self::Srg(_) | Self::Libc(_) => "strategy settings",
+            Self::Srg(_) | Self::Libc(_) | Self::Plts(_) => "strategy settings",
             Self::SamplingStep(_) => "sampling step",
             Self::Lighting(_) => "lighting",
             Self::Filter(_) => "filter",
@@ -115,6 +117,7 @@ impl Action {
             Self::Strategy(v) => scene.strategy = v,
             Self::Srg(v) => scene.srg = v,
             Self::Libc(v) => scene.libc = v,
+            Self::Plts(v) => scene.plts = v,
             Self::SamplingStep(v) => scene.sampling_step = v,
             Self::Lighting(v) => scene.lighting = v,
             Self::Filter(v) => scene.filter = v,

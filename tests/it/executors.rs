@@ -15,7 +15,7 @@ use strataray::reference::{self, Locator};
 use strataray::render::cpu::CpuExecutor;
 use strataray::render::gpu::GpuExecutor;
 use strataray::render::{Executor, FrameStats, RenderError, Renderer};
-use strataray::scene::StrategyKind;
+use strataray::scene::{Integration, StrategyKind};
 use strataray::view::{self, View};
 
 /// Strategies that every executor has.
@@ -142,6 +142,86 @@ fn rays_search_only_where_cells_are() {
                 name == "gpu" || (locations < 1.5 && iterations < 4.0),
                 "{stats:?}"
             );
+        }
+    }
+}
+
+/// PLTS over whole cells is what samples come to where they are dense, by two Newton iterations a cell.
+#[test]
+fn whole_cells_are_dense_samples() {
+    for model in common::models() {
+        let case = load::open(&model).unwrap();
+        let mut renderer = cpu().renderer(&case.grid).unwrap();
+        for interpolation in ["vertex", "cell"] {
+            let look = json!({"interpolation": interpolation, "plts": {"integration": "segments"}});
+            let view = volume(&case, &look).by(StrategyKind::Plts);
+            let mut dense = view.clone();
+            dense.sampling.step *= 0.125;
+            let (image, stats) = render(&mut *renderer, &view);
+            let truth = truth(&case, &dense);
+            let db = psnr(&image, &truth, &view);
+            let of_samples = {
+                let mut by_samples = view.clone();
+                by_samples.sampling.plts.integration = Integration::Samples;
+                psnr(&render(&mut *renderer, &by_samples).0, &truth, &view)
+            };
+            let iterations = stats.newton_iterations as f64 / stats.cell_crossings as f64;
+            let name = &case.about.name;
+            println!(
+                "{name} {interpolation}: {db:.1} dB, {of_samples:.1} by samples, {iterations:.2}"
+            );
+            assert!(db >= 62.0 && db > of_samples, "{db} {of_samples}");
+            assert!(iterations < 2.5, "{stats:?}");
+        }
+    }
+}
+
+/// Cells in which the transfer function shows nothing are passed without a step, and the image is that of a walk
+/// through them; a curve that shows them again brings them back.
+#[test]
+fn invisible_cells_are_passed() {
+    let faint = json!([[0.0, 0.1], [1.0, 0.4]]);
+    let upper = json!([[0.0, 0.0], [0.55, 0.0], [0.6, 0.2], [1.0, 0.5]]);
+    let looks = [
+        json!({}),
+        json!({"interpolation": "cell"}),
+        json!({"show": {"hull": "hidden", "inactive": "ghost"}}),
+        json!({"show": {"hull": "faint", "faults": true}}),
+    ];
+    for (model, executors) in common::models().iter().zip(
+        // Software shaders take long.
+        [executors(), executors(), vec![cpu()], vec![cpu()]],
+    ) {
+        let case = load::open(model).unwrap();
+        for (executor, (n, look)) in executors
+            .iter()
+            .flat_map(|executor| std::iter::repeat(executor).zip(looks.iter().enumerate()))
+        {
+            let strategy = STRATEGIES[n % 2];
+            let with = |opacity: &Value| {
+                let mut look = look.clone();
+                look["transfer"] = json!({ "opacity": opacity });
+                volume(&case, &look).by(strategy)
+            };
+            let view = with(&upper);
+            let mut renderer = executor.renderer(&case.grid).unwrap();
+            let (image, passing) = render(&mut *renderer, &view);
+            let (pixels, db) = apart(&image, &truth(&case, &view), &view);
+            let [who, name] = [executor.info().executor, strategy.name()];
+            let model = &case.about.name;
+            let place = format!("{who} {model} {name} {look}: {pixels} pixels, {db:.1} dB");
+            println!("{place}");
+            assert!(pixels <= 6 && db >= least(strategy), "{place}");
+            let all = with(&faint);
+            let (shown, walking) = render(&mut *renderer, &all);
+            let crossings = [passing, walking].map(|stats| stats.cell_crossings);
+            assert!(
+                10 * crossings[0] < 9 * crossings[1],
+                "{place} {crossings:?}"
+            );
+            let mut fresh = executor.renderer(&case.grid).unwrap();
+            let back = psnr(&render(&mut *fresh, &all).0, &shown, &all);
+            assert!(back > 90.0, "{place} {back}");
         }
     }
 }

@@ -121,7 +121,7 @@ fn structs_of_frames(m: &Module) -> Vec<&'static str> {
             column_lists,
             bins,
             bin_columns,
-            reserved
+            visible
         ),
     ]
 }

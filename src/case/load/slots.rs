@@ -1,5 +1,6 @@
 //! Which cells of a grid the results are for, and where in their arrays the value of each stands.
 
+use rayon::prelude::*;
 use strataray_parsers::cells::CellArrays;
 use strataray_parsers::egrid::PorosityModel;
 
@@ -129,7 +130,10 @@ impl CellSlots {
                 places.map(|place| place.map_or(f32::NAN, value)).collect()
             }
             None if values.len() == self.cells.len() => values.to_vec(),
-            None => self.cells.iter().map(|&c| values[c as usize]).collect(),
+            None => {
+                let cells = self.cells.par_iter();
+                cells.map(|&c| values[c as usize]).collect()
+            }
         }
     }
 }

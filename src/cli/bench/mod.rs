@@ -41,7 +41,7 @@ Examples:
   strataray bench R5 --size 1000x1000 --property SWAT --strategy plts"
 )]
 pub struct Arguments {
-    /// Cases by path, or synthetic models by name (r1 to r5, faulted, box); r1 to r3 by default.
+    /// Cases by path, or synthetic models by name (r1 to r6, faulted, box); r1 to r3 by default.
     cases: Vec<PathBuf>,
     #[command(flatten)]
     options: SceneOptions,

@@ -37,13 +37,14 @@ struct Shape {
 }
 
 /// All synthetic models. `r1` to `r5` have the dimensions and active cells of the models that
-/// the literature on this method times (campagnolo-2021, table 4.1).
-pub const RECIPES: [Recipe; 7] = [
+/// the literature on this method times (campagnolo-2021, table 4.1); `r6` is larger than these.
+pub const RECIPES: [Recipe; 8] = [
     recipe("r1", [60, 20, 10], 12_000, (3, 0, false)),
     recipe("r2", [76, 43, 23], 28_952, (4, 6, false)),
     recipe("r3", [46, 69, 30], 42_353, (5, 6, true)),
     recipe("r4", [102, 72, 40], 286_840, (6, 15, false)),
     recipe("r5", [346, 352, 100], 6_245_219, (9, 7, false)),
+    recipe("r6", [640, 520, 150], 30_000_000, (12, 9, false)),
     recipe("faulted", [60, 50, 20], 42_000, (6, 5, true)),
     Recipe {
         name: "box",

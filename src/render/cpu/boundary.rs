@@ -7,6 +7,9 @@ use super::raster::Met;
 /// Samples nearer to a face than this part of a step are asked of its cell, against rounding.
 const MARGIN: f32 = 0.02;
 
+/// Behind a face, in samples.
+const BEHIND: f32 = 1e-3;
+
 /// A boundary face that a ray passes; places are numbers of samples, and parts of them.
 #[derive(Debug, Clone, Copy)]
 pub struct Passage {
@@ -54,13 +57,15 @@ impl Boundary {
         &self.passages[..count]
     }
 
-    /// The first sample behind one outside of all cells that may lie in one; `None` where there is none.
+    /// Where the ray may be in a cell again behind a place outside of all cells, in samples, at most one ahead among
+    /// faces that are bent; `None` where it never is.
     pub fn next(&self, n: f32) -> Option<f32> {
         let passed = self.until(n);
-        if passed.iter().any(|p| p.far >= n) {
-            return Some(n + 1.0);
+        let bent = passed.iter().map(|p| p.far).filter(|far| *far >= n);
+        if let Some(far) = bent.reduce(f32::min) {
+            return Some((far + BEHIND).min(n + 1.0));
         }
-        self.passages.get(passed.len()).map(|p| p.near.ceil())
+        self.passages.get(passed.len()).map(|p| p.near)
     }
 
     /// True where there are passages at or before a sample, and at or behind it.
@@ -106,8 +111,14 @@ mod tests {
     #[test]
     fn samples_outside_are_passed_at_once_and_bent_faces_one_by_one() {
         let boundary = boundary();
-        for (n, next) in [(3.0, Some(10.0)), (10.0, Some(11.0)), (18.0, Some(19.0))] {
-            assert_eq!(boundary.next(n), next, "{n}");
+        let places = [
+            (3.0, 10.0),
+            (10.0, 10.0 + BEHIND),
+            (18.0, 19.0),
+            (19.5, 20.0 + BEHIND),
+        ];
+        for (n, next) in places {
+            assert_eq!(boundary.next(n), Some(next), "{n}");
         }
         assert_eq!(boundary.next(31.0), None);
         assert!(boundary.surrounds(15.0) && !boundary.surrounds(5.0) && !boundary.surrounds(35.0));

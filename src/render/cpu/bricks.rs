@@ -4,8 +4,9 @@
 use super::pieces::in_groups;
 use super::resample::Field;
 use crate::render::job::Progress;
-use crate::render::plan::bricks::{Classifier, bricks_of_volume, levels, range_maxima};
-use crate::render::plan::layout::{BRICK, BricksInfo, LUT_SIZE};
+use crate::render::plan::bricks::{Classifier, bricks_of_volume, levels};
+use crate::render::plan::layout::{BRICK, BricksInfo};
+use crate::render::plan::majorants::Majorants;
 
 /// How rays pass a part of a volume.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -64,7 +65,7 @@ impl Bricks {
     /// averages.
     pub fn classify(&mut self, by: &Classifier<'_>, averages: u32) {
         let info = by.info(self.info, averages);
-        let maxima = range_maxima(by.transfer);
+        let majorants = Majorants::new(by.transfer);
         let position =
             |stored: f32| (info.position_low + info.position_scale * stored).clamp(0.0, 1.0);
         self.parts.truncate(1);
@@ -73,7 +74,7 @@ impl Bricks {
                 true => {
                     let fades = !by.weighted && part.presence < 1.0;
                     let low = if fades { 0.0 } else { part.low };
-                    largest_extinction(&maxima, position(low), position(part.high))
+                    majorants.between(position(low), position(part.high))
                 }
                 false => 0.0,
             };
@@ -190,14 +191,4 @@ fn index_in([x, y, z]: [u32; 3], size: [u32; 3]) -> usize {
 fn place_of(n: usize, [width, height, _]: [u32; 3]) -> [u32; 3] {
     let n = n as u32;
     [n % width, n / width % height, n / width / height]
-}
-
-/// Largest extinction between two positions: of two overlapping spans of 2^l table entries.
-fn largest_extinction(maxima: &[f32], low: f32, high: f32) -> f32 {
-    let entries = LUT_SIZE as usize;
-    let [low, high] = [low, high].map(|position| position * (entries - 1) as f32);
-    let (first, last) = (low.floor() as usize, high.ceil() as usize);
-    let level = (last - first + 1).ilog2() as usize;
-    let row = &maxima[level * entries..(level + 1) * entries];
-    row[first].max(row[last + 1 - (1 << level)])
 }

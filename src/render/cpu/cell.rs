@@ -5,6 +5,7 @@
 
 use glam::{Vec2, Vec3A, Vec4};
 
+use super::each::Each;
 use super::grid::{Grid, Pillar};
 
 /// The map of a cell.
@@ -66,6 +67,7 @@ pub struct Inverse {
 
 impl Inverse {
     /// How the parameters change along a displacement.
+    #[inline]
     pub fn along(&self, displacement: Vec3A) -> Vec3A {
         let [u, v, w] = self.rows;
         Vec3A::new(
@@ -78,9 +80,10 @@ impl Inverse {
 
 impl Cell {
     /// The map of a drawn cell.
+    #[inline]
     pub fn load(grid: &Grid, column: u32, layer: u32) -> Self {
         let lists = grid.lists(column);
-        let [top, bottom] = [0, 1].map(|bottom| grid.layer_depths(lists, layer, bottom));
+        let [top, bottom] = grid.corner_depths(lists, layer);
         let pillars = grid.pillars(column);
         let values = grid.corner_values(column, layer);
         let corner = |n: usize| {
@@ -109,11 +112,13 @@ impl Cell {
     }
 
     /// A point of grid space relative to the cell's first corner.
+    #[inline]
     pub fn relative_to(&self, point: Vec3A) -> Vec3A {
         (point - self.base) - self.offset
     }
 
     /// Place and value at parameters.
+    #[inline]
     pub fn evaluate(&self, q: Vec3A) -> Vec4 {
         self.k0
             + q.x * (self.ku + q.y * self.kuv)
@@ -122,16 +127,27 @@ impl Cell {
     }
 
     /// Place at parameters.
+    #[inline]
     pub fn place(&self, q: Vec3A) -> Vec3A {
         Vec3A::from_vec4(self.evaluate(q))
     }
 
     /// Value at parameters, which are clamped into the cell.
     pub fn value(&self, q: Vec3A) -> f32 {
-        self.evaluate(q.clamp(Vec3A::ZERO, Vec3A::ONE)).w
+        self.values(q.to_array().map(Vec4::splat)).x
+    }
+
+    /// Values at four places, by their parameters u, v and w, which are clamped into the cell.
+    #[inline]
+    pub fn values(&self, parameters: [Vec4; 3]) -> Vec4 {
+        let [u, v, w] = parameters.each(|q| q.clamp(Vec4::ZERO, Vec4::ONE));
+        let flat = self.k0.w + u * self.ku.w + v * (self.kv.w + u * self.kuv.w);
+        let per_w = self.kw.w + u * self.kuw.w + v * (self.kvw.w + u * self.kuvw.w);
+        flat + w * per_w
     }
 
     /// How a place in the cell changes with each of the parameters.
+    #[inline]
     pub fn tangents(&self, q: Vec3A) -> [Vec3A; 3] {
         [
             self.ku + q.y * self.kuv + q.z * (self.kuw + q.y * self.kuvw),
@@ -142,6 +158,7 @@ impl Cell {
     }
 
     /// The inverse Jacobian; `None` in a cell without volume.
+    #[inline]
     pub fn inverse(&self, q: Vec3A) -> Option<Inverse> {
         let [tu, tv, tw] = self.tangents(q);
         let nu = tv.cross(tw);
@@ -153,6 +170,7 @@ impl Cell {
     }
 
     /// How the parameters change along a displacement; not at all in a cell without volume.
+    #[inline]
     pub fn parameters_along(&self, q: Vec3A, displacement: Vec3A) -> Vec3A {
         self.inverse(q)
             .map_or(Vec3A::ZERO, |inverse| inverse.along(displacement))
@@ -245,6 +263,7 @@ impl Cell {
 }
 
 /// A corner relative to the first one; differences of large numbers first.
+#[inline]
 fn corner_at(pillar: &Pillar, first: &Pillar, top: f32, depth: f32, value: f32) -> Vec4 {
     let down = depth - top;
     let xy = (pillar.at - first.at)
@@ -255,6 +274,7 @@ fn corner_at(pillar: &Pillar, first: &Pillar, top: f32, depth: f32, value: f32) 
 }
 
 /// True where parameters are in the cell.
+#[inline]
 pub fn is_inside(q: Vec3A) -> bool {
     (q.cmpge(Vec3A::splat(-INSIDE_SLACK)) & q.cmple(Vec3A::splat(1.0 + INSIDE_SLACK))).all()
 }

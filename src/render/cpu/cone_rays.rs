@@ -8,6 +8,7 @@ use glam::Vec3A;
 use super::extinction::depth_of;
 use super::lamps::{Lamp, across};
 use super::random::{pcg, unit};
+use super::transfer::passed;
 use super::volume::Voxels;
 
 /// Angle between the directions of rings that follow each other.
@@ -52,7 +53,7 @@ impl ConeRays<'_> {
             // Golden angles spread the rings' directions; one random turn for all of them.
             let (up, aside) = (GOLDEN_ANGLE * n as f32 + first_turn).sin_cos();
             let direction = cosine * axis + sine * (aside * side[0] + up * side[1]);
-            sum += cosine * (-self.depth(p, direction, range, chance[2])).exp();
+            sum += cosine * passed(self.depth(p, direction, range, chance[2]));
             weights += cosine;
         }
         sum / weights

@@ -5,6 +5,7 @@ use glam::Vec3A;
 
 use super::extinction::Pyramid;
 use super::lamps::{Lamp, Section, across};
+use super::transfer::passed;
 use crate::render::plan::layout::LightingInfo;
 
 /// Centers of three circles packed in a circle, as a part of its radius; and of the outer six of seven.
@@ -54,7 +55,7 @@ impl<const N: usize> Parts<N> {
     }
 
     fn transmittances(&self) -> [f32; N] {
-        self.depths.map(|depth| (-depth).exp())
+        self.depths.map(passed)
     }
 }
 
@@ -80,7 +81,7 @@ impl<'a> Cones<'a> {
         }
         let depth = levels[section.level.min(levels.len() - 1)].sample(p * self.scale);
         match off > 0.0 {
-            true => (-off).exp() * depth,
+            true => passed(off) * depth,
             false => depth,
         }
     }

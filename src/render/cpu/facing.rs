@@ -3,6 +3,7 @@
 
 use glam::{Vec2, Vec3A, Vec4};
 
+use super::each::Each;
 use super::grid::{Grid, all_coincide};
 use crate::render::plan::layout::LIST_OFFSET;
 
@@ -19,6 +20,7 @@ pub struct FacePlace {
 
 impl FacePlace {
     /// The place of a face.
+    #[inline]
     pub fn of(number: u32, nk: u32) -> Self {
         Self {
             column: number / 6 / nk,
@@ -30,6 +32,7 @@ impl FacePlace {
 
 /// Corner (di + 2 dj + 4 dk) of a face: bit 0 of `number` counts along the first other axis, bit 1 along the second.
 /// Two triangles, 0 1 3 and 0 3 2: both cells of a face cut it along the same diagonal.
+#[inline]
 pub fn face_corner(face: u32, number: u32) -> u32 {
     let (axis, side) = (face >> 1, face & 1);
     let (first, second) = (number & 1, number >> 1);
@@ -41,6 +44,7 @@ pub fn face_corner(face: u32, number: u32) -> u32 {
 }
 
 /// Parameters in the cell of a point on one of its faces.
+#[inline]
 pub fn on_face(face: u32, at: Vec2) -> Vec3A {
     let side = (face & 1) as f32;
     match face >> 1 {
@@ -51,6 +55,7 @@ pub fn on_face(face: u32, at: Vec2) -> Vec3A {
 }
 
 /// +1 where the triangles' sense is that of the outward normal in a right-handed cell, else -1.
+#[inline]
 pub fn face_orientation(face: u32) -> f32 {
     let is_plus = face & 1 == 1;
     let is_second = face >> 1 == 1;
@@ -58,6 +63,7 @@ pub fn face_orientation(face: u32) -> f32 {
 }
 
 /// The column across a lateral face; `None` outside the grid.
+#[inline]
 pub fn column_behind(grid: &Grid, column: u32, face: u32) -> Option<u32> {
     let info = &grid.compact.info;
     let (at, size, stride) = match face < 2 {
@@ -71,6 +77,7 @@ pub fn column_behind(grid: &Grid, column: u32, face: u32) -> Option<u32> {
 }
 
 /// The column's two depth lists on a lateral face.
+#[inline]
 pub fn side_lists(lists: [u32; 4], face: u32) -> [u32; 2] {
     let [a, b, c, d] = lists;
     match face {
@@ -82,9 +89,10 @@ pub fn side_lists(lists: [u32; 4], face: u32) -> [u32; 2] {
 }
 
 /// True where a layer of two columns, given by their lists on the face between them, is not displaced.
+#[inline]
 pub fn sides_join(grid: &Grid, mine: [u32; 2], theirs: [u32; 2], layer: u32) -> bool {
     // Flags aside, shared lists are one list: no fault.
-    if mine.map(|l| l & LIST_OFFSET) == theirs.map(|l| l & LIST_OFFSET) {
+    if mine.each(|l| l & LIST_OFFSET) == theirs.each(|l| l & LIST_OFFSET) {
         return true;
     }
     all_coincide(
@@ -93,6 +101,7 @@ pub fn sides_join(grid: &Grid, mine: [u32; 2], theirs: [u32; 2], layer: u32) -> 
     )
 }
 
+#[inline]
 fn side_depths(grid: &Grid, [a, b]: [u32; 2], layer: u32) -> Vec4 {
     let entry = Grid::list_entry;
     grid.depths_at([

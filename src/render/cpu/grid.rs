@@ -5,13 +5,15 @@
 
 use glam::{Vec2, Vec4};
 
+use super::each::Each;
 use crate::model::{Grid as Model, topology};
 use crate::render::plan::columns::COLUMN_MARGINS;
 use crate::render::plan::layout::{COLUMN_FLAG, LIST_GAPPED, LIST_OFFSET};
+use crate::render::plan::visible::HeldCells;
 use crate::render::plan::{CompactGrid, drawn_words, ghost_words, values};
 use crate::render::{DeviceBytes, RenderError};
 use crate::scene::Interpolation;
-use crate::view::ShownCells;
+use crate::view::{ShownCells, View};
 
 /// Corners closer than this along their pillar coincide.
 pub const COINCIDENT: f32 = topology::COINCIDENT as f32;
@@ -92,6 +94,7 @@ impl Grid {
     }
 
     /// Layers.
+    #[inline]
     pub fn nk(&self) -> u32 {
         self.compact.info.nk
     }
@@ -102,11 +105,13 @@ impl Grid {
     }
 
     /// The four depth lists of a column with their flags.
+    #[inline]
     pub fn lists(&self, column: u32) -> [u32; 4] {
         self.compact.column_lists[column as usize]
     }
 
     /// A pillar by its number.
+    #[inline]
     pub fn pillar(&self, number: u32) -> Pillar {
         let [at, low_bits, slope] = self.compact.pillars[number as usize].map(Vec2::from_array);
         Pillar {
@@ -117,6 +122,7 @@ impl Grid {
     }
 
     /// Numbers of the four pillars of a column.
+    #[inline]
     pub fn pillar_index(&self, column: u32) -> [u32; 4] {
         let ni = self.compact.info.ni;
         let first = column % ni + (ni + 1) * (column / ni);
@@ -124,8 +130,9 @@ impl Grid {
     }
 
     /// The four pillars of a column.
+    #[inline]
     pub fn pillars(&self, column: u32) -> [Pillar; 4] {
-        self.pillar_index(column).map(|number| self.pillar(number))
+        self.pillar_index(column).each(|number| self.pillar(number))
     }
 
     /// How far outside its column, in cell widths, a point may seem by the horizontal section.
@@ -134,18 +141,44 @@ impl Grid {
         COLUMN_MARGINS[bit(0) + bit(1) + bit(2)] as f32
     }
 
+    #[inline]
     fn bit_of(&self, column: u32, layer: u32) -> (usize, u32) {
         let slot = column * self.nk() + layer;
         ((slot >> 5) as usize, slot & 31)
     }
 
     /// True where a cell is drawn.
+    #[inline]
     pub fn is_drawn(&self, column: u32, layer: u32) -> bool {
         let (word, bit) = self.bit_of(column, layer);
         self.drawn_cells[word][0] >> bit & 1 == 1
     }
 
+    /// True where rays meet a cell: where it is among those with a bit, or is drawn where no bits are given.
+    #[inline]
+    pub fn is_met(&self, visible: Option<&[u32]>, column: u32, layer: u32) -> bool {
+        let Some(words) = visible else {
+            return self.is_drawn(column, layer);
+        };
+        let (word, bit) = self.bit_of(column, layer);
+        words[word] >> bit & 1 == 1
+    }
+
+    /// Bits of the drawn cells in which a view shows something; `None` where rays meet all drawn cells.
+    pub fn visible_words(&self, view: &View) -> Option<Vec<u32>> {
+        let held = HeldCells {
+            nk: self.nk(),
+            interpolation: self.interpolation,
+            lists: &self.compact.column_lists,
+            values: &self.values,
+            drawn: &self.drawn_cells,
+            ghosts: self.ghost_cells.as_deref(),
+        };
+        held.visible(view)
+    }
+
     /// True where a cell is an inactive one that is shown.
+    #[inline]
     pub fn is_ghost(&self, column: u32, layer: u32) -> bool {
         let (word, bit) = self.bit_of(column, layer);
         let ghosts = self.ghost_cells.as_ref();
@@ -153,6 +186,7 @@ impl Grid {
     }
 
     /// The value of a drawn cell, where values are constant in cells.
+    #[inline]
     pub fn cell_value(&self, column: u32, layer: u32) -> f32 {
         let (word, bit) = self.bit_of(column, layer);
         let [bits, before] = self.drawn_cells[word];
@@ -161,6 +195,7 @@ impl Grid {
     }
 
     /// Position in the depth lists of a layer's top (0) or bottom (1).
+    #[inline]
     pub fn list_entry(list: u32, layer: u32, bottom: u32) -> u32 {
         let layers = if list & LIST_GAPPED != 0 {
             2 * layer
@@ -171,43 +206,67 @@ impl Grid {
     }
 
     /// Positions in the depth lists of the four corners of a layer's top (0) or bottom (1).
+    #[inline]
     pub fn layer_entries(lists: [u32; 4], layer: u32, bottom: u32) -> [u32; 4] {
-        lists.map(|list| Self::list_entry(list, layer, bottom))
+        lists.each(|list| Self::list_entry(list, layer, bottom))
     }
 
     /// A depth by its position in the lists.
+    #[inline]
     pub fn depth(&self, entry: u32) -> f32 {
         self.compact.depths[entry as usize]
     }
 
     /// Depths of the four corners of a layer's top (0) or bottom (1).
+    #[inline]
     pub fn layer_depths(&self, lists: [u32; 4], layer: u32, bottom: u32) -> Vec4 {
         self.depths_at(Self::layer_entries(lists, layer, bottom))
     }
 
-    /// Four depths.
-    pub fn depths_at(&self, entries: [u32; 4]) -> Vec4 {
-        Vec4::from_array(entries.map(|entry| self.depth(entry)))
+    /// True where a layer lies on the next one below, without a gap.
+    #[inline]
+    pub fn layers_join(&self, lists: [u32; 4], upper: u32) -> bool {
+        let gapped = (lists[0] | lists[1] | lists[2] | lists[3]) & LIST_GAPPED;
+        let depths = |layer, bottom| self.layer_depths(lists, layer, bottom);
+        gapped == 0 || all_coincide(depths(upper, 1), depths(upper + 1, 0))
     }
 
-    /// Four values at vertices.
-    pub fn values_at(&self, entries: [u32; 4]) -> Vec4 {
-        Vec4::from_array(entries.map(|entry| self.values[entry as usize]))
+    /// Four depths.
+    #[inline]
+    pub fn depths_at(&self, entries: [u32; 4]) -> Vec4 {
+        Vec4::from_array(entries.each(|entry| self.depth(entry)))
     }
 
     /// Values at the corners of a cell's top, and of its bottom.
+    #[inline]
     pub fn corner_values(&self, column: u32, layer: u32) -> [Vec4; 2] {
         match self.interpolation {
             Interpolation::Cell => [Vec4::splat(self.cell_value(column, layer)); 2],
-            Interpolation::Vertex => {
-                let lists = self.lists(column);
-                [0, 1].map(|bottom| self.values_at(Self::layer_entries(lists, layer, bottom)))
-            }
+            Interpolation::Vertex => of_cell(&self.values, self.lists(column), layer),
         }
+    }
+
+    /// Depths at the corners of a cell's top, and of its bottom.
+    #[inline]
+    pub fn corner_depths(&self, lists: [u32; 4], layer: u32) -> [Vec4; 2] {
+        of_cell(&self.compact.depths, lists, layer)
     }
 }
 
+/// Entries of depth lists, or of what is numbered as they are, at the corners of a cell's top, and of its bottom.
+#[inline]
+fn of_cell(entries: &[f32], lists: [u32; 4], layer: u32) -> [Vec4; 2] {
+    // The two of a pillar follow each other.
+    let pairs = lists.each(|list| {
+        let top = Grid::list_entry(list, layer, 0) as usize;
+        let pair = &entries[top..top + 2];
+        [pair[0], pair[1]]
+    });
+    [0, 1].each(|bottom| Vec4::from_array(pairs.each(|pair| pair[bottom])))
+}
+
 /// True where corners lie on each other.
+#[inline]
 pub fn all_coincide(a: Vec4, b: Vec4) -> bool {
     (a - b).abs().cmple(Vec4::splat(COINCIDENT)).all()
 }

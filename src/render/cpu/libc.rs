@@ -10,6 +10,7 @@
 
 use glam::{Vec2, Vec3A, Vec4};
 
+use super::each::Each;
 use super::facing::{
     FacePlace, column_behind, face_corner, face_orientation, on_face, side_lists, sides_join,
 };
@@ -18,8 +19,10 @@ use super::grid::{Grid, all_coincide};
 use super::locate::{Query, locate};
 use super::projection::{RayFrame, cross2d};
 use super::raster::Met;
+use super::samples::Samples;
 use super::scene::Scene;
 use super::section::SECTION_ENOUGH;
+use super::segments::Span;
 use super::surfaces::Layers;
 use super::tally::Tally;
 use super::thorough::encloses;
@@ -31,10 +34,6 @@ use crate::scene::{Integration, Interpolation, LibcSettings};
 const MOST_STALLS: u32 = 32;
 /// Recoveries of one ray after which it counts as lost.
 const MOST_RECOVERIES: u32 = 1000;
-/// Optical depth and part of the value range that one piece of a segment may have.
-const PIECE_DEPTH: f32 = 0.5;
-const PIECE_RANGE: f32 = 0.05;
-const MOST_PIECES: f32 = 16.0;
 
 /// A boundary face through which a ray comes in.
 #[derive(Debug, Clone, Copy)]
@@ -226,7 +225,7 @@ impl Walk<'_> {
         let (column, layer) = (self.column, self.layer);
         self.phase = Phase::NeedsEntry;
         if face >= 4 {
-            if let Some(next) = next_layer(grid, column, layer, face & 1, self.way.settings) {
+            if let Some(next) = next_layer(self.way, column, layer, face & 1) {
                 self.uvw.z = 1.0 - self.uvw.z;
                 self.come_into(column, next);
             }
@@ -235,10 +234,10 @@ impl Walk<'_> {
         let Some(next) = column_behind(grid, column, face) else {
             return;
         };
-        let [mine, theirs] = [column, next].map(|c| grid.lists(c));
+        let [mine, theirs] = [column, next].each(|c| grid.lists(c));
         let sides = [side_lists(mine, face), side_lists(theirs, face ^ 1)];
         if sides_join(grid, sides[0], sides[1], layer) {
-            if grid.is_drawn(next, layer) {
+            if self.way.scene.is_met(next, layer) {
                 let axis = (face >> 1) as usize;
                 self.uvw[axis] = 1.0 - self.uvw[axis];
                 self.come_into(next, layer);
@@ -261,7 +260,7 @@ impl Walk<'_> {
         let sense = -self.sense(self.exit_face);
         let lists = side_lists(grid.lists(next), face);
         let pillars = grid.pillars(next);
-        let [a, b] = [0, 1].map(|n| pillars[face_corner(face, n) as usize]);
+        let [a, b] = [0, 1].each(|n| pillars[face_corner(face, n) as usize]);
         let is_below = |layer: u32, bottom: u32| {
             let depth = |list: u32| grid.depth(Grid::list_entry(list, layer, bottom));
             let p = self.r.project(&a, depth(lists[0]));
@@ -277,7 +276,7 @@ impl Walk<'_> {
                 high = middle;
             }
         }
-        if low < grid.nk() && grid.is_drawn(next, low) && is_below(low, 0) {
+        if low < grid.nk() && self.way.scene.is_met(next, low) && is_below(low, 0) {
             self.come_into(next, low);
             let (_, at) = self.corners.enter_through(face, self.sense(face));
             self.uvw = on_face(face, at);
@@ -339,13 +338,18 @@ impl Walk<'_> {
             if to <= from {
                 return;
             }
-            if is_ghost {
-                let middle = ray.at(0.5 * (from + to));
-                let entry = scene.shading.shade_entry(scene.ghost, middle, true);
-                sum.absorb(entry, entry.w * (to - from));
-            } else {
-                let segment = self.segment(t, uvw);
-                tally.samples += integrate_segment(scene, ray, &segment, sum, [from, to]);
+            let span = Span {
+                scene,
+                ray,
+                from,
+                to,
+            };
+            match is_ghost {
+                true => span.of_ghost(sum),
+                false => {
+                    let segment = self.segment(t, uvw);
+                    tally.samples += span.by_value(sum, |t| segment.values(t));
+                }
             }
             return;
         }
@@ -359,7 +363,7 @@ impl Walk<'_> {
         if count <= 0.0 {
             return;
         }
-        let even = match (is_ghost, scene.grid.interpolation) {
+        let entry = match (is_ghost, scene.grid.interpolation) {
             (true, _) => Some(scene.ghost),
             (false, Interpolation::Vertex) => None,
             (false, Interpolation::Cell) => {
@@ -367,22 +371,21 @@ impl Walk<'_> {
                 Some(scene.transfer.of(value))
             }
         };
-        if let Some(entry) = even.filter(|_| !scene.shading.varies(is_ghost)) {
-            let entry = scene.shading.shade_entry(entry, ray.base, is_ghost);
-            scene.transfer.accumulate_many(sum, entry, count);
-            tally.samples += count as u64;
-            return;
-        }
-        let segment = even.is_none().then(|| self.segment(t, uvw));
-        let mut n = first;
-        while n < end && scene.transfer.is_open(sum) {
-            let value = |s: &Segment| scene.transfer.of(s.value(ray.distance(step, n)));
-            let entry = even.or(segment.as_ref().map(value)).unwrap_or_default();
-            let entry = scene.shading.shade_entry(entry, ray.sample(n), is_ghost);
-            scene.transfer.accumulate(sum, entry);
-            n += 1.0;
-            tally.samples += 1;
-        }
+        let samples = Samples {
+            scene,
+            ray,
+            first,
+            count,
+        };
+        let taken = match entry {
+            Some(entry) => samples.of_one(entry, is_ghost, layers, sum),
+            None => {
+                let segment = self.segment(t, uvw);
+                let distance = |n: Vec4| (ray.first + n + 0.5) * step;
+                samples.by_value(layers, sum, |n| segment.values(distance(n)))
+            }
+        };
+        tally.samples += taken as u64;
     }
 
     /// The values from where the current cell was entered to an exit.
@@ -399,33 +402,28 @@ impl Walk<'_> {
     }
 }
 
-/// The drawn layer below (`bottom` 1) or above that the ray comes into.
-fn next_layer(
-    grid: &Grid,
-    column: u32,
-    layer: u32,
-    bottom: u32,
-    settings: LibcSettings,
-) -> Option<u32> {
+/// The layer below (`bottom` 1) or above that the ray comes into.
+fn next_layer(way: &Way<'_>, column: u32, layer: u32, bottom: u32) -> Option<u32> {
+    let grid = way.scene.grid;
     let lists = grid.lists(column);
-    let mine = grid.layer_depths(lists, layer, bottom);
     let mut at = layer;
     loop {
-        at = match bottom {
+        let next = match bottom {
             0 => at.checked_sub(1)?,
             _ => at + 1,
         };
-        let joins = |side: u32| all_coincide(mine, grid.layer_depths(lists, at, side));
-        if at >= grid.nk() || !joins(1 - bottom) {
+        if next >= grid.nk() || !grid.layers_join(lists, at.min(next)) {
             return None;
         }
-        if grid.is_drawn(column, at) {
-            return Some(at);
+        if way.scene.is_met(column, next) {
+            return Some(next);
         }
         // A layer without thickness hides nothing; what is behind it joins.
-        if !settings.cross_faults || !joins(bottom) {
+        let [top, bottom] = grid.corner_depths(lists, next);
+        if !way.settings.cross_faults || !all_coincide(top, bottom) {
             return None;
         }
+        at = next;
     }
 }
 
@@ -456,8 +454,8 @@ impl Corners {
             None => (column, pillars_of(grid, r, column)),
         });
         let lists = grid.lists(column);
-        let depths = [0, 1].map(|bottom| grid.layer_depths(lists, layer, bottom));
-        let [x, y, z] = pillars.map(|[at, slope]| depths.map(|depth| at + depth * slope));
+        let depths = grid.corner_depths(lists, layer);
+        let [x, y, z] = pillars.each(|[at, slope]| depths.each(|depth| at + depth * slope));
         (self.x, self.y, self.z) = (x, y, z);
     }
 
@@ -496,8 +494,8 @@ impl Corners {
         let w = area([xt, yt], [xb, yb]);
         // Of diagonals 06, 17, 05, 27, and 03, 47.
         let lateral = area(
-            [xt, yt].map(|top| Vec4::new(top.x, top.y, top.x, top.z)),
-            [xb, yb].map(|bottom| Vec4::new(bottom.z, bottom.w, bottom.y, bottom.w)),
+            [xt, yt].each(|top| Vec4::new(top.x, top.y, top.x, top.z)),
+            [xb, yb].each(|bottom| Vec4::new(bottom.z, bottom.w, bottom.y, bottom.w)),
         );
         let flat = area(pick([0, 0]), pick([3, 3]));
         [
@@ -553,7 +551,7 @@ impl Corners {
 
     /// Distance and parameters on a face of the point at which a ray comes in, clamped into the face.
     fn enter_through(&self, face: u32, sense: f32) -> (f32, Vec2) {
-        let [q00, q10, q01, q11] = [0, 1, 2, 3].map(|n| self.corner(face_corner(face, n)));
+        let [q00, q10, q01, q11] = [0, 1, 2, 3].each(|n| self.corner(face_corner(face, n)));
         let e0 = (sense * cross2d(q00, q10)).max(0.0);
         let e1 = (sense * cross2d(q10, q11)).max(0.0);
         let d = sense * cross2d(q00, q11);
@@ -572,12 +570,12 @@ impl Corners {
 
 /// Pillars of a column as a ray sees them: x, y and distance, of the four of them.
 fn pillars_of(grid: &Grid, r: &RayFrame, column: u32) -> [[Vec4; 2]; 3] {
-    let pillars = grid.pillars(column).map(|pillar| {
+    let pillars = grid.pillars(column).each(|pillar| {
         let at = r.project(&pillar, 0.0);
         [at, r.turned(pillar.slope.extend(1.0).into())]
     });
-    [0, 1, 2].map(|axis| {
-        [0, 1].map(|what| Vec4::from_array(pillars.map(|pillar: [Vec3A; 2]| pillar[what][axis])))
+    [0, 1, 2].each(|axis| {
+        [0, 1].each(|what| Vec4::from_array(pillars.each(|pillar: [Vec3A; 2]| pillar[what][axis])))
     })
 }
 
@@ -611,7 +609,13 @@ impl Sides {
     }
 
     fn of(&self, lane: usize) -> [f32; 5] {
-        [self.e0, self.e1, self.d, self.f, self.g].map(|side| side[lane])
+        [
+            self.e0[lane],
+            self.e1[lane],
+            self.d[lane],
+            self.f[lane],
+            self.g[lane],
+        ]
     }
 }
 
@@ -626,49 +630,15 @@ struct Segment {
 }
 
 impl Segment {
-    fn value(&self, t: f32) -> f32 {
-        let q = self.uvw + self.along * ((t - self.t) / self.length).clamp(0.0, 1.0);
-        let values = self.top + q.z * (self.bottom - self.top);
-        let low = values.x + q.x * (values.y - values.x);
-        let high = values.z + q.x * (values.w - values.z);
-        low + q.y * (high - low)
+    /// Values at four distances.
+    #[inline]
+    fn values(&self, t: Vec4) -> Vec4 {
+        let s = ((t - self.t) / self.length).clamp(Vec4::ZERO, Vec4::ONE);
+        let [u, v, w] = [0, 1, 2].each(|axis| self.uvw[axis] + s * self.along[axis]);
+        let (top, change) = (self.top, self.bottom - self.top);
+        let [c0, c1, c2, c3] = [0, 1, 2, 3].each(|corner| top[corner] + w * change[corner]);
+        let low = c0 + u * (c1 - c0);
+        let high = c2 + u * (c3 - c2);
+        low + v * (high - low)
     }
-}
-
-/// The segment in pieces so small that the order of colors within one does not matter; in each the means of extinction
-/// and color over its values are differences of integrals. Returns their number.
-fn integrate_segment(
-    scene: &Scene<'_>,
-    ray: &Ray,
-    segment: &Segment,
-    sum: &mut Accumulated,
-    [from, to]: [f32; 2],
-) -> u64 {
-    let transfer = &scene.transfer;
-    let length = to - from;
-    let values = [from, from + 0.5 * length, to].map(|t| segment.value(t));
-    let [low, high] = [f32::min, f32::max].map(|of: fn(f32, f32) -> f32| {
-        let [first, middle, last] = values;
-        of(of(first, middle), last)
-    });
-    let extinctions = values.map(|value| transfer.of(value).w);
-    let depth = length * extinctions.into_iter().fold(0.0, f32::max);
-    let range = (high - low) * transfer.value_scale();
-    let pieces = (depth / PIECE_DEPTH).max(range / PIECE_RANGE).ceil();
-    let pieces = pieces.clamp(1.0, MOST_PIECES);
-    let mut before = values[0];
-    let mut done = 0.0;
-    while done < pieces && transfer.is_open(sum) {
-        done += 1.0;
-        let value = segment.value(from + length * done / pieces);
-        let mean = transfer.mean(before, value);
-        let color = Vec3A::from_vec4(mean) / mean.w.max(1e-30);
-        let middle = ray.at(from + length * (done - 0.5) / pieces);
-        let entry = scene
-            .shading
-            .shade_entry(color.extend(mean.w), middle, false);
-        sum.absorb(entry, mean.w * length / pieces);
-        before = value;
-    }
-    done as u64
 }

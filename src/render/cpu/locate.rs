@@ -7,6 +7,7 @@
 use glam::{UVec2, Vec2, Vec3A, Vec4};
 
 use super::cell::{Cell, Solution, inverse_bilinear, is_between};
+use super::each::Each;
 use super::grid::{COINCIDENT, Grid, Pillar};
 use super::thorough::{encloses, may_hold, solve_by_parts};
 use crate::render::plan::layout::BIN_IS_ODD;
@@ -144,7 +145,7 @@ impl Search<'_> {
 
     fn in_column(&mut self, column: u32) -> bool {
         let pillars = self.grid.pillars(column);
-        let corners = [0, 1, 2, 3].map(|n| self.section_corner(&pillars[n]));
+        let corners = [0, 1, 2, 3].each(|n| self.section_corner(&pillars[n]));
         let margin = Grid::column_margin(self.grid.lists(column));
         // Motion across the section in one step.
         let slope: Vec2 = pillars.iter().map(|p| p.slope).sum();
@@ -240,7 +241,7 @@ impl Search<'_> {
         let mut direction = 0;
         let mut is_pinched = false;
         for _ in 0..LAYER_MOVES {
-            let [top_depths, bottom_depths] = [0, 1].map(|b| grid.layer_depths(lists, layer, b));
+            let [top_depths, bottom_depths] = [0, 1].each(|b| grid.layer_depths(lists, layer, b));
             let edges = (bottom_depths - top_depths).abs();
             is_pinched |= edges.cmple(Vec4::splat(COINCIDENT)).any();
             let top = self.height(weights, top_depths);
@@ -316,7 +317,7 @@ impl Search<'_> {
         let lists = grid.lists(column);
         for layer in (0..grid.nk()).filter(|layer| grid.is_drawn(column, *layer)) {
             let [top, bottom] = [0, 1]
-                .map(|b| grid.layer_depths(lists, layer, b) - Vec4::splat(self.query.point.z));
+                .each(|b| grid.layer_depths(lists, layer, b) - Vec4::splat(self.query.point.z));
             if top.min(bottom).min_element() > COINCIDENT
                 || top.max(bottom).max_element() < -COINCIDENT
                 || top == bottom
@@ -360,7 +361,7 @@ fn steps_to_section([q0, q1, q2, q3]: [Vec2; 4], motion: Vec2, margin: f32) -> O
     let edges = [q1 - q0, q3 - q1, q2 - q3, q0 - q2];
     let corners = [q0, q1, q3, q2];
     let area = 0.5 * ((q1 - q0).perp_dot(q3 - q0) + (q3 - q0).perp_dot(q2 - q0));
-    let turns = [0, 1, 2, 3].map(|n| edges[n].perp_dot(edges[(n + 1) % 4]) / area);
+    let turns = [0, 1, 2, 3].each(|n| edges[n].perp_dot(edges[(n + 1) % 4]) / area);
     if !turns.iter().all(|turn| *turn >= 0.0) {
         return None;
     }
@@ -384,7 +385,7 @@ fn section_speed([q0, q1, q2, q3]: [Vec2; 4], motion: Vec2) -> f32 {
         (q3 - q2).perp_dot(q2 - q0),
         (q3 - q2).perp_dot(q3 - q1),
     );
-    let along = [q1 - q0, q3 - q2, q2 - q0, q3 - q1].map(|edge| motion.perp_dot(edge).abs());
+    let along = [q1 - q0, q3 - q2, q2 - q0, q3 - q1].each(|edge| motion.perp_dot(edge).abs());
     let along = Vec4::from_array(along).max_element();
     along / turns.min_element().max(-turns.max_element()).max(1e-20)
 }

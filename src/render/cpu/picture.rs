@@ -217,7 +217,13 @@ impl Picture<'_> {
             Strategy::Plts => {
                 let inside = scene.frame.is_in_box(through.origin);
                 boundary.gather(pixel.met, &through, &ray, scene.frame.numbers.step, inside);
-                plts::cast(scene, &ray, boundary, layers, &mut sum, tally);
+                let way = plts::Way {
+                    scene,
+                    ray: &ray,
+                    boundary,
+                    integration: self.view.sampling.plts.integration,
+                };
+                way.cast(layers, &mut sum, tally);
             }
             Strategy::Libc => {
                 libc::gather(pixel.met, &through, entries);

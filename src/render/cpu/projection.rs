@@ -33,28 +33,33 @@ impl RayFrame {
     }
 
     /// A corner relative to the frame's origin, in grid space.
+    #[inline]
     pub fn relative(&self, pillar: &Pillar, depth: f32) -> Vec3A {
         let xy = (pillar.at - self.origin.truncate()) + (pillar.low_bits + pillar.slope * depth);
         xy.extend(depth - self.origin.z).into()
     }
 
     /// A corner: two coordinates across the ray and the distance along it.
+    #[inline]
     pub fn project(&self, pillar: &Pillar, depth: f32) -> Vec3A {
         self.projected(self.relative(pillar, depth))
     }
 
     /// A point relative to the frame's origin: two coordinates across the ray and the distance along it.
+    #[inline]
     pub fn projected(&self, relative: Vec3A) -> Vec3A {
         self.turned(relative) + self.t_origin * Vec3A::Z
     }
 
     /// A displacement: two coordinates across the ray and the distance along it.
+    #[inline]
     pub fn turned(&self, displacement: Vec3A) -> Vec3A {
         self.to_ray * displacement
     }
 }
 
 /// Twice the area that two vectors across the ray span.
+#[inline]
 pub fn cross2d(a: Vec3A, b: Vec3A) -> f32 {
     a.x * b.y - a.y * b.x
 }

@@ -5,6 +5,7 @@
 use glam::{DVec3, Vec2};
 use rayon::prelude::*;
 
+use super::each::Each;
 use super::facing::{FacePlace, face_corner, face_orientation};
 use super::frame::Frame;
 use super::grid::Grid;
@@ -70,7 +71,7 @@ impl<'a> Projector<'a> {
         let place = FacePlace::of(number, self.grid.nk());
         let lists = self.grid.lists(place.column);
         let pillars = self.grid.pillar_index(place.column);
-        [0, 1, 2, 3].map(|n| {
+        [0, 1, 2, 3].each(|n| {
             let corner = face_corner(place.side, n);
             let of_column = (corner & 3) as usize;
             let entry = Grid::list_entry(lists[of_column], place.layer, corner >> 2);
@@ -79,7 +80,7 @@ impl<'a> Projector<'a> {
             let wide = |v: Vec2| v.as_dvec2();
             let xy = wide(pillar.at) + (wide(pillar.low_bits) + wide(pillar.slope) * depth);
             let from_eye = xy.extend(depth) - self.eye;
-            let [x, y, z] = self.rows.map(|row| row.dot(from_eye));
+            let [x, y, z] = self.rows.each(|row| row.dot(from_eye));
             let weight = if self.is_parallel { 1.0 } else { z };
             (DVec3::new(x, y, weight), z)
         })
@@ -98,7 +99,7 @@ impl<'a> Projector<'a> {
         let along = |axis: usize, sign: f64| {
             // In pixels, whose middles are whole numbers.
             let scale = 0.5 * f64::from(self.size[axis]);
-            let at = corners.map(|(h, _)| scale * (1.0 + sign * h[axis] / h.z) - 0.5);
+            let at = corners.each(|(h, _)| scale * (1.0 + sign * h[axis] / h.z) - 0.5);
             let low = at.iter().copied().fold(f64::MAX, f64::min) - 1e-3;
             let high = at.iter().copied().fold(f64::MIN, f64::max) + 1e-3;
             let last = f64::from(self.size[axis] - 1);
@@ -122,7 +123,7 @@ impl<'a> Projector<'a> {
                 edge(2, 0),
                 edge(1, 2),
             ],
-            depths: corners.map(|(_, depth)| depth),
+            depths: corners.each(|(_, depth)| depth),
             sense: self.world_handedness * f64::from(face_orientation(side)),
         }
     }

@@ -22,6 +22,7 @@ use crate::render::job::{Job, Progress};
 use crate::render::line_of_sight::SurfaceTree;
 use crate::render::plan::faces::face_numbers;
 use crate::render::plan::frame::{frame_uniform, ghost};
+use crate::render::plan::visible::{by_active_index, can_be_passed};
 use crate::render::revisions::{RevisionCounter, Revisions};
 use crate::render::{DeviceBytes, Frame, Located, RenderError, Renderer, SetupTimes};
 use crate::scene::StrategyKind;
@@ -44,9 +45,19 @@ pub struct CpuRenderer {
     srg: Srg,
     /// Boundary faces of the drawn cells, once a ray needs them.
     boundary: Kept<Vec<u32>>,
+    /// The visible ones of them, where rays do not meet all.
+    visible: Kept<Option<Visible>>,
     surfaces: Kept<SurfaceFaces>,
     /// Faces of surfaces that were looked at.
     surface_tree: SurfaceTree,
+}
+
+/// The drawn cells in which something shows.
+struct Visible {
+    /// Their bits, by slot.
+    words: Vec<u32>,
+    /// Their boundary faces.
+    boundary: Vec<u32>,
 }
 
 impl CpuRenderer {
@@ -71,6 +82,7 @@ impl CpuRenderer {
             light: Illumination::default(),
             srg: Srg::default(),
             boundary: Kept::default(),
+            visible: Kept::default(),
             surfaces: Kept::default(),
             surface_tree: SurfaceTree::default(),
         })
@@ -93,16 +105,30 @@ impl CpuRenderer {
             let (grid, _) = view.shown.cells.in_grid(model);
             self.srg.update(&source, grid.dims(), &progress).await;
         }
-        let boundary = self.boundary.update(now.drawn, || {
-            let (grid, drawn) = view.shown.cells.in_grid(model);
-            face_numbers(grid, &grid.boundary_faces(drawn))
-        })?;
+        let (grid, drawn) = view.shown.cells.in_grid(model);
+        let faces = |cells: &[bool]| face_numbers(grid, &grid.boundary_faces(cells));
+        let visible = match can_be_passed(view, &self.grid.compact.facts) {
+            true => self.visible.update(now.visible, || {
+                let words = self.grid.visible_words(view);
+                let with_faces = |words: Vec<u32>| {
+                    let boundary = faces(&by_active_index(grid, &words))?;
+                    Ok::<_, RenderError>(Visible { words, boundary })
+                };
+                words.map(with_faces).transpose()
+            })?,
+            false => &None,
+        };
+        let boundary = match visible {
+            Some(visible) => &visible.boundary,
+            None => self.boundary.update(now.drawn, || faces(drawn))?,
+        };
         let surfaces = self
             .surfaces
             .update(now.surfaces, || SurfaceFaces::new(model, view))?;
         let scene = Scene {
             frame: FrameOfRays::new(frame_uniform(&self.grid.compact.facts, view)),
             grid: &self.grid,
+            visible: visible.as_ref().map(|visible| visible.words.as_slice()),
             transfer: Transfer::new(tables, view),
             ghost: Vec4::from(ghost(view)),
             shading: Shading::new(&view.style.lighting, self.light.light()),

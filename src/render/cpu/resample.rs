@@ -2,8 +2,10 @@
 
 use glam::{Vec2, Vec3A, Vec4};
 
+use super::each::Each;
 use super::frame::Ray;
 use super::grid::Grid;
+use super::samples::AHEAD;
 use super::tally::Tally;
 use super::topology::Track;
 use super::volume::{ONE_PART, Voxel, Voxels, averages, in_parts};
@@ -40,14 +42,22 @@ pub enum Field {
 }
 
 impl Field {
-    /// Value times presence, presence, and presence of ghosts.
-    pub fn sample(&self, at: Vec3A, level: usize) -> Vec4 {
+    /// Values times presence, presences, and presences of ghosts at four places of the box.
+    #[inline]
+    pub fn samples(&self, places: [Vec3A; 4], level: usize) -> [Vec4; 3] {
         match self {
             Self::Drawn(levels) => {
-                let [value, presence] = levels[level].sample(at).to_array();
-                ONE_PART * Vec4::new(value, presence, 0.0, 0.0)
+                let [a, b, c, d] = places.each(|at| levels[level].sample(at));
+                [
+                    ONE_PART * Vec4::new(a.x, b.x, c.x, d.x),
+                    ONE_PART * Vec4::new(a.y, b.y, c.y, d.y),
+                    Vec4::ZERO,
+                ]
             }
-            Self::WithGhosts(levels) => ONE_PART * levels[level].sample(at),
+            Self::WithGhosts(levels) => {
+                let found = places.each(|at| ONE_PART * levels[level].sample(at));
+                [0, 1, 2].each(|n| Vec4::from_array(found.each(|voxel| voxel[n])))
+            }
         }
     }
 
@@ -138,17 +148,25 @@ impl<'a> Resampler<'a> {
         while let Some(stretch) = track.next(n, is_next) {
             let cell = track.cell();
             let is_ghost = self.grid.is_ghost(cell.column, cell.layer);
-            for step in 0..=stretch.more as u32 {
-                let at = stretch.first + step as f32;
-                let value = match self.grid.interpolation {
-                    Interpolation::Cell => cell.k0.w,
-                    Interpolation::Vertex => cell.value(stretch.parameters(at)),
+            let last = stretch.first + stretch.more;
+            let mut at = stretch.first;
+            while at <= last {
+                let four = at + AHEAD;
+                let values = match self.grid.interpolation {
+                    Interpolation::Cell => Vec4::splat(cell.k0.w),
+                    Interpolation::Vertex => cell.values(stretch.parameters(four)),
                 };
-                found(Found {
-                    n: at as usize,
-                    stored: ((value - info.value_low) * info.value_scale).clamp(0.0, 1.0),
-                    is_ghost,
-                });
+                let stored = (values - info.value_low) * info.value_scale;
+                let stored = stored.clamp(Vec4::ZERO, Vec4::ONE).to_array();
+                let numbers = four.to_array().into_iter().zip(stored);
+                for (at, stored) in numbers.take_while(|(at, _)| *at <= last) {
+                    found(Found {
+                        n: at as usize,
+                        stored,
+                        is_ghost,
+                    });
+                }
+                at += 4.0;
             }
             n = stretch.first + stretch.more + 1.0;
             is_next = true;

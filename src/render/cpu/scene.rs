@@ -14,6 +14,8 @@ pub struct Scene<'a> {
     pub frame: Frame,
     /// The grid with what is shown of it.
     pub grid: &'a Grid,
+    /// Bits of the cells that rays meet, by slot; `None` where these are all drawn cells.
+    pub visible: Option<&'a [u32]>,
     /// Colors and extinctions.
     pub transfer: Transfer<'a>,
     /// Color and extinction of inactive cells.
@@ -22,4 +24,12 @@ pub struct Scene<'a> {
     pub shading: Shading<'a>,
     /// Which surfaces are shown.
     pub surfaces: Surfaces,
+}
+
+impl Scene<'_> {
+    /// True where rays meet a cell.
+    #[inline]
+    pub fn is_met(&self, column: u32, layer: u32) -> bool {
+        self.grid.is_met(self.visible, column, layer)
+    }
 }

@@ -28,6 +28,7 @@ impl<'a> Shading<'a> {
     }
 
     /// True where the color of a sample depends on where it is.
+    #[inline]
     pub fn varies(&self, is_ghost: bool) -> bool {
         let by_place =
             |light: &Light<'_>| light.shading.lights || light.shading.occlusion != LIGHT_OFF;
@@ -35,6 +36,7 @@ impl<'a> Shading<'a> {
     }
 
     /// Color of a sample at a point of grid space relative to the origin.
+    #[inline]
     pub fn shade(&self, color: Vec3A, point: Vec3A, is_ghost: bool) -> Vec3A {
         match &self.light {
             Some(light) if is_ghost || !self.exact_colors => shaded(light, color, point, is_ghost),
@@ -43,6 +45,7 @@ impl<'a> Shading<'a> {
     }
 
     /// Color and extinction of a sample, its color shaded where it is seen.
+    #[inline]
     pub fn shade_entry(&self, entry: Vec4, point: Vec3A, is_ghost: bool) -> Vec4 {
         match entry.w > 0.0 {
             true => self

@@ -8,12 +8,14 @@
 use glam::{Vec3A, Vec4};
 
 use super::bricks::{Bricks, Pass};
+use super::each::Each;
 use super::frame::{PixelRay, Ray};
 use super::illumination::Source;
 use super::kept::Kept;
 use super::random::{pcg, unit};
 use super::raster::Met;
 use super::resample::{Field, Resampler};
+use super::samples::AHEAD;
 use super::scene::Scene;
 use super::surfaces::Layers;
 use super::tally::Tally;
@@ -243,66 +245,111 @@ pub fn cast(way: &Way<'_>, layers: &mut Layers, sum: &mut Accumulated, tally: &m
             tally.skips += 1;
             continue;
         }
-        let taken = match long_steps {
-            true => stretch.stride.min(stretch.end - n),
-            false => stretch.stride,
+        let left = match long_steps {
+            true => stretch.end - n,
+            false => end - n,
         };
-        let middle = n + 0.5 * (taken - 1.0);
-        layers.blend_until(sum, ray.distance(scene.frame.numbers.step, middle));
-        let voxel = volume
-            .field
-            .sample(base + middle * advance, stretch.level as usize);
-        let before = sum.transmittance;
-        if voxel.y + voxel.z > 0.0 {
-            tally.samples += 1;
-            volume.add(scene, voxel, taken, ray.sample(middle), sum);
-        } else {
-            tally.skips += 1;
-        }
-        sees_nothing = sum.transmittance == before;
-        n += taken;
-        if sum.transmittance < roulette {
-            let survives = random(pixel, n as u32) * roulette < sum.transmittance;
-            sum.transmittance = if survives { roulette } else { 0.0 };
+        let taken = stretch.stride.min(left);
+        let count = (left / taken).clamp(1.0, 4.0) as usize;
+        let middles = n + 0.5 * (taken - 1.0) + taken * AHEAD;
+        let places = middles.to_array().each(|n| base + n * advance);
+        let four = volume.four(scene, places, &stretch, taken);
+        for (lane, middle) in middles.to_array().into_iter().enumerate().take(count) {
+            layers.blend_until(sum, ray.distance(scene.frame.numbers.step, middle));
+            let sample = four.sample(lane);
+            let met = u64::from(sample.is_met);
+            tally.samples += met;
+            tally.skips += 1 - met;
+            sees_nothing = sample.opacity == 0.0 && sample.ghost == 0.0;
+            if !sees_nothing {
+                sample.add(scene, ray.sample(middle), sum);
+            }
+            n += taken;
+            if sum.transmittance < roulette {
+                let survives = random(pixel, n as u32) * roulette < sum.transmittance;
+                sum.transmittance = if survives { roulette } else { 0.0 };
+            }
+            if !scene.transfer.is_open(sum) {
+                break;
+            }
         }
     }
 }
 
-impl SrgVolume<'_> {
-    /// Adds a sample that stands for `taken` of them; its opacity is multiplied by presence.
-    fn add(&self, scene: &Scene<'_>, voxel: Vec4, taken: f32, place: Vec3A, sum: &mut Accumulated) {
-        let step = scene.frame.numbers.step;
-        let opacity_of = |presence: f32, extinction: f32| match presence * extinction > 0.0 {
-            true => presence * (1.0 - (-extinction * step).exp()),
-            false => 0.0,
+/// Four samples of the volume.
+struct Four {
+    entries: [Vec4; 4],
+    /// Of the field and of ghosts, for all samples that each of them stands for.
+    opacities: Vec4,
+    ghosts: Vec4,
+    /// Presence of either.
+    presences: Vec4,
+}
+
+/// One of them.
+struct Sample {
+    color: Vec3A,
+    opacity: f32,
+    ghost: f32,
+    is_met: bool,
+}
+
+impl Four {
+    fn sample(&self, lane: usize) -> Sample {
+        Sample {
+            color: Vec3A::from_vec4(self.entries[lane]),
+            opacity: self.opacities[lane],
+            ghost: self.ghosts[lane],
+            is_met: self.presences[lane] > 0.0,
+        }
+    }
+}
+
+impl Sample {
+    /// Adds it to what is there; it lies at a point of grid space relative to the origin.
+    fn add(&self, scene: &Scene<'_>, place: Vec3A, sum: &mut Accumulated) {
+        let shade = |color, is_ghost| scene.shading.shade(color, place, is_ghost);
+        let (opacity, ghost) = (self.opacity, self.ghost);
+        if ghost == 0.0 {
+            return sum.blend(shade(self.color, false), opacity);
+        }
+        let gray = shade(Vec3A::from_vec4(scene.ghost), true);
+        let color = match opacity > 0.0 {
+            true => shade(self.color, false),
+            false => gray,
         };
+        sum.blend(
+            (opacity * color + ghost * gray) / (opacity + ghost),
+            opacity + ghost,
+        );
+    }
+}
+
+impl SrgVolume<'_> {
+    /// Samples at four places, each of which stands for `taken` of the lattice; opacities are multiplied by presence.
+    #[inline]
+    fn four(&self, scene: &Scene<'_>, places: [Vec3A; 4], stretch: &Stretch, taken: f32) -> Four {
+        let found = self.field.samples(places, stretch.level as usize);
+        let [values, presences, ghosts] = found;
         let stored = match self.settings.weighted {
-            true => voxel.x / voxel.y.max(1e-6),
-            false => voxel.x,
+            true => values / presences.max(Vec4::splat(1e-6)),
+            false => values,
         };
         let [low, scale] = self.position;
-        let entry = scene.transfer.at(low + scale * stored);
-        let mut color = Vec3A::from_vec4(entry);
-        let mut opacity = opacity_of(voxel.y, entry.w);
-        if opacity > 0.0 {
-            color = scene.shading.shade(color, place, false);
+        let (entries, passed) = scene.transfer.at_four(low + scale * stored);
+        let mut four = Four {
+            entries,
+            opacities: presences * (1.0 - passed),
+            ghosts: ghosts * (1.0 - scene.transfer.passed(scene.ghost.w)),
+            presences: presences + ghosts,
+        };
+        if taken != 1.0 {
+            let one = four.opacities + four.ghosts;
+            let all = 1.0 - Vec4::from_array((1.0 - one).to_array().each(|p| p.powf(taken)));
+            let factor = all / one.max(Vec4::splat(1e-30));
+            (four.opacities, four.ghosts) = (factor * four.opacities, factor * four.ghosts);
         }
-        let ghost = opacity_of(voxel.z, scene.ghost.w);
-        if ghost > 0.0 {
-            let gray = scene
-                .shading
-                .shade(Vec3A::from_vec4(scene.ghost), place, true);
-            color = (opacity * color + ghost * gray) / (opacity + ghost);
-            opacity += ghost;
-        }
-        if opacity > 0.0 {
-            let passed = if taken == 1.0 {
-                1.0 - opacity
-            } else {
-                (1.0 - opacity).powf(taken)
-            };
-            sum.blend(color, 1.0 - passed);
-        }
+        four
     }
 
     /// How a ray goes on from sample n at `at` (0 to 1 in the box), up to sample `end`.

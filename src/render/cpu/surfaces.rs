@@ -4,6 +4,7 @@
 
 use glam::{Vec2, Vec3A};
 
+use super::each::Each;
 use super::edges::with_edges;
 use super::facing::{FacePlace, column_behind, face_corner};
 use super::frame::{PixelRay, Ray};
@@ -306,7 +307,7 @@ fn value_on(grid: &Grid, place: FacePlace, at: Vec2) -> f32 {
         return grid.cell_value(place.column, place.layer);
     }
     let corners = grid.corner_values(place.column, place.layer);
-    let [c0, c1, c2, c3] = [0, 1, 2, 3].map(|n| {
+    let [c0, c1, c2, c3] = [0, 1, 2, 3].each(|n| {
         let corner = face_corner(place.side, n) as usize;
         corners[corner >> 2][corner & 3]
     });
@@ -319,13 +320,13 @@ fn value_on(grid: &Grid, place: FacePlace, at: Vec2) -> f32 {
 fn spot_on(grid: &Grid, place: FacePlace, r: &RayFrame, steps: [Vec3A; 2]) -> Spot {
     let lists = grid.lists(place.column);
     let numbers = grid.pillar_index(place.column);
-    let corners = [0, 1, 2, 3].map(|n| {
+    let corners = [0, 1, 2, 3].each(|n| {
         let corner = face_corner(place.side, n);
         let of_column = (corner & 3) as usize;
         let entry = Grid::list_entry(lists[of_column], place.layer, corner >> 2);
         r.relative(&grid.pillar(numbers[of_column]), grid.depth(entry))
     });
-    let q = corners.map(|corner| r.projected(corner));
+    let q = corners.each(|corner| r.projected(corner));
     // The ray is in triangle 0 1 3 where it lies on the same side of the diagonal as corner 1.
     let corner_side = cross2d(q[3] - q[0], q[1] - q[0]);
     let (first_axis, second_axis) = match corner_side * cross2d(q[0], q[3]) > 0.0 {
@@ -339,7 +340,7 @@ fn spot_on(grid: &Grid, place: FacePlace, r: &RayFrame, steps: [Vec3A; 2]) -> Sp
         let to_y = Vec2::new(-first_axis.y, first_axis.x);
         scale * Vec2::new(to_x.dot(across), to_y.dot(across))
     };
-    let across = |step: Vec3A| Vec2::from_array(r.across.map(|axis| axis.dot(step)));
+    let across = |step: Vec3A| Vec2::from_array(r.across.each(|axis| axis.dot(step)));
     Spot {
         at: (-parameters(q[0].truncate())).clamp(Vec2::ZERO, Vec2::ONE),
         right: parameters(across(steps[0])),

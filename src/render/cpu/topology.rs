@@ -3,14 +3,16 @@
 //! grid where all that does not help (campagnolo-2021, 4.1.3). The twin of `shaders/shared/topology.wgsl` and
 //! `boundary.wgsl` there.
 
-use glam::Vec3A;
+use glam::{Vec3A, Vec4};
 
 use super::boundary::{Boundary, Passage};
 use super::cell::{Cell, Solution};
+use super::each::Each;
 use super::facing::{FacePlace, column_behind, side_lists, sides_join};
 use super::frame::Ray;
-use super::grid::{Grid, all_coincide};
+use super::grid::Grid;
 use super::locate::{Query, is_odd, locate};
+use super::scene::Scene;
 use super::tally::Tally;
 use super::thorough::encloses;
 use crate::render::plan::layout::COLUMN_FLAG;
@@ -20,8 +22,16 @@ const TOPOLOGICAL_LIMIT: u32 = 6;
 const MARCH_ENOUGH: f32 = 1e-2;
 /// Cells of boundary faces that are tried for a sample, at most.
 const MOST_TRIED: usize = 4;
+/// How far behind the face that it seems to begin at a cell is looked for again, in samples.
+const LATER: f32 = 0.1;
+/// Surely past a face, in samples.
+const PAST_FACE: f32 = 1e-2;
 /// A sample that seems to be so far outside of a cell is looked for in the neighbor at once.
 const SURELY_OUTSIDE: f32 = 0.02;
+/// Ends of a way that are tried; halves of it where a cell is bent.
+const MOST_TRIES: usize = 8;
+/// Parameters so near to a face that the rest is straight.
+const AT_FACE: f32 = 0.03;
 /// Samples are interpolated between two of a cell where parameters are off a straight line by less than this.
 const MOST_BENT: f32 = 0.2;
 
@@ -29,6 +39,8 @@ const MOST_BENT: f32 = 0.2;
 pub struct Track<'a> {
     grid: &'a Grid,
     ray: &'a Ray,
+    /// Bits of the cells that it meets, where these are not all drawn cells.
+    visible: Option<&'a [u32]>,
     /// Where it passes the boundary; `None` where nothing is known of that, and all is searched.
     boundary: Option<&'a Boundary>,
     /// The cell of the current sample, and where in it that is.
@@ -36,6 +48,8 @@ pub struct Track<'a> {
     solution: Solution,
     /// Change of the parameters from a sample to the next.
     rate: Vec3A,
+    /// The last way has ended at a face of its cell.
+    at_face: bool,
     /// The cell that was counted last.
     last: Option<(u32, u32)>,
     /// Samples found in no cell since the last one that was found.
@@ -44,11 +58,11 @@ pub struct Track<'a> {
     pub tally: &'a mut Tally,
 }
 
-/// Samples in one cell.
+/// Samples in one cell, or the way through it: places are numbers of samples, and parts of them.
 pub struct Stretch {
-    /// Number of the first.
+    /// The first.
     pub first: f32,
-    /// How many more there are.
+    /// How much more there is.
     pub more: f32,
     from: Vec3A,
     to: Vec3A,
@@ -57,24 +71,30 @@ pub struct Stretch {
 }
 
 impl Stretch {
-    /// Parameters of a sample, a cubic between the ends.
-    pub fn parameters(&self, n: f32) -> Vec3A {
-        if self.more == 0.0 {
-            return self.from;
-        }
-        let s = (n - self.first) / self.more;
-        let [m0, m1] = [self.from_rate, self.to_rate].map(|rate| self.more * rate);
+    /// Parameters u, v and w of four samples by their numbers, a cubic between the ends.
+    pub fn parameters(&self, n: Vec4) -> [Vec4; 3] {
+        let length = if self.more > 0.0 { self.more } else { 1.0 };
+        let s = (n - self.first) / length;
+        let [m0, m1] = [self.from_rate, self.to_rate].each(|rate| self.more * rate);
         let way = self.to - self.from;
-        self.from + s * (m0 + s * ((3.0 * way - 2.0 * m0 - m1) + s * (m0 + m1 - 2.0 * way)))
+        let (square, cube) = (3.0 * way - 2.0 * m0 - m1, m0 + m1 - 2.0 * way);
+        [0, 1, 2]
+            .each(|axis| self.from[axis] + s * (m0[axis] + s * (square[axis] + s * cube[axis])))
     }
 }
 
 impl<'a> Track<'a> {
     /// A ray before its first sample.
-    pub fn new(grid: &'a Grid, ray: &'a Ray, boundary: &'a Boundary, tally: &'a mut Tally) -> Self {
+    pub fn new(
+        scene: &'a Scene<'_>,
+        ray: &'a Ray,
+        boundary: &'a Boundary,
+        tally: &'a mut Tally,
+    ) -> Self {
         Self {
+            visible: scene.visible,
             boundary: Some(boundary),
-            ..Self::through(grid, ray, tally)
+            ..Self::through(scene.grid, ray, tally)
         }
     }
 
@@ -83,10 +103,12 @@ impl<'a> Track<'a> {
         Self {
             grid,
             ray,
+            visible: None,
             boundary: None,
             cell: Cell::default(),
             solution: Solution::default(),
             rate: Vec3A::ZERO,
+            at_face: false,
             last: None,
             gap: 0.0,
             tally,
@@ -112,9 +134,9 @@ impl<'a> Track<'a> {
                 if passed == 0.0 {
                     break;
                 }
-                self.gap += passed;
                 known = n;
-                n += passed;
+                n = (n + passed).ceil();
+                self.gap += n - known;
                 if n >= self.ray.count {
                     return None;
                 }
@@ -180,6 +202,98 @@ impl<'a> Track<'a> {
         stretch
     }
 
+    /// The way through the cell that the ray is in at a place, or comes into behind it; a part of that way where the
+    /// cell is bent. `None` where there is none. `joins` says that the ray came there by the way before.
+    pub fn cross(&mut self, mut from: f32, joins: bool) -> Option<Stretch> {
+        if !joins {
+            from = self.enter(from)?;
+        }
+        self.arrive();
+        let start = self.solution.uvw;
+        let rate = self.cell.parameters_along(start, self.ray.advance);
+        let mut stretch = Stretch {
+            first: from,
+            more: steps_to_face(start, rate).max(0.0),
+            from: start,
+            to: start,
+            from_rate: rate,
+            to_rate: rate,
+        };
+        self.at_face = false;
+        let mut expected = start + stretch.more * rate;
+        for _ in 0..MOST_TRIES {
+            let reached = self.solve(from + stretch.more, expected);
+            let is_near = (reached.uvw - expected).abs().max_element() < MOST_BENT;
+            stretch.to = reached.uvw;
+            stretch.to_rate = self.cell.parameters_along(reached.uvw, self.ray.advance);
+            let off = steps_to_face(reached.uvw, stretch.to_rate);
+            let left = off * stretch.to_rate;
+            let most_left = left.abs().max_element();
+            // What that leaves is of its square.
+            self.at_face = is_near && most_left < AT_FACE;
+            if self.at_face {
+                stretch.more = (stretch.more + off).max(0.0);
+                stretch.to += left;
+            }
+            if self.at_face || (is_near && reached.inside) {
+                self.solution.uvw = stretch.to;
+                return Some(stretch);
+            }
+            if is_near && most_left < MOST_BENT {
+                stretch.more = (stretch.more + off).max(0.0);
+                expected = stretch.to + left;
+            } else {
+                stretch.more *= 0.5;
+                expected = start + stretch.more * rate;
+            }
+        }
+        // Too bent to be followed: the next place is looked for.
+        self.at_face = true;
+        (stretch.to, stretch.to_rate) = (start + stretch.more * rate, rate);
+        self.solution.uvw = Vec3A::splat(0.5);
+        Some(stretch)
+    }
+
+    /// Goes on where a way has ended, in the same cell or through its face; false where no cell joins there.
+    pub fn leave(&mut self) -> bool {
+        if !self.at_face {
+            return true;
+        }
+        let mut start = self.solution.uvw;
+        let joins = self.step_to_neighbor(&mut start);
+        self.tally.steps += u64::from(joins);
+        self.solution.uvw = start.clamp(Vec3A::ZERO, Vec3A::ONE);
+        joins
+    }
+
+    /// Finds the cell that the ray comes into at a place or behind it, and where it does.
+    fn enter(&mut self, from: f32) -> Option<f32> {
+        // At the face itself the cell that was left seems to hold the ray still.
+        let (mut n, mut known) = (from + PAST_FACE, from);
+        let mut tries = 0;
+        loop {
+            let passed = self.find(n, known);
+            if passed == 0.0 {
+                break;
+            }
+            // Behind a bent face the cell may begin a little later.
+            let begins = tries < MOST_TRIES && self.boundary.is_some_and(|b| b.depth(n) > 0);
+            let passed = if begins { passed.min(LATER) } else { passed };
+            tries = if begins { tries + 1 } else { 0 };
+            self.gap += passed;
+            known = n;
+            n += passed;
+            if n >= self.ray.count {
+                return None;
+            }
+        }
+        let found = self.solution.uvw;
+        let rate = self.cell.parameters_along(found, self.ray.advance);
+        let back = steps_to_face(found, -rate).clamp(0.0, n - from);
+        self.solution.uvw = (found - back * rate).clamp(Vec3A::ZERO, Vec3A::ONE);
+        Some(n - back)
+    }
+
     /// Newton in the current cell.
     fn solve(&mut self, n: f32, start: Vec3A) -> Solution {
         let point = self.cell.relative_to(self.ray.sample(n));
@@ -223,7 +337,7 @@ impl<'a> Track<'a> {
         let axis = (-q).max(q - Vec3A::ONE).max_position();
         let plus = q[axis] > 0.5;
         let face = 2 * axis as u32 + u32::from(plus);
-        let Some((column, layer)) = behind(grid, self.cell.column, self.cell.layer, face) else {
+        let Some((column, layer)) = self.behind(face) else {
             return false;
         };
         self.cell = Cell::load(grid, column, layer);
@@ -231,6 +345,25 @@ impl<'a> Track<'a> {
         start[axis] = if plus { q[axis] - 1.0 } else { q[axis] + 1.0 };
         *uvw = start.clamp(Vec3A::splat(-1.0), Vec3A::splat(2.0));
         true
+    }
+
+    /// The cell behind a face of the current one, where rays meet it and it shares the whole face.
+    fn behind(&self, face: u32) -> Option<(u32, u32)> {
+        let (grid, Cell { column, layer, .. }) = (self.grid, self.cell);
+        let is_met = |column, layer| grid.is_met(self.visible, column, layer);
+        let lists = grid.lists(column);
+        if face < 4 {
+            let next = column_behind(grid, column, face)?;
+            let theirs = side_lists(grid.lists(next), face ^ 1);
+            let joins = || sides_join(grid, side_lists(lists, face), theirs, layer);
+            return (is_met(next, layer) && joins()).then_some((next, layer));
+        }
+        let next = match face & 1 {
+            0 => layer.checked_sub(1)?,
+            _ => layer + 1,
+        };
+        let joins = || grid.layers_join(lists, layer.min(next));
+        (next < grid.nk() && is_met(column, next) && joins()).then_some((column, next))
     }
 
     /// Finds a sample that no neighbor has, `known` being the last one of which it is known where it lies. Where it
@@ -286,35 +419,21 @@ impl<'a> Track<'a> {
     }
 }
 
-/// The drawn cell behind a face of a cell, where it shares the whole face.
-fn behind(grid: &Grid, column: u32, layer: u32, face: u32) -> Option<(u32, u32)> {
-    let lists = grid.lists(column);
-    if face < 4 {
-        let next = column_behind(grid, column, face)?;
-        let theirs = side_lists(grid.lists(next), face ^ 1);
-        let joins = || sides_join(grid, side_lists(lists, face), theirs, layer);
-        return (grid.is_drawn(next, layer) && joins()).then_some((next, layer));
-    }
-    let bottom = face & 1;
-    let next = match bottom {
-        0 => layer.checked_sub(1)?,
-        _ => layer + 1,
-    };
-    let mine = grid.layer_depths(lists, layer, bottom);
-    let joins = || all_coincide(mine, grid.layer_depths(lists, next, 1 - bottom));
-    (next < grid.nk() && grid.is_drawn(column, next) && joins()).then_some((column, next))
-}
-
 /// How far parameters are outside of a cell.
 fn overshoot(q: Vec3A) -> f32 {
     (-q).max(q - Vec3A::ONE).max_element()
 }
 
-/// Steps of a change that parameters can make before they leave a cell.
+/// Whole steps of a change that parameters can make before they leave a cell.
 fn steps_inside(q: Vec3A, rate: Vec3A) -> f32 {
+    steps_to_face(q, rate).max(0.0).trunc()
+}
+
+/// Steps of a change up to where parameters leave a cell; negative where they have left it.
+fn steps_to_face(q: Vec3A, rate: Vec3A) -> f32 {
     let room = Vec3A::select(rate.cmpgt(Vec3A::ZERO), Vec3A::ONE - q, q);
     let steps = room / rate.abs().max(Vec3A::splat(1e-9));
-    steps.min_element().clamp(0.0, 1e6).trunc()
+    steps.min_element().clamp(-1e6, 1e6)
 }
 
 #[cfg(test)]
@@ -333,8 +452,11 @@ mod tests {
             from_rate: change(2.0),
             to_rate: change(7.0),
         };
-        for n in [2.0, 3.0, 4.5, 7.0] {
-            let off = (stretch.parameters(n) - cubic(n)).abs().max_element();
+        let places = Vec4::new(2.0, 3.0, 4.5, 7.0);
+        let [u, v, w] = stretch.parameters(places);
+        for (lane, n) in places.to_array().into_iter().enumerate() {
+            let found = Vec3A::new(u[lane], v[lane], w[lane]);
+            let off = (found - cubic(n)).abs().max_element();
             assert!(off < 1e-6, "{n}: {off}");
         }
     }

@@ -2,7 +2,7 @@
 
 use std::ops::{Add, Mul, Sub};
 
-use glam::{Vec2, Vec3A, Vec4};
+use glam::{Vec2, Vec3A, Vec4, Vec4Swizzles};
 
 use super::mean::overlap;
 use super::pieces::in_groups;
@@ -21,6 +21,15 @@ pub trait Voxel: Copy + Default + Send + Sync {
 
     /// The voxel of numbers.
     fn of(number: Self::Number) -> Self;
+
+    /// Linear between the corners of a cube, x fastest, by the parts of its edges along x, y and depth.
+    #[inline]
+    fn between(cube: [Self; 8], [x, y, z]: [f32; 3]) -> Self::Number {
+        let lerp = |a: Self::Number, b: Self::Number, part: f32| a + (b - a) * part;
+        let along = |n: usize| lerp(cube[n].number(), cube[n + 1].number(), x);
+        let across = |n: usize| lerp(along(n), along(n + 2), y);
+        lerp(across(0), across(4), z)
+    }
 }
 
 impl Voxel for f32 {
@@ -32,6 +41,14 @@ impl Voxel for f32 {
 
     fn of(number: Self) -> Self {
         number
+    }
+
+    /// Both faces across the depth in one vector each.
+    #[inline]
+    fn between([a, b, c, d, e, f, g, h]: [Self; 8], [x, y, z]: [f32; 3]) -> Self {
+        let face = Vec4::new(a, b, c, d).lerp(Vec4::new(e, f, g, h), z);
+        let edge = face.xy().lerp(face.zw(), y);
+        edge.x + (edge.y - edge.x) * x
     }
 }
 
@@ -57,6 +74,18 @@ impl Voxel for [u16; 2] {
 
     fn of(number: Vec2) -> Self {
         number.to_array().map(|n| (n + 0.5) as u16)
+    }
+
+    /// Both ends of an edge along x in one vector.
+    #[inline]
+    fn between(cube: [Self; 8], [x, y, z]: [f32; 3]) -> Vec2 {
+        let edge = |n: usize| {
+            let ([a, b], [c, d]) = (cube[n], cube[n + 1]);
+            Vec4::from_array([a, b, c, d].map(f32::from))
+        };
+        let across = |n: usize| edge(n).lerp(edge(n + 2), y);
+        let ends = across(0).lerp(across(4), z);
+        ends.xy().lerp(ends.zw(), x)
     }
 }
 
@@ -186,23 +215,25 @@ impl<T: Voxel> Voxels<T> {
     #[inline]
     pub fn sample(&self, at: Vec3A) -> T::Number {
         let place = (at * self.counts - 0.5).clamp(Vec3A::ZERO, self.last);
-        let low = place.floor().min(self.last_pair);
-        let [fx, fy, fz] = (place - low).to_array();
-        let [x, y, z] = low.to_array().map(|n| n as usize);
+        // Whole parts, as places are not negative. Numbers of 16 bits are the fastest to get from f32.
+        let [x, y, z] = place.min(self.last_pair).to_array().map(|n| n as u16);
+        let parts = place - Vec3A::new(f32::from(x), f32::from(y), f32::from(z));
+        let [x, y, z] = [x, y, z].map(usize::from);
         let [width, height, _] = self.size;
         let first = x + width * (y + height * z);
         let [dx, dy, dz] = self.steps;
         let cube = &self.data[first..=first + dx + dy + dz];
-        let along = |n: usize| {
-            let (a, b) = (cube[n].number(), cube[n + dx].number());
-            a + (b - a) * fx
-        };
-        let across = |n: usize| {
-            let (a, b) = (along(n), along(n + dy));
-            a + (b - a) * fy
-        };
-        let (a, b) = (across(0), across(dz));
-        a + (b - a) * fz
+        let corners = [
+            cube[0],
+            cube[dx],
+            cube[dy],
+            cube[dy + dx],
+            cube[dz],
+            cube[dz + dx],
+            cube[dz + dy],
+            cube[dz + dy + dx],
+        ];
+        T::between(corners, parts.to_array())
     }
 }
 

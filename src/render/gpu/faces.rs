@@ -9,6 +9,8 @@ use super::round::{Place, Round};
 use crate::model::Grid;
 use crate::render::RenderError;
 use crate::render::plan::faces::face_numbers;
+use crate::render::plan::visible::{by_active_index, can_be_passed};
+use crate::view::View;
 
 /// Which face a pixel gets; the order is that of the shader's constants.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -29,7 +31,7 @@ pub(super) const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Uint;
 /// Faces by number on the device.
 #[derive(Clone)]
 pub struct FaceList {
-    /// Of the drawn cells that the list was made of.
+    /// Of the cells that the list was made of; no two lists of one grid have the same.
     pub revision: u64,
     /// `(column * nk + layer) * 6 + face` of each.
     pub numbers: wgpu::Buffer,
@@ -40,13 +42,13 @@ pub struct FaceList {
 }
 
 impl FaceList {
-    /// A list of the drawn cells that `grid` has now.
+    /// A list of the cells of a revision.
     ///
     /// # Errors
     /// When it exceeds what the adapter holds.
-    pub fn new(gpu: &Gpu, grid: &GpuGrid, numbers: &[u32]) -> Result<Self, RenderError> {
+    pub fn new(gpu: &Gpu, revision: u64, numbers: &[u32]) -> Result<Self, RenderError> {
         Ok(Self {
-            revision: grid.revisions.drawn,
+            revision,
             numbers: gpu.storage("faces", numbers)?,
             listed: numbers.into(),
             count: numbers.len() as u32,
@@ -59,38 +61,99 @@ impl FaceList {
     }
 }
 
-/// The boundary faces of the drawn cells: one list for all that draw them.
+/// The boundary faces of the drawn cells and of the visible ones: one list each for all that go by them.
 #[derive(Default)]
 pub struct BoundaryFaces {
-    list: Option<FaceList>,
+    drawn: Option<FaceList>,
+    /// By their revision; no list where rays meet all drawn cells.
+    visible: Option<(u64, Option<FaceList>)>,
 }
 
 impl BoundaryFaces {
-    /// Lists the faces anew where the drawn cells have changed.
+    /// The faces of the drawn cells, listed anew where these have changed.
     ///
     /// # Errors
     /// When the list exceeds what the adapter holds.
-    pub fn update(
+    pub fn of_drawn(
         &mut self,
         gpu: &Gpu,
         model: &Grid,
         grid: &GpuGrid,
         drawn: &[bool],
     ) -> Result<&FaceList, RenderError> {
-        let known = self
-            .list
-            .take()
-            .filter(|l| l.revision == grid.revisions.drawn);
+        // Even; those of visible cells are odd.
+        let revision = 2 * grid.revisions.drawn;
+        let known = self.drawn.take().filter(|l| l.revision == revision);
         let list = match known {
             Some(known) => known,
-            None => FaceList::new(
-                gpu,
-                grid,
-                &face_numbers(model, &model.boundary_faces(drawn))?,
-            )?,
+            None => listed(gpu, model, revision, drawn)?,
         };
-        Ok(self.list.insert(list))
+        Ok(self.drawn.insert(list))
     }
+
+    /// Tells `grid` which cells rays meet in a view, and gives the faces of these: the visible cells, where rays can pass
+    /// the others, or all of the drawn ones.
+    ///
+    /// # Errors
+    /// As [`Self::of_drawn`].
+    pub fn of_met(
+        &mut self,
+        gpu: &Gpu,
+        model: &Grid,
+        grid: &mut GpuGrid,
+        view: &View,
+    ) -> Result<Option<&FaceList>, RenderError> {
+        let passes =
+            can_be_passed(view, &grid.facts) && self.has_visible(gpu, model, grid, view)?;
+        grid.meet_all(gpu, !passes);
+        if passes {
+            return Ok(self.visible.as_ref().and_then(|(_, list)| list.as_ref()));
+        }
+        let drawn = match &view.shown.cells.ghosts {
+            None => &view.shown.cells.drawn[..],
+            Some(ghosts) => &ghosts.drawn,
+        };
+        self.of_drawn(gpu, model, grid, drawn).map(Some)
+    }
+
+    /// Bytes on the device.
+    pub fn bytes(&self) -> u64 {
+        let visible = self.visible.iter().filter_map(|(_, list)| list.as_ref());
+        let lists = self.drawn.iter().chain(visible);
+        lists.map(FaceList::bytes).sum()
+    }
+
+    /// True where rays meet the visible cells alone; their list is made where it is not there.
+    fn has_visible(
+        &mut self,
+        gpu: &Gpu,
+        model: &Grid,
+        grid: &mut GpuGrid,
+        view: &View,
+    ) -> Result<bool, RenderError> {
+        let revision = grid.revisions.visible;
+        let known = self.visible.take().filter(|(of, _)| *of == revision);
+        let visible = match known {
+            Some(known) => known,
+            None => {
+                let words = grid.visible_words(view);
+                grid.meet(gpu, words.as_deref())?;
+                let cells = words.map(|words| by_active_index(model, &words));
+                let list = cells.map(|cells| listed(gpu, model, 2 * revision + 1, &cells));
+                (revision, list.transpose()?)
+            }
+        };
+        Ok(self.visible.insert(visible).1.is_some())
+    }
+}
+
+/// Boundary faces of some cells of a grid, by active index.
+fn listed(gpu: &Gpu, model: &Grid, revision: u64, cells: &[bool]) -> Result<FaceList, RenderError> {
+    FaceList::new(
+        gpu,
+        revision,
+        &face_numbers(model, &model.boundary_faces(cells))?,
+    )
 }
 
 /// Draws boundary faces.

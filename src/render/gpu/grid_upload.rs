@@ -4,10 +4,12 @@ use super::device::Gpu;
 use super::pipeline::flag;
 use crate::model::Grid;
 use crate::render::plan::layout::GridInfo;
+use crate::render::plan::visible::HeldCells;
 use crate::render::plan::{CompactGrid, GridFacts, cell_bits, drawn_words, ghost_words, values};
 use crate::render::revisions::Revisions;
 use crate::render::{DeviceBytes, RenderError};
-use crate::view::ShownCells;
+use crate::scene::Interpolation;
+use crate::view::{ShownCells, View};
 
 /// What is constant in shaders that locate points in a grid.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -45,9 +47,15 @@ pub struct GpuGrid {
     bin_bytes: u64,
     depths: wgpu::Buffer,
     cell_bits: wgpu::Buffer,
+    /// Where the bits of the cells that rays meet begin there, 0 where there are none.
+    visible: u32,
     /// The drawn cells in `cell_bits`.
     drawn_words: Vec<[u32; 2]>,
     values: wgpu::Buffer,
+    /// Depth lists of the columns, values and how they vary in a cell, as they are on the device.
+    column_lists: Vec<[u32; 4]>,
+    held_values: Vec<f32>,
+    interpolation: Interpolation,
     /// Bits of the cells that are ghosts, where they are shown.
     ghost_words: Option<Vec<u32>>,
 }
@@ -71,7 +79,11 @@ impl GpuGrid {
             bin_bytes: size_of_val(&words[compact.info.bins as usize..]) as u64,
             depths: gpu.storage("depth lists", &compact.depths)?,
             cell_bits: gpu.storage("drawn cells", &drawn_words(grid, &[]))?,
+            visible: 0,
             values: gpu.storage::<f32>("values", &[])?,
+            column_lists: compact.column_lists,
+            held_values: Vec::new(),
+            interpolation: Interpolation::Cell,
             ghost_words: None,
         })
     }
@@ -97,12 +109,46 @@ impl GpuGrid {
         let (grid, drawn) = cells.in_grid(model);
         let words = drawn_words(grid, drawn);
         if words != self.drawn_words {
-            let bits = cell_bits(&words, self.ghost_words.as_deref());
-            self.cell_bits = gpu.storage("drawn cells", &bits)?;
             self.drawn_words = words;
+            self.meet(gpu, None)?;
         }
-        self.values = gpu.storage("values", &values(model, cells))?;
+        self.held_values = values(model, cells);
+        self.values = gpu.storage("values", &self.held_values)?;
+        self.interpolation = cells.interpolation;
         Ok(())
+    }
+
+    /// Puts the cells that rays meet on the device, by their bits; all drawn cells where there are none.
+    ///
+    /// # Errors
+    /// When the bits exceed what the adapter holds.
+    pub fn meet(&mut self, gpu: &Gpu, visible: Option<&[u32]>) -> Result<(), RenderError> {
+        let ghosts = self.ghost_words.as_deref();
+        let bits = cell_bits(&self.drawn_words, ghosts, visible);
+        self.cell_bits = gpu.storage("drawn cells", &bits)?;
+        let before = self.drawn_words.len() + ghosts.map_or(0, |words| words.len().div_ceil(2));
+        self.visible = visible.map_or(0, |_| before as u32);
+        Ok(())
+    }
+
+    /// Says whether rays meet all drawn cells from now on, or those that were put there last, if any were.
+    pub fn meet_all(&mut self, gpu: &Gpu, all: bool) {
+        self.sizes.visible = if all { 0 } else { self.visible };
+        let info = bytemuck::bytes_of(&self.sizes);
+        gpu.queue.write_buffer(&self.info, 0, info);
+    }
+
+    /// Bits of the drawn cells in which a view shows something; `None` where rays meet all drawn cells.
+    pub fn visible_words(&self, view: &View) -> Option<Vec<u32>> {
+        let held = HeldCells {
+            nk: self.sizes.nk,
+            interpolation: self.interpolation,
+            lists: &self.column_lists,
+            values: &self.held_values,
+            drawn: &self.drawn_words,
+            ghosts: self.ghost_words.as_deref(),
+        };
+        held.visible(view)
     }
 
     /// The bind group of the grid.

@@ -3,8 +3,9 @@
 use super::device::Gpu;
 use super::pipeline::{Pipeline, flag};
 use crate::render::RenderError;
-use crate::render::plan::bricks::{Classifier, bricks_of_volume, levels, range_maxima, room};
+use crate::render::plan::bricks::{Classifier, bricks_of_volume, levels, room};
 use crate::render::plan::layout::{BRICK, BricksInfo, Slab};
+use crate::render::plan::majorants::Majorants;
 
 use super::slabs::Slabs;
 use super::volume::Volume;
@@ -163,9 +164,9 @@ pub fn classify(
     let weighted = [("WEIGHTED", flag(by.weighted))];
     let wanted: [(_, &[_]); 3] = [("weigh", &weighted), ("reduce", &[]), ("classify", &[])];
     let [weigh, reduce, classify] = Pipeline::variants(gpu, "pyramids", wanted);
-    let maxima = range_maxima(by.transfer);
+    let majorants = Majorants::new(by.transfer);
     gpu.queue
-        .write_buffer(&bricks.maxima, 0, bytemuck::cast_slice(&maxima));
+        .write_buffer(&bricks.maxima, 0, bytemuck::cast_slice(majorants.table()));
     let finest = volume.level(0);
     let unused = gpu.scratch("no voxels", UNUSED_BYTES);
     let mut encoder = gpu.device.create_command_encoder(&Default::default());

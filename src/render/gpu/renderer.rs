@@ -6,7 +6,7 @@ use std::time::Instant;
 use glam::DVec3;
 
 use crate::model::Grid;
-use crate::render::gpu::faces::{BoundaryFaces, FaceList};
+use crate::render::gpu::faces::BoundaryFaces;
 use crate::render::gpu::illumination::Illumination;
 use crate::render::gpu::probe::Probe;
 use crate::render::gpu::strategies::solid::Solid;
@@ -105,6 +105,8 @@ impl GpuRenderer {
             Some(known) => tables.insert(known),
             None => tables.insert(TransferTables::new(gpu, view, revisions.transfer)?),
         };
+        // What is made for light is of all drawn cells.
+        on_device.meet_all(gpu, true);
         light
             .update(gpu, on_device, view, tables, &progress)
             .await?;
@@ -112,20 +114,24 @@ impl GpuRenderer {
             true => strategy(gpu, &mut self.strategies, view.sampling.strategy)?,
             false => &mut self.solid,
         };
-        let faces = match strategy.needs_faces() || SurfacePainter::shares_faces(view) {
-            true => Some(faces.update(gpu, grid, on_device, drawn)?),
-            false => None,
-        };
         let mut surfaces = surfaces_of(gpu, surfaces, view)?;
         if let Some(surfaces) = &mut surfaces {
-            surfaces.update(gpu, of_case, on_device, view, faces, light.work())?;
+            let boundary = match SurfacePainter::shares_faces(view) {
+                true => Some(faces.of_drawn(gpu, grid, on_device, drawn)?),
+                false => None,
+            };
+            surfaces.update(gpu, of_case, on_device, view, boundary, light.work())?;
         }
+        let met = match strategy.needs_faces() {
+            true => faces.of_met(gpu, grid, on_device, view)?,
+            false => None,
+        };
         let preparation = Preparation {
             gpu,
             model: grid,
             grid: on_device,
             view,
-            faces,
+            faces: met,
             progress: &progress,
         };
         strategy.prepare(&preparation).await?;
@@ -148,7 +154,7 @@ impl GpuRenderer {
             bytes: on_device.bytes()
                 + strategy.bytes()
                 + DeviceBytes {
-                    geometry: faces.map_or(0, FaceList::bytes) + lists,
+                    geometry: faces.bytes() + lists,
                     targets: stats.target_bytes,
                     lighting: light.bytes(),
                     ..DeviceBytes::default()

@@ -243,14 +243,14 @@ impl ShownSurfaces {
             (true, Some(boundary)) if SurfacePainter::shares_faces(view) => Some(boundary.clone()),
             (true, _) => {
                 let faces = face_numbers(model, &view.hull_faces(model))?;
-                Some(FaceList::new(gpu, grid, &faces)?)
+                Some(FaceList::new(gpu, grid.revisions.surfaces, &faces)?)
             }
         };
         let sheets = match surfaces.hull {
             Hull::Opaque => None,
             _ => {
                 let numbers: Vec<u32> = faults.iter().map(|[face, _]| *face).collect();
-                Some(FaceList::new(gpu, grid, &numbers)?)
+                Some(FaceList::new(gpu, grid.revisions.surfaces, &numbers)?)
             }
         };
         Ok(Self {

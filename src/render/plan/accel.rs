@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use super::columns::ColumnShape;
 use super::layout::BIN_IS_ODD;
-use crate::model::{Grid, Ijk};
+use crate::model::Grid;
 
 /// Bytes of acceleration that an active cell may cost; the number of bins follows from it.
 const BYTES_PER_ACTIVE_CELL: f64 = 3.0;
@@ -170,28 +170,14 @@ impl AccelGrid {
 }
 
 fn footprints(grid: &Grid, shapes: &[ColumnShape], origin: DVec3) -> Vec<Footprint> {
-    let dims = grid.dims();
-    let columns = (0..dims.columns()).into_par_iter();
+    let columns = grid.columns().enumerate();
     columns
-        .filter_map(|column| {
-            let (i, j) = (column % dims.ni, column / dims.ni);
-            let active = (0..dims.nk)
-                .map(|k| Ijk { i, j, k })
-                .filter(|&c| grid.is_active(c));
-            let mut ends = [[f64::INFINITY, f64::NEG_INFINITY]; 4];
-            for cell in active {
-                for corner in 0..8 {
-                    let depth = grid.corner_depth(cell, corner);
-                    let end = &mut ends[corner & 3];
-                    *end = [end[0].min(depth), end[1].max(depth)];
-                }
-            }
-            (ends[0][0] <= ends[0][1]).then(|| Footprint {
-                column: column as u32,
-                is_odd: shapes[column].is_odd,
-                corners: std::array::from_fn(|c| {
-                    grid.pillar(i, j, c & 3).at(ends[c & 3][c >> 2]) - origin
-                }),
+        .filter_map(|(number, column)| {
+            let ends = column.ends(column.active())?;
+            Some(Footprint {
+                column: number as u32,
+                is_odd: shapes[number].is_odd,
+                corners: std::array::from_fn(|c| ends[c & 3][c >> 2] - origin),
             })
         })
         .collect()

@@ -1,15 +1,12 @@
 //! Pyramids over a resampled volume (volumetric-ray-tracing survey, 8.3 to 8.7), without a device: bricks, their sizes,
 //! and what they are classified by.
 
-use super::layout::{BRICK, BricksInfo, LUT_SIZE};
-use super::transfer::extinctions;
+use super::layout::{BRICK, BricksInfo};
+use super::majorants::Majorants;
 use crate::transfer::TransferFunction;
 
 /// Bytes of a part of the pyramid: range, presence, extinction.
 const PART_BYTES: u64 = 16;
-/// Levels of [`range_maxima`].
-const MAXIMA_LEVELS: u32 = LUT_SIZE.ilog2() + 1;
-
 /// What bricks are classified by; each negative for never.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Limits {
@@ -49,20 +46,6 @@ pub fn levels(bricks: [u32; 3]) -> impl Iterator<Item = [u32; 3]> {
     })
 }
 
-/// Largest extinctions of a table: entry n of level l is that of 2^l entries from n on.
-pub fn range_maxima(transfer: &TransferFunction) -> Vec<f32> {
-    let entries = extinctions(transfer);
-    let wider = |(level, below): &(u32, Vec<f32>)| {
-        let half = 1 << level;
-        let maximum = |n: usize| below[n].max(*below.get(n + half).unwrap_or(&0.0));
-        Some((level + 1, (0..below.len()).map(maximum).collect()))
-    };
-    std::iter::successors(Some((0, entries)), wider)
-        .take(MAXIMA_LEVELS as usize)
-        .flat_map(|(_, level)| level)
-        .collect()
-}
-
 /// Bytes of the pyramid of a volume of so many voxels, of what is kept of each brick, and of the table of maxima.
 pub fn room(size: [u32; 3]) -> [u64; 3] {
     let number = |count: [u32; 3]| count.map(u64::from).iter().product::<u64>();
@@ -70,7 +53,7 @@ pub fn room(size: [u32; 3]) -> [u64; 3] {
     [
         PART_BYTES * levels(count).map(number).sum::<u64>(),
         4 * number(count),
-        u64::from(4 * MAXIMA_LEVELS * LUT_SIZE),
+        4 * Majorants::ENTRIES as u64,
     ]
 }
 
@@ -112,33 +95,6 @@ impl Classifier<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn range_maxima_are_those_of_every_range() {
-        let transfer = TransferFunction {
-            color: vec![(0.0, [1.0; 3])],
-            opacity: vec![(0.0, 0.3), (0.4, 0.0), (0.7, 0.9), (1.0, 0.1)],
-            range: [0.0, 1.0],
-            scale: crate::transfer::Scale::Linear,
-            bands: None,
-            reference_length: 1.0,
-        };
-        let entries = extinctions(&transfer);
-        let maxima = range_maxima(&transfer);
-        let mut random = fastrand::Rng::with_seed(3);
-        let mut unlike_first = 0;
-        for _ in 0..2000 {
-            let first = random.usize(0..entries.len());
-            let last = random.usize(first..entries.len());
-            let level = (last - first + 1).ilog2() as usize;
-            let at = |n: usize| maxima[level * entries.len() + n];
-            let found = at(first).max(at(last + 1 - (1 << level)));
-            let expected = entries[first..=last].iter().copied().fold(0.0, f32::max);
-            assert_eq!(found, expected, "{first} {last}");
-            unlike_first += usize::from(found != entries[first]);
-        }
-        assert!(unlike_first > 500);
-    }
 
     #[test]
     fn levels_end_with_the_whole() {

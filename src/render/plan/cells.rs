@@ -1,26 +1,41 @@
 //! What is shown of a grid: bits of the drawn cells, and values by cell or by vertex.
 
+use rayon::prelude::*;
+
 use super::compact_grid::pairs;
-use crate::model::{Grid, Ijk, VertexField};
+use crate::model::{ColumnBits, Dims, Grid, Ijk, VertexField};
 use crate::scene::Interpolation;
 use crate::view::ShownCells;
 
 /// Slots column by column, layers fastest: bits of the drawn cells (by active index) and the count before each
 /// word.
 pub fn drawn_words(grid: &Grid, drawn: &[bool]) -> Vec<[u32; 2]> {
-    let dims = grid.dims();
-    let mut words = vec![[0u32; 2]; dims.cells().div_ceil(32)];
-    for (&cell, _) in grid.active_cells().iter().zip(drawn).filter(|(_, d)| **d) {
-        let ijk = dims.ijk(cell);
-        let slot = (ijk.i + dims.ni * ijk.j) * dims.nk + ijk.k;
-        words[slot / 32][0] |= 1 << (slot % 32);
-    }
+    let bits = packed(grid.dims(), &grid.bits_of(drawn));
     let mut before = 0;
-    for word in &mut words {
-        word[1] = before;
-        before += word[0].count_ones();
+    let counted = bits.into_iter().map(|word| {
+        let counted = [word, before];
+        before += word.count_ones();
+        counted
+    });
+    counted.collect()
+}
+
+/// Bits of columns without gaps between them, in words of 32.
+fn packed(dims: Dims, bits: &ColumnBits) -> Vec<u32> {
+    let mut words = vec![0u64; dims.cells().div_ceil(64) + 1];
+    for column in 0..dims.columns() {
+        for (n, bits) in bits.column(column).iter().enumerate() {
+            let slot = column * dims.nk + 64 * n;
+            let (word, shift) = (slot / 64, slot % 64);
+            words[word] |= bits << shift;
+            // What does not fit; shifted twice, for by all 64 bits cannot be.
+            words[word + 1] |= bits >> 1 >> (63 - shift);
+        }
     }
-    words
+    let halves = words
+        .iter()
+        .flat_map(|word| [*word as u32, (word >> 32) as u32]);
+    halves.take(dims.cells().div_ceil(32)).collect()
 }
 
 /// One bit for each slot: the ghosts among the cells that rays meet; `None` where no ghosts are shown.
@@ -32,42 +47,49 @@ pub fn ghost_words(model: &Grid, cells: &ShownCells) -> Option<Vec<u32>> {
     Some(drawn_words(grid, &is_ghost).iter().map(|w| w[0]).collect())
 }
 
-/// The bits of the drawn cells, and behind them those of the ghosts, two words a pair.
-pub fn cell_bits(drawn: &[[u32; 2]], ghosts: Option<&[u32]>) -> Vec<[u32; 2]> {
-    let ghosts = pairs(ghosts.unwrap_or_default());
-    drawn.iter().copied().chain(ghosts).collect()
+/// The bits of the drawn cells, and behind them, two words a pair, those of the ghosts and of the visible cells.
+pub fn cell_bits(
+    drawn: &[[u32; 2]],
+    ghosts: Option<&[u32]>,
+    visible: Option<&[u32]>,
+) -> Vec<[u32; 2]> {
+    let [ghosts, visible] = [ghosts, visible].map(|bits| pairs(bits.unwrap_or_default()));
+    drawn.iter().copied().chain(ghosts).chain(visible).collect()
 }
 
 /// The values of what is shown of the case's grid `model`: one for each cell that rays meet, in the order of slots,
-/// or one for each entry of the depth lists. None is NaN.
+/// or one for each entry of the depth lists that are used. None is NaN.
 pub fn values(model: &Grid, cells: &ShownCells) -> Vec<f32> {
     match cells.interpolation {
         Interpolation::Cell => column_major(model, cells),
-        // Entries that no drawn cell touches are never read.
-        Interpolation::Vertex => {
-            VertexField::of(model, &cells.field, cells.valued()).into_defined()
-        }
+        Interpolation::Vertex => at_vertices(model, cells),
     }
+}
+
+/// Values at the entries of the depth lists that are used; those that no drawn cell touches are never read.
+fn at_vertices(model: &Grid, cells: &ShownCells) -> Vec<f32> {
+    let values = VertexField::of(model, &cells.field, cells.valued());
+    let (grid, _) = cells.in_grid(model);
+    let used: Vec<&[f32]> = grid.used_depths().of(values.values()).collect();
+    let used = used.par_iter().flat_map(|values| values.par_iter());
+    used.map(|value| if value.is_nan() { 0.0 } else { *value })
+        .collect()
 }
 
 /// Values in the order of slots; ghosts have none.
 fn column_major(model: &Grid, cells: &ShownCells) -> Vec<f32> {
     let (grid, drawn) = cells.in_grid(model);
     let dims = grid.dims();
-    let mut values = Vec::new();
-    for column in 0..dims.columns() {
-        for k in 0..dims.nk {
-            let ijk = Ijk {
-                i: column % dims.ni,
-                j: column / dims.ni,
-                k,
-            };
-            let cell = dims.cell(ijk);
-            let active = grid.active_index(cell).map(|a| a.0 as usize);
-            if active.is_some_and(|a| drawn.get(a) == Some(&true)) {
-                values.push(cells.field.value(model, cell).unwrap_or(0.0));
-            }
-        }
-    }
-    values
+    let drawn = grid.bits_of(drawn);
+    let value = |column: usize, k: usize| {
+        let (i, j) = (column % dims.ni, column / dims.ni);
+        let value = cells.field.value(model, dims.cell(Ijk { i, j, k }));
+        value.unwrap_or(0.0)
+    };
+    let columns = (0..dims.columns()).into_par_iter();
+    let values = columns.flat_map_iter(|column| {
+        let layers = drawn.layers(column);
+        layers.map(move |k| value(column, k))
+    });
+    values.collect()
 }

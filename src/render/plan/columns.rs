@@ -4,7 +4,7 @@
 use glam::DVec2;
 use rayon::prelude::*;
 
-use crate::model::{Grid, Hexahedron, Ijk};
+use crate::model::{Column, Grid, Hexahedron};
 
 /// One column.
 #[derive(Debug, Clone, Copy, Default)]
@@ -19,28 +19,86 @@ pub struct ColumnShape {
 
 /// All columns of a grid, i fastest.
 pub fn shapes(grid: &Grid) -> Vec<ColumnShape> {
-    let columns = (0..grid.dims().columns()).into_par_iter();
-    columns
-        .map(|column| {
-            let layers_cross = layers_cross(grid, column);
-            let level = margin_level(column_margin(grid, column));
-            let folds = |ijk| grid.has_thickness(ijk) && folds(&grid.hexahedron(ijk));
-            ColumnShape {
-                layers_cross,
-                margin_level: level.unwrap_or(COLUMN_MARGINS.len() - 1),
-                is_odd: layers_cross || level.is_none() || grid.active_in_column(column).any(folds),
-            }
-        })
-        .collect()
+    grid.columns().map(|column| shape(&column)).collect()
 }
 
-/// True where depth does not grow with the layer on some pillar.
-fn layers_cross(grid: &Grid, column: usize) -> bool {
-    let nk = grid.dims().nk;
-    grid.column_lists(column).iter().any(|list| {
-        let planes = (0..2 * nk).map(|plane| grid.depths()[list.entry(plane / 2, plane % 2)]);
-        !planes.is_sorted()
-    })
+fn shape(column: &Column<'_>) -> ColumnShape {
+    let slopes = Slopes::of(column);
+    let mut margin = 0.0f64;
+    let mut folded = false;
+    for k in column.active() {
+        let cell = column.hexahedron(k);
+        margin = margin.max(cell_margin(&cell, slopes.spread));
+        let may_fold = !folded && !slopes.leave_one_sign(&cell);
+        folded |= may_fold && column.has_thickness(k) && folds(&cell);
+    }
+    let layers_cross = !column.is_sorted;
+    let level = margin_level(margin);
+    ColumnShape {
+        layers_cross,
+        margin_level: level.unwrap_or(COLUMN_MARGINS.len() - 1),
+        is_odd: layers_cross || level.is_none() || folded,
+    }
+}
+
+/// How a column's pillars lean.
+struct Slopes {
+    mean: DVec2,
+    /// Largest distance of a slope from the mean.
+    spread: f64,
+}
+
+impl Slopes {
+    fn of(column: &Column<'_>) -> Self {
+        let slopes = column.slopes();
+        let mean = slopes.iter().sum::<DVec2>() / 4.0;
+        let spread = slopes.iter().map(|s| s.distance(mean)).fold(0.0, f64::max);
+        Self { mean, spread }
+    }
+
+    /// True where the Jacobian of a cell of the column has one sign for sure, which most cells show with little work.
+    ///
+    /// It is a mean of products of one edge along each axis. Along a pillar of slope `s` an edge is a height times
+    /// `(s, 1)`, and the product the height times the cross product of the two others as they are seen along that
+    /// pillar. So it has one sign where the heights have one, and all cross products within the bounds of these views.
+    fn leave_one_sign(&self, cell: &Hexahedron) -> bool {
+        let heights = [0, 1, 2, 3].map(|c| cell.0[c + 4].z - cell.0[c].z);
+        let [x, y] = self.views(cell, [[0, 1], [2, 3], [4, 5], [6, 7]]);
+        let [u, v] = self.views(cell, [[0, 2], [1, 3], [4, 6], [5, 7]]);
+        let [low, high] = difference(product(x, v), product(y, u));
+        let is_one = |of: &[f64]| of.iter().all(|h| *h >= 0.0) || of.iter().all(|h| *h <= 0.0);
+        is_one(&heights) && (low > 0.0 || high < 0.0)
+    }
+
+    /// Bounds of x and of y of some edges as they are seen along any of the pillars.
+    fn views(&self, cell: &Hexahedron, edges: [[usize; 2]; 4]) -> [[f64; 2]; 2] {
+        let mut low = DVec2::INFINITY;
+        let mut high = DVec2::NEG_INFINITY;
+        let mut rise = 0.0f64;
+        for [a, b] in edges {
+            let edge = cell.0[b] - cell.0[a];
+            let seen = edge.truncate() - self.mean * edge.z;
+            (low, high) = (low.min(seen), high.max(seen));
+            rise = rise.max(edge.z.abs());
+        }
+        let aside = DVec2::splat(self.spread * rise);
+        let (low, high) = (low - aside, high + aside);
+        [[low.x, high.x], [low.y, high.y]]
+    }
+}
+
+/// Bounds of the product of two numbers within bounds.
+fn product(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
+    let all = [a[0] * b[0], a[0] * b[1], a[1] * b[0], a[1] * b[1]];
+    [
+        all[0].min(all[1]).min(all[2].min(all[3])),
+        all[0].max(all[1]).max(all[2].max(all[3])),
+    ]
+}
+
+/// Bounds of the difference of two numbers within bounds.
+fn difference(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
+    [a[0] - b[1], a[1] - b[0]]
 }
 
 /// Margins that a column can have; the shader has the same list.
@@ -54,30 +112,21 @@ fn margin_level(margin: f64) -> Option<usize> {
 
 /// How far outside the column's horizontal section, in cell widths, a point of a cell may lie: pillars
 /// that are not parallel meet a dipping layer at different depths.
-fn column_margin(grid: &Grid, column: usize) -> f64 {
-    let dims = grid.dims();
-    let (i, j) = (column % dims.ni, column / dims.ni);
-    let slopes: [DVec2; 4] = std::array::from_fn(|c| grid.pillar(i, j, c).slope());
-    let mean = slopes.iter().sum::<DVec2>() / 4.0;
-    let spread = slopes.iter().map(|s| s.distance(mean)).fold(0.0, f64::max);
+fn cell_margin(cell: &Hexahedron, spread: f64) -> f64 {
     if spread == 0.0 {
         return 0.0;
     }
-    let margin = |ijk: Ijk| {
-        let corners = grid.hexahedron(ijk).0;
-        let dip = |c: [usize; 4]| {
-            let depths = c.map(|c| corners[c].z);
-            depths.iter().copied().fold(f64::MIN, f64::max)
-                - depths.iter().copied().fold(f64::MAX, f64::min)
-        };
-        let width = [[0, 1], [2, 3], [0, 2], [1, 3]]
-            .iter()
-            .map(|&[a, b]| corners[a].truncate().distance(corners[b].truncate()))
-            .fold(f64::MAX, f64::min);
-        spread * dip([0, 1, 2, 3]).max(dip([4, 5, 6, 7])) / width.max(1e-9)
+    let corners = &cell.0;
+    let dip = |c: [usize; 4]| {
+        let [a, b, c, d] = c.map(|c| corners[c].z);
+        a.max(b).max(c.max(d)) - a.min(b).min(c.min(d))
     };
-    let cells = grid.active_in_column(column);
-    cells.map(margin).fold(0.0, f64::max)
+    let width = [[0, 1], [2, 3], [0, 2], [1, 3]]
+        .iter()
+        .map(|&[a, b]| (corners[a] - corners[b]).truncate().length_squared())
+        .fold(f64::MAX, f64::min)
+        .sqrt();
+    spread * dip([0, 1, 2, 3]).max(dip([4, 5, 6, 7])) / width.max(1e-9)
 }
 
 /// Part of the largest coefficient that one of the other sign must have to count.

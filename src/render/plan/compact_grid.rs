@@ -10,7 +10,7 @@ use super::columns::{self, ColumnShape};
 #[cfg(test)]
 use super::layout::BIN_IS_ODD;
 use super::layout::{COLUMN_FLAG, GridInfo, LIST_GAPPED, LIST_OFFSET};
-use crate::model::Grid;
+use crate::model::{DepthList, Grid};
 use crate::render::RenderError;
 
 /// What is true of a grid as a whole.
@@ -55,10 +55,11 @@ impl CompactGrid {
     /// # Errors
     /// When its depth lists have more entries than can be numbered.
     pub fn new(grid: &Grid) -> Result<Self, RenderError> {
-        if grid.depths().len() > LIST_OFFSET as usize {
+        let used = grid.used_depths();
+        if used.count() > LIST_OFFSET as usize {
             return Err(RenderError::TooLarge {
                 what: "depth lists",
-                needed: 4 * grid.depths().len() as u64,
+                needed: 4 * used.count() as u64,
                 limit: 4 * u64::from(LIST_OFFSET),
             });
         }
@@ -69,7 +70,6 @@ impl CompactGrid {
         let accel = AccelGrid::new(grid, &shapes, origin);
         let acceleration_time = start.elapsed();
         let dims = grid.dims();
-        let depths = grid.depths().par_iter();
         let lists = 3 * grid.pillars().len();
         let bins = lists + 2 * dims.columns();
         Ok(Self {
@@ -99,11 +99,11 @@ impl CompactGrid {
                 column_lists: lists as u32,
                 bins: bins as u32,
                 bin_columns: (bins + accel.bins.len()) as u32,
-                reserved: 0,
+                visible: 0,
             },
             pillars: pillars(grid, origin),
             column_lists: column_lists(grid, &shapes),
-            depths: depths.map(|d| (d - origin.z) as f32).collect(),
+            depths: depths(grid, origin.z),
             bins: accel.bins,
             bin_columns: accel.columns,
         })
@@ -155,14 +155,27 @@ fn pillars(grid: &Grid, origin: DVec3) -> Vec<[[f32; 2]; 3]> {
     compact.collect()
 }
 
+/// The depths of columns with active cells relative to an origin, and at least those of one list.
+fn depths(grid: &Grid, origin: f64) -> Vec<f32> {
+    let used: Vec<&[f64]> = grid.used_depths().of(grid.depths()).collect();
+    let used = used.par_iter().flat_map(|depths| depths.par_iter());
+    let mut depths: Vec<f32> = used.map(|depth| (depth - origin) as f32).collect();
+    depths.resize(depths.len().max(grid.dims().nk + 1), 0.0);
+    depths
+}
+
+/// The lists of columns; those of a column without active cells are another one's, of which no cell is asked.
 fn column_lists(grid: &Grid, shapes: &[ColumnShape]) -> Vec<[u32; 4]> {
+    let used = grid.used_depths();
+    let reference = |list: DepthList| match used.offset(list) {
+        Some(offset) => offset as u32 | if list.gapped() { LIST_GAPPED } else { 0 },
+        None => 0,
+    };
     shapes
         .par_iter()
         .enumerate()
         .map(|(column, shape)| {
-            let mut lists = grid
-                .column_lists(column)
-                .map(|list| list.offset() as u32 | if list.gapped() { LIST_GAPPED } else { 0 });
+            let mut lists = grid.column_lists(column).map(reference);
             if shape.layers_cross {
                 lists[0] |= COLUMN_FLAG;
             }
@@ -174,4 +187,42 @@ fn column_lists(grid: &Grid, shapes: &[ColumnShape]) -> Vec<[u32; 4]> {
             lists
         })
         .collect()
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "tests")]
+mod tests {
+    use super::*;
+    use crate::model::GridInput;
+    use crate::model::synthetic::Recipe;
+
+    #[test]
+    fn depths_are_those_of_columns_with_active_cells() {
+        let recipe = Recipe::named("r3").unwrap();
+        let geometry = recipe.build(recipe.dims, 1, 1).unwrap().geometry;
+        let grid = Grid::new(&GridInput {
+            dims: geometry.dims,
+            coord: &geometry.coord,
+            zcorn: &geometry.zcorn,
+            actnum: Some(&geometry.actnum),
+            map_axes: None,
+        });
+        let grid = grid.unwrap();
+        let compact = CompactGrid::new(&grid).unwrap();
+        assert!(compact.depths.len() < grid.depths().len() * 3 / 4);
+        for cell in grid.active_cells() {
+            let ijk = grid.dims().ijk(*cell);
+            let lists = compact.column_lists[ijk.i + grid.dims().ni * ijk.j];
+            for corner in 0..8 {
+                let list = lists[corner & 3];
+                let step = if list & LIST_GAPPED != 0 { 2 } else { 1 };
+                let entry = (list & LIST_OFFSET) as usize + step * ijk.k + (corner >> 2);
+                let depth = grid.corner_depth(ijk, corner) - compact.facts.origin.z;
+                assert_eq!(compact.depths[entry], depth as f32);
+            }
+        }
+        // With ghosts all are there.
+        let all = CompactGrid::new(&grid.with_inactive()).unwrap();
+        assert_eq!(all.depths.len(), grid.depths().len());
+    }
 }

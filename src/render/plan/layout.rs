@@ -76,7 +76,7 @@ pub struct GridInfo {
     pub column_lists: u32,
     pub bins: u32,
     pub bin_columns: u32,
-    pub reserved: u32,
+    pub visible: u32,
 }
 
 /// A volume resampled over a box.

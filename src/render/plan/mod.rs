@@ -13,9 +13,11 @@ pub mod faces;
 pub mod frame;
 pub mod layout;
 pub mod light;
+pub mod majorants;
 pub mod srg;
 pub mod surfaces;
 pub mod transfer;
+pub mod visible;
 pub mod volume;
 
 pub use cells::{cell_bits, drawn_words, ghost_words, values};

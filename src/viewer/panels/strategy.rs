@@ -24,7 +24,7 @@ pub fn show(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action>) {
             match kind {
                 StrategyKind::Libc => libc(ui, about, actions),
                 StrategyKind::Srg => srg(ui, about, actions),
-                StrategyKind::Plts => {}
+                StrategyKind::Plts => plts(ui, about, actions),
             }
             sampling_step(ui, about, actions);
         })
@@ -57,18 +57,30 @@ fn sampling_step(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action
 
 fn libc(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action>) {
     let mut settings = about.scene.libc;
-    let mut segments = settings.integration == Integration::Segments;
-    ui.checkbox(&mut segments, "Integrate whole segments")
-        .on_hover_text("Integrates the part of a ray in each cell at once instead of by samples: faster, close to exact");
-    settings.integration = match segments {
-        true => Integration::Segments,
-        false => Integration::Samples,
-    };
+    integration(ui, &mut settings.integration);
     ui.checkbox(&mut settings.cross_faults, "Cross faults cell to cell")
         .on_hover_text("Rays step into the cell across a fault instead of searching for it");
     if settings != about.scene.libc {
         actions.push(Action::Libc(settings));
     }
+}
+
+fn plts(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action>) {
+    let mut settings = about.scene.plts;
+    integration(ui, &mut settings.integration);
+    if settings != about.scene.plts {
+        actions.push(Action::Plts(settings));
+    }
+}
+
+fn integration(ui: &mut Ui, integration: &mut Integration) {
+    let mut segments = *integration == Integration::Segments;
+    ui.checkbox(&mut segments, "Integrate whole segments")
+        .on_hover_text("Integrates the part of a ray in each cell at once instead of by samples: faster, close to exact");
+    *integration = match segments {
+        true => Integration::Segments,
+        false => Integration::Samples,
+    };
 }
 
 fn srg(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action>) {
