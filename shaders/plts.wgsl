@@ -47,6 +47,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         track.gap = f32(words.y >> PASSED_BITS);
         track.has_last = (words.w & HAS_LAST) != 0u;
         track.last = vec2u(words.z, words.w & ~HAS_LAST);
+        track.has_paused = track.has_last && track.gap == 0.0;
         let sums = bitcast<vec4f>(ray_states[state]);
         sum = Accumulated(sums.rgb, sums.a);
     } else {
@@ -56,10 +57,6 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     var layers = layers_of(pixel, passed);
     let ray = before_hull(whole, layers);
     var samples = 0u;
-    if track.has_last && track.gap == 0.0 {
-        // It paused in the midst of cells.
-        track.has_cell = try_from(&track, track.last, ray.base + n * ray.advance, frame.interpolation);
-    }
     // Two phases, so that rays side by side locate together and march together.
     while n < ray.count && is_open(sum) && track.work < tile.work_limit {
         while needs_cell(track) && n < ray.count && track.work < tile.work_limit {

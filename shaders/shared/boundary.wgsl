@@ -45,44 +45,51 @@ struct Look {
 
 // Looks for a sample in the cells of the faces that the ray passes there; where it lies in none, goes on to the next
 // sample that does. Searches where that leaves doubt. Returns how many samples lie in no cell.
+//
+// There is one place that tries cells and one that searches, for drivers put what is called in the place of each call.
 fn find_behind_faces(track: ptr<function, Track>, ray: Ray, n: f32) -> f32 {
-    if n == 0.0 && ray.starts_inside {
-        // It came into the cell before it began.
-        return find(track, ray.base, ray.advance, frame.interpolation);
-    }
     let nothing = Passage(0u, -FAR_AWAY, -FAR_AWAY, 0.0);
     var look = Look(frame_at(ray.base, ray.advance, 0.0), ray, n, nothing);
     var until = -FAR_AWAY;
-    for (var attempt = 0u; attempt < MOST_TRIED; attempt++) {
-        let passage = next_passage(look, track);
-        let at = ceil(passage.near);
-        if at > look.n {
-            if until >= look.n {
-                // A cell that was tried may begin behind this sample.
-                return pass_by(track, look.n + 1.0 - n);
+    // A ray that paused may go on in its cell; one that starts inside came into its cell before.
+    var cell = (*track).last;
+    var is_given = (*track).has_paused;
+    (*track).has_paused = false;
+    let is_searched = n == 0.0 && ray.starts_inside;
+    for (var attempt = select(0u, MOST_TRIED, is_searched); attempt < MOST_TRIED; attempt++) {
+        if !is_given {
+            let passage = next_passage(look, track);
+            let at = ceil(passage.near);
+            if at > look.n {
+                if until >= look.n {
+                    // A cell that was tried may begin behind this sample.
+                    return pass_by(track, look.n + 1.0 - n);
+                }
+                if passage.face == ODD_BIN || passage.turn < 0.0 {
+                    // The samples up to there lie in a cell, or may do so.
+                    break;
+                }
+                if passage.face == NO_FACE || at >= ray.count {
+                    return pass_by(track, min(at, ray.count) - n);
+                }
+                look.n = at;
+                until = -FAR_AWAY;
             }
-            if passage.face == ODD_BIN || passage.turn < 0.0 {
-                // The samples up to there lie in a cell, or may do so.
+            if passage.face >= ODD_BIN {
                 break;
             }
-            if passage.face == NO_FACE || at >= ray.count {
-                return pass_by(track, min(at, ray.count) - n);
-            }
-            look.n = at;
-            until = -FAR_AWAY;
+            look.tried = passage;
+            until = max(until, passage.far);
+            let number = passage.face / 6u;
+            cell = vec2u(number / grid.nk, number % grid.nk);
         }
-        if passage.face >= ODD_BIN {
-            break;
-        }
-        let cell = passage.face / 6u;
-        if try_from(track, vec2u(cell / grid.nk, cell % grid.nk), ray.base + look.n * ray.advance, frame.interpolation) {
+        if try_from(track, cell, ray.base + look.n * ray.advance, frame.interpolation) {
             return pass_by(track, look.n - n);
         }
-        if !(*track).solution.sure {
+        if !is_given && !(*track).solution.sure {
             break;
         }
-        look.tried = passage;
-        until = max(until, passage.far);
+        is_given = false;
     }
     return pass_by(track, look.n - n) + find(track, ray.base + look.n * ray.advance, ray.advance, frame.interpolation);
 }

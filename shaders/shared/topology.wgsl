@@ -22,6 +22,8 @@ struct Track {
     // A sample has been found before, in the cell of this column and layer.
     has_last: bool,
     last: vec2u,
+    // The line paused in the midst of cells, the sample before the next one being in the last cell.
+    has_paused: bool,
     // Times that the line came into the model, cells that it came into, samples lost.
     entries: u32,
     crossings: u32,
