@@ -51,11 +51,13 @@ fn find_behind_faces(track: ptr<function, Track>, ray: Ray, n: f32) -> f32 {
     let nothing = Passage(0u, -FAR_AWAY, -FAR_AWAY, 0.0);
     var look = Look(frame_at(ray.base, ray.advance, 0.0), ray, n, nothing);
     var until = -FAR_AWAY;
-    // A ray that paused may go on in its cell; one that starts inside came into its cell before.
+    // A ray that paused may go on in its cell. One that starts inside came into its cell before; one that has just
+    // left a cell may still be in one, where a bent cell does not say where it ends: the grid is asked.
     var cell = (*track).last;
-    var is_given = (*track).has_paused;
+    let is_given = (*track).has_paused;
     (*track).has_paused = false;
-    let is_searched = n == 0.0 && ray.starts_inside;
+    let leaves = (*track).has_last && (*track).gap == 0.0 && !is_given;
+    let is_searched = leaves || (n == 0.0 && ray.starts_inside);
     for (var attempt = select(0u, MOST_TRIED, is_searched); attempt < MOST_TRIED; attempt++) {
         if !is_given {
             let passage = next_passage(look, track);
@@ -86,10 +88,9 @@ fn find_behind_faces(track: ptr<function, Track>, ray: Ray, n: f32) -> f32 {
         if try_from(track, cell, ray.base + look.n * ray.advance, frame.interpolation) {
             return pass_by(track, look.n - n);
         }
-        if !is_given && !(*track).solution.sure {
+        if is_given || !(*track).solution.sure {
             break;
         }
-        is_given = false;
     }
     return pass_by(track, look.n - n) + find(track, ray.base + look.n * ray.advance, ray.advance, frame.interpolation);
 }

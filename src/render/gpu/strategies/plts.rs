@@ -14,6 +14,7 @@ use crate::render::job::Work;
 use crate::render::plan::face_bins;
 use crate::render::plan::layout::RAY_STATE;
 use crate::render::{DeviceBytes, RenderError};
+use crate::scene::Integration;
 
 /// The strategy with its shader, compiled when it is first asked for, and the faces that rays come in by.
 #[derive(Default)]
@@ -63,6 +64,11 @@ impl RenderStrategy for Plts {
 
     fn prepare<'a>(&'a mut self, what: &'a Preparation<'a>) -> Work<'a, ()> {
         Box::pin(async move {
+            if what.view.sampling.plts.integration == Integration::Segments {
+                return Err(RenderError::CpuOnly(
+                    "\"plts\": {\"integration\": \"segments\"}",
+                ));
+            }
             let known = self.faces.take();
             self.faces = match (known, what.faces) {
                 (Some(known), Some(list)) if known.revision == list.revision => Some(known),
