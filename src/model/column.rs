@@ -3,8 +3,7 @@
 use glam::{DVec2, DVec3};
 
 use super::activity::layers;
-use super::corner_point::Hexahedron;
-use super::grid::NO_THICKNESS;
+use super::corner_point::{Hexahedron, NO_THICKNESS};
 
 /// A column of cells.
 #[derive(Debug, Clone, Copy)]

@@ -2,6 +2,10 @@
 
 use glam::{DMat3, DVec3};
 
+/// A cell whose four edges along the pillars are all at most this long has no thickness
+/// and is never drawn (length units of the file).
+pub const NO_THICKNESS: f64 = 1e-6;
+
 /// Eight corners, number `di + 2 dj + 4 dk`, of the trilinear map from (s, t, r) in [-1, 1]^3.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hexahedron(pub [DVec3; 8]);

@@ -23,14 +23,10 @@ use rayon::prelude::*;
 
 use super::activity::{Activity, ColumnBits};
 use super::column::{Column, Corner};
-use super::corner_point::Hexahedron;
+use super::corner_point::{Hexahedron, NO_THICKNESS};
 use super::depth_lists::{DepthList, Lists, UsedDepths};
 use super::ids::{ActiveIndex, CellIndex, Dims, Ijk};
 use super::spaces::MapAxes;
-
-/// A cell whose four edges along the pillars are all at most this long has no thickness
-/// and is never drawn (length units of the file).
-pub const NO_THICKNESS: f64 = 1e-6;
 
 /// Pillars whose ends lie closer in depth than this are vertical.
 const VERTICAL_PILLAR: f64 = 1e-10;

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use strataray::case::{Case, load, save};
-use strataray::model::grid::NO_THICKNESS;
+use strataray::model::corner_point::NO_THICKNESS;
 use strataray::model::synthetic::{Fields, RECIPES, Recipe, Synthetic};
 use strataray::model::topology::COINCIDENT;
 use strataray::model::{CellIndex, Dims, Grid, GridInput, Ijk, ModelError};

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use super::noise::Noise;
 use super::structure::Structure;
-use crate::model::grid::NO_THICKNESS;
+use crate::model::corner_point::NO_THICKNESS;
 
 /// Holes in the outline, and their radius in parts of the longer side.
 const HOLES: usize = 3;

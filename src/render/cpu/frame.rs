@@ -4,6 +4,9 @@ use glam::{Mat3A, Vec3A, Vec4};
 
 use crate::render::plan::layout;
 
+/// Numbers of four samples, less that of the first.
+pub const AHEAD: Vec4 = Vec4::new(0.0, 1.0, 2.0, 3.0);
+
 /// The numbers of a frame, see [`layout::Frame`].
 pub struct Frame {
     /// As they are.

@@ -37,7 +37,7 @@ impl Way<'_> {
     /// Adds what the ray meets to what is there.
     pub fn cast(&self, layers: &mut Layers, sum: &mut Accumulated, tally: &mut Tally) {
         let Self { scene, ray, .. } = *self;
-        let mut track = Track::new(scene, ray, self.boundary, tally);
+        let mut track = Track::new(scene.grid, scene.visible, ray, self.boundary, tally);
         // Where layers cross, a point of several cells belongs to the first of them: each sample is located.
         match self.integration {
             Integration::Segments if !scene.grid.compact.facts.layers_cross => {

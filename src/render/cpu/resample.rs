@@ -3,9 +3,8 @@
 use glam::{Vec2, Vec3A, Vec4};
 
 use super::each::Each;
-use super::frame::Ray;
+use super::frame::{AHEAD, Ray};
 use super::grid::Grid;
-use super::samples::AHEAD;
 use super::tally::Tally;
 use super::topology::Track;
 use super::volume::{ONE_PART, Voxel, Voxels, averages, in_parts};

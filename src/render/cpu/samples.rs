@@ -2,13 +2,10 @@
 
 use glam::{Vec3A, Vec4};
 
-use super::frame::Ray;
+use super::frame::{AHEAD, Ray};
 use super::scene::Scene;
 use super::surfaces::Layers;
 use super::transfer::Accumulated;
-
-/// Numbers of four samples, less that of the first.
-pub const AHEAD: Vec4 = Vec4::new(0.0, 1.0, 2.0, 3.0);
 
 /// Samples of a ray that follow each other.
 pub struct Samples<'a> {

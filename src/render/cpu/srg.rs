@@ -9,13 +9,12 @@ use glam::{Vec3A, Vec4};
 
 use super::bricks::{Bricks, Pass};
 use super::each::Each;
-use super::frame::{PixelRay, Ray};
+use super::frame::{AHEAD, PixelRay, Ray};
 use super::illumination::Source;
 use super::kept::Kept;
 use super::random::{pcg, unit};
 use super::raster::Met;
 use super::resample::{Field, Resampler};
-use super::samples::AHEAD;
 use super::scene::Scene;
 use super::surfaces::Layers;
 use super::tally::Tally;

@@ -12,7 +12,6 @@ use super::facing::{FacePlace, column_behind, side_lists, sides_join};
 use super::frame::Ray;
 use super::grid::Grid;
 use super::locate::{Query, is_odd, locate};
-use super::scene::Scene;
 use super::tally::Tally;
 use super::thorough::encloses;
 use crate::render::plan::layout::COLUMN_FLAG;
@@ -86,15 +85,16 @@ impl Stretch {
 impl<'a> Track<'a> {
     /// A ray before its first sample.
     pub fn new(
-        scene: &'a Scene<'_>,
+        grid: &'a Grid,
+        visible: Option<&'a [u32]>,
         ray: &'a Ray,
         boundary: &'a Boundary,
         tally: &'a mut Tally,
     ) -> Self {
         Self {
-            visible: scene.visible,
+            visible,
             boundary: Some(boundary),
-            ..Self::through(scene.grid, ray, tally)
+            ..Self::through(grid, ray, tally)
         }
     }
 

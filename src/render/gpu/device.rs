@@ -3,7 +3,7 @@
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
 use super::bind_groups::{Parameters, SharedLayouts};
-use super::pipeline::Pipelines;
+use super::kept::Kept;
 use crate::render::plan::layout::LUT_ROW;
 use crate::render::{AdapterFacts, RenderError};
 
@@ -42,7 +42,7 @@ pub struct Gpu {
     pub timestamp_period_ns: Option<f32>,
     /// Layouts of the bind groups that all strategies share.
     pub layouts: SharedLayouts,
-    pub(super) pipelines: Pipelines,
+    pub(super) compiled: Kept,
     pub(super) late_error: Arc<LateError>,
     /// Why the device is gone.
     lost: Arc<OnceLock<String>>,
@@ -146,7 +146,7 @@ impl Gpu {
         let timestamp_period_ns = (!features.is_empty()).then(|| queue.get_timestamp_period());
         Ok(Self {
             layouts: SharedLayouts::new(&device, parameters)?,
-            pipelines: Pipelines::default(),
+            compiled: Kept::default(),
             device,
             queue,
             info,

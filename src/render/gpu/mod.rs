@@ -8,6 +8,7 @@ pub mod faces;
 pub mod frame;
 pub mod grid_upload;
 pub mod illumination;
+mod kept;
 pub mod pipeline;
 pub mod probe;
 pub mod pyramids;

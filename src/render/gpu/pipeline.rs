@@ -1,56 +1,12 @@
 //! Pipelines, with bind group layouts read from the shaders themselves.
 
-use std::collections::HashMap;
-use std::hash::Hash;
 use std::panic::resume_unwind;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
 
 use super::bind_groups::{SHARED_GROUPS, bindings, layout, parse};
 use super::device::{Gpu, LateError};
 use super::shader::compose;
 use crate::render::RenderError;
-
-/// What has been compiled for a device, kept by name and constants: those who come back to a look, and cases that are
-/// opened beside others, find it there.
-#[derive(Default)]
-pub(super) struct Pipelines {
-    shaders: Kept<String, Compiled>,
-    pipelines: Kept<String, Pipeline>,
-}
-
-/// Things by their keys, the last [`MOST_KEPT`] of them at most.
-struct Kept<K, V>(Mutex<HashMap<K, Arc<V>>>);
-
-/// Pipelines that are kept. Some constants are free numbers, so that there is no end to them; who uses a pipeline holds
-/// it beside.
-const MOST_KEPT: usize = 64;
-
-impl<K, V> Default for Kept<K, V> {
-    fn default() -> Self {
-        Self(Mutex::default())
-    }
-}
-
-impl<K: Eq + Hash, V> Kept<K, V> {
-    /// What is kept by a key, or made now: nobody waits meanwhile who wants something else.
-    fn get_or_make(
-        &self,
-        key: K,
-        make: impl FnOnce() -> Result<V, RenderError>,
-    ) -> Result<Arc<V>, RenderError> {
-        let kept = || self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(known) = kept().get(&key) {
-            return Ok(known.clone());
-        }
-        let made = Arc::new(make()?);
-        let mut kept = kept();
-        if kept.len() >= MOST_KEPT {
-            kept.clear();
-        }
-        kept.insert(key, made.clone());
-        Ok(made)
-    }
-}
 
 /// A shader's module with the layout of its pipeline.
 struct Compiled {
@@ -76,7 +32,7 @@ impl Compiled {
 /// A shader, compiled once.
 fn compiled(gpu: &Gpu, name: &str) -> Result<Arc<Compiled>, RenderError> {
     let compile = || compile(gpu, name);
-    gpu.pipelines.shaders.get_or_make(name.to_owned(), compile)
+    gpu.compiled.get_or_make(name.to_owned(), compile)
 }
 
 fn compile(gpu: &Gpu, name: &str) -> Result<Compiled, RenderError> {
@@ -163,7 +119,7 @@ impl Pipeline {
     ) -> Result<Arc<Self>, RenderError> {
         let key = format!("{name} {entry} {constants:?}");
         let compile = || Self::compile(gpu, name, entry, constants);
-        gpu.pipelines.pipelines.get_or_make(key, compile)
+        gpu.compiled.get_or_make(key, compile)
     }
 
     /// As [`Self::variant`], several entries with their constants side by side.
