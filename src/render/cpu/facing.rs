@@ -6,6 +6,7 @@ use glam::{Vec2, Vec3A, Vec4};
 use super::each::Each;
 use super::grid::{Grid, all_coincide};
 use crate::render::plan::layout::LIST_OFFSET;
+use crate::render::plan::list_entry;
 
 /// A face of a cell by its number, `(column * nk + layer) * 6 + side`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -103,7 +104,7 @@ pub fn sides_join(grid: &Grid, mine: [u32; 2], theirs: [u32; 2], layer: u32) -> 
 
 #[inline]
 fn side_depths(grid: &Grid, [a, b]: [u32; 2], layer: u32) -> Vec4 {
-    let entry = Grid::list_entry;
+    let entry = list_entry;
     grid.depths_at([
         entry(a, layer, 0),
         entry(b, layer, 0),

@@ -8,9 +8,9 @@ use glam::{Vec2, Vec4};
 use super::each::Each;
 use crate::model::{Grid as Model, topology};
 use crate::render::plan::columns::COLUMN_MARGINS;
-use crate::render::plan::layout::{COLUMN_FLAG, LIST_GAPPED, LIST_OFFSET};
+use crate::render::plan::layout::{COLUMN_FLAG, LIST_GAPPED};
 use crate::render::plan::visible::HeldCells;
-use crate::render::plan::{CompactGrid, drawn_words, ghost_words, values};
+use crate::render::plan::{CompactGrid, drawn_words, ghost_words, list_entry, values};
 use crate::render::{DeviceBytes, RenderError};
 use crate::scene::Interpolation;
 use crate::view::{ShownCells, View};
@@ -194,21 +194,10 @@ impl Grid {
         self.values[rank as usize]
     }
 
-    /// Position in the depth lists of a layer's top (0) or bottom (1).
-    #[inline]
-    pub fn list_entry(list: u32, layer: u32, bottom: u32) -> u32 {
-        let layers = if list & LIST_GAPPED != 0 {
-            2 * layer
-        } else {
-            layer
-        };
-        (list & LIST_OFFSET) + layers + bottom
-    }
-
     /// Positions in the depth lists of the four corners of a layer's top (0) or bottom (1).
     #[inline]
     pub fn layer_entries(lists: [u32; 4], layer: u32, bottom: u32) -> [u32; 4] {
-        lists.each(|list| Self::list_entry(list, layer, bottom))
+        lists.each(|list| list_entry(list, layer, bottom))
     }
 
     /// A depth by its position in the lists.
@@ -258,7 +247,7 @@ impl Grid {
 fn of_cell(entries: &[f32], lists: [u32; 4], layer: u32) -> [Vec4; 2] {
     // The two of a pillar follow each other.
     let pairs = lists.each(|list| {
-        let top = Grid::list_entry(list, layer, 0) as usize;
+        let top = list_entry(list, layer, 0) as usize;
         let pair = &entries[top..top + 2];
         [pair[0], pair[1]]
     });

@@ -28,7 +28,8 @@ use super::tally::Tally;
 use super::thorough::encloses;
 use super::transfer::Accumulated;
 use crate::render::plan::layout::COLUMN_FLAG;
-use crate::scene::{Integration, Interpolation, LibcSettings};
+use crate::render::plan::list_entry;
+use crate::scene::{Integration, LibcSettings};
 
 /// Steps without progress after which a ray is set right by point location.
 const MOST_STALLS: u32 = 32;
@@ -262,7 +263,7 @@ impl Walk<'_> {
         let pillars = grid.pillars(next);
         let [a, b] = [0, 1].each(|n| pillars[face_corner(face, n) as usize]);
         let is_below = |layer: u32, bottom: u32| {
-            let depth = |list: u32| grid.depth(Grid::list_entry(list, layer, bottom));
+            let depth = |list: u32| grid.depth(list_entry(list, layer, bottom));
             let p = self.r.project(&a, depth(lists[0]));
             let q = self.r.project(&b, depth(lists[1]));
             sense * cross2d(p, q) > 0.0
@@ -344,13 +345,8 @@ impl Walk<'_> {
                 from,
                 to,
             };
-            match is_ghost {
-                true => span.of_ghost(sum),
-                false => {
-                    let segment = self.segment(t, uvw);
-                    tally.samples += span.by_value(sum, |t| segment.values(t));
-                }
-            }
+            let segment = self.segment(t, uvw);
+            tally.samples += span.add(is_ghost, sum, |t| segment.values(t));
             return;
         }
         // Samples from the first one at or behind the entry to the last one before the exit.
@@ -363,21 +359,13 @@ impl Walk<'_> {
         if count <= 0.0 {
             return;
         }
-        let entry = match (is_ghost, scene.grid.interpolation) {
-            (true, _) => Some(scene.ghost),
-            (false, Interpolation::Vertex) => None,
-            (false, Interpolation::Cell) => {
-                let value = scene.grid.cell_value(self.column, self.layer);
-                Some(scene.transfer.of(value))
-            }
-        };
         let samples = Samples {
             scene,
             ray,
             first,
             count,
         };
-        let taken = match entry {
+        let taken = match scene.entry_of(self.column, self.layer) {
             Some(entry) => samples.of_one(entry, is_ghost, layers, sum),
             None => {
                 let segment = self.segment(t, uvw);

@@ -5,6 +5,8 @@
 //! the samples in a cell the first and the last one are located by Newton's method, and parameters in between are a
 //! cubic that has the places and tangents of both.
 
+use glam::Vec4;
+
 use super::boundary::Boundary;
 use super::frame::Ray;
 use super::samples::Samples;
@@ -14,7 +16,7 @@ use super::surfaces::Layers;
 use super::tally::Tally;
 use super::topology::{Stretch, Track};
 use super::transfer::Accumulated;
-use crate::scene::{Integration, Interpolation};
+use crate::scene::Integration;
 
 /// Ways without length in a row after which a ray is located anew.
 const MOST_STALLS: u32 = 32;
@@ -57,18 +59,13 @@ impl Way<'_> {
             };
             let cell = track.cell();
             let is_ghost = scene.grid.is_ghost(cell.column, cell.layer);
-            let entry = match (is_ghost, scene.grid.interpolation) {
-                (true, _) => Some(scene.ghost),
-                (false, Interpolation::Cell) => Some(scene.transfer.of(cell.k0.w)),
-                (false, Interpolation::Vertex) => None,
-            };
             let samples = Samples {
                 scene,
                 ray,
                 first: stretch.first,
                 count: stretch.more + 1.0,
             };
-            let taken = match entry {
+            let taken = match scene.entry_of(cell.column, cell.layer) {
                 Some(entry) => samples.of_one(entry, is_ghost, layers, sum),
                 None => samples.by_value(layers, sum, |n| cell.values(stretch.parameters(n))),
             };
@@ -126,10 +123,9 @@ impl Way<'_> {
             to,
         };
         let cell = track.cell();
-        if scene.grid.is_ghost(cell.column, cell.layer) {
-            return span.of_ghost(sum);
-        }
-        let place = |t: glam::Vec4| t / step - (0.5 + ray.first);
-        track.tally.samples += span.by_value(sum, |t| cell.values(way.parameters(place(t))));
+        let is_ghost = scene.grid.is_ghost(cell.column, cell.layer);
+        let place = |t: Vec4| t / step - (0.5 + ray.first);
+        let values = |t| cell.values(way.parameters(place(t)));
+        track.tally.samples += span.add(is_ghost, sum, values);
     }
 }

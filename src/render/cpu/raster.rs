@@ -9,6 +9,7 @@ use super::each::Each;
 use super::facing::{FacePlace, face_corner, face_orientation};
 use super::frame::Frame;
 use super::grid::Grid;
+use crate::render::plan::list_entry;
 
 /// Pixels along the side of a tile.
 pub const TILE: u32 = 16;
@@ -74,7 +75,7 @@ impl<'a> Projector<'a> {
         [0, 1, 2, 3].each(|n| {
             let corner = face_corner(place.side, n);
             let of_column = (corner & 3) as usize;
-            let entry = Grid::list_entry(lists[of_column], place.layer, corner >> 2);
+            let entry = list_entry(lists[of_column], place.layer, corner >> 2);
             let depth = f64::from(self.grid.depth(entry));
             let pillar = self.grid.pillar(pillars[of_column]);
             let wide = |v: Vec2| v.as_dvec2();

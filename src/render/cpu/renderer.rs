@@ -22,7 +22,7 @@ use crate::render::job::{Job, Progress};
 use crate::render::line_of_sight::SurfaceTree;
 use crate::render::plan::faces::face_numbers;
 use crate::render::plan::frame::{frame_uniform, ghost};
-use crate::render::plan::visible::{by_active_index, can_be_passed};
+use crate::render::plan::visible::{can_be_passed, visible_faces};
 use crate::render::revisions::{RevisionCounter, Revisions};
 use crate::render::{DeviceBytes, Frame, Located, RenderError, Renderer, SetupTimes};
 use crate::scene::StrategyKind;
@@ -106,12 +106,11 @@ impl CpuRenderer {
             self.srg.update(&source, grid.dims(), &progress).await;
         }
         let (grid, drawn) = view.shown.cells.in_grid(model);
-        let faces = |cells: &[bool]| face_numbers(grid, &grid.boundary_faces(cells));
         let visible = match can_be_passed(view, &self.grid.compact.facts) {
             true => self.visible.update(now.visible, || {
                 let words = self.grid.visible_words(view);
                 let with_faces = |words: Vec<u32>| {
-                    let boundary = faces(&by_active_index(grid, &words))?;
+                    let boundary = visible_faces(grid, &words)?;
                     Ok::<_, RenderError>(Visible { words, boundary })
                 };
                 words.map(with_faces).transpose()
@@ -120,7 +119,9 @@ impl CpuRenderer {
         };
         let boundary = match visible {
             Some(visible) => &visible.boundary,
-            None => self.boundary.update(now.drawn, || faces(drawn))?,
+            None => self.boundary.update(now.drawn, || {
+                face_numbers(grid, &grid.boundary_faces(drawn))
+            })?,
         };
         let surfaces = self
             .surfaces

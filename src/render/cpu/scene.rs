@@ -6,6 +6,7 @@ use super::frame::Frame;
 use super::grid::Grid;
 use super::shading::Shading;
 use super::transfer::Transfer;
+use crate::scene::Interpolation;
 use crate::view::Surfaces;
 
 /// What all rays of a frame read.
@@ -27,6 +28,16 @@ pub struct Scene<'a> {
 }
 
 impl Scene<'_> {
+    /// Color and extinction of a cell, where they are the same all over it.
+    #[inline]
+    pub fn entry_of(&self, column: u32, layer: u32) -> Option<Vec4> {
+        match self.grid.interpolation {
+            _ if self.grid.is_ghost(column, layer) => Some(self.ghost),
+            Interpolation::Cell => Some(self.transfer.of(self.grid.cell_value(column, layer))),
+            Interpolation::Vertex => None,
+        }
+    }
+
     /// True where rays meet a cell.
     #[inline]
     pub fn is_met(&self, column: u32, layer: u32) -> bool {

@@ -25,19 +25,30 @@ pub struct Span<'a> {
 }
 
 impl Span<'_> {
-    /// Adds the inside of an inactive cell.
-    pub fn of_ghost(&self, sum: &mut Accumulated) {
+    /// Adds the inside of a cell, whose values are given for four distances at a time where it is no ghost. Returns
+    /// the number of pieces that were integrated.
+    #[inline]
+    pub fn add(&self, is_ghost: bool, sum: &mut Accumulated, values: impl Fn(Vec4) -> Vec4) -> u64 {
+        match is_ghost {
+            true => {
+                self.of_ghost(sum);
+                0
+            }
+            false => self.by_value(sum, values),
+        }
+    }
+
+    fn of_ghost(&self, sum: &mut Accumulated) {
         let scene = self.scene;
         let middle = self.ray.at(0.5 * (self.from + self.to));
         let entry = scene.shading.shade_entry(scene.ghost, middle, true);
         sum.absorb(entry, entry.w * (self.to - self.from));
     }
 
-    /// Adds values, given for four distances at a time, in pieces so small that the order of colors within one does not
-    /// matter; in each the means of extinction and color over its values are differences of integrals. Returns their
-    /// number.
+    /// Adds values in pieces so small that the order of colors within one does not matter; in each the means of
+    /// extinction and color over its values are differences of integrals. Returns their number.
     #[inline]
-    pub fn by_value(&self, sum: &mut Accumulated, values: impl Fn(Vec4) -> Vec4) -> u64 {
+    fn by_value(&self, sum: &mut Accumulated, values: impl Fn(Vec4) -> Vec4) -> u64 {
         let Self {
             scene, ray, from, ..
         } = *self;

@@ -20,6 +20,7 @@ use crate::model::Grid as Model;
 use crate::render::RenderError;
 use crate::render::plan::faces::face_numbers;
 use crate::render::plan::layout::FAULT_COLORS;
+use crate::render::plan::list_entry;
 use crate::render::plan::surfaces::{Layer as Kind, faults, layers, palette};
 use crate::scene::{Hull, Interpolation};
 use crate::view::View;
@@ -323,7 +324,7 @@ fn spot_on(grid: &Grid, place: FacePlace, r: &RayFrame, steps: [Vec3A; 2]) -> Sp
     let corners = [0, 1, 2, 3].each(|n| {
         let corner = face_corner(place.side, n);
         let of_column = (corner & 3) as usize;
-        let entry = Grid::list_entry(lists[of_column], place.layer, corner >> 2);
+        let entry = list_entry(lists[of_column], place.layer, corner >> 2);
         r.relative(&grid.pillar(numbers[of_column]), grid.depth(entry))
     });
     let q = corners.each(|corner| r.projected(corner));

@@ -9,7 +9,7 @@ use super::round::{Place, Round};
 use crate::model::Grid;
 use crate::render::RenderError;
 use crate::render::plan::faces::face_numbers;
-use crate::render::plan::visible::{by_active_index, can_be_passed};
+use crate::render::plan::visible::{can_be_passed, visible_faces};
 use crate::view::View;
 
 /// Which face a pixel gets; the order is that of the shader's constants.
@@ -86,7 +86,10 @@ impl BoundaryFaces {
         let known = self.drawn.take().filter(|l| l.revision == revision);
         let list = match known {
             Some(known) => known,
-            None => listed(gpu, model, revision, drawn)?,
+            None => {
+                let faces = face_numbers(model, &model.boundary_faces(drawn))?;
+                FaceList::new(gpu, revision, &faces)?
+            }
         };
         Ok(self.drawn.insert(list))
     }
@@ -101,6 +104,7 @@ impl BoundaryFaces {
         gpu: &Gpu,
         model: &Grid,
         grid: &mut GpuGrid,
+        drawn: &[bool],
         view: &View,
     ) -> Result<Option<&FaceList>, RenderError> {
         let passes =
@@ -109,10 +113,6 @@ impl BoundaryFaces {
         if passes {
             return Ok(self.visible.as_ref().and_then(|(_, list)| list.as_ref()));
         }
-        let drawn = match &view.shown.cells.ghosts {
-            None => &view.shown.cells.drawn[..],
-            Some(ghosts) => &ghosts.drawn,
-        };
         self.of_drawn(gpu, model, grid, drawn).map(Some)
     }
 
@@ -136,24 +136,19 @@ impl BoundaryFaces {
         let visible = match known {
             Some(known) => known,
             None => {
-                let words = grid.visible_words(view);
-                grid.meet(gpu, words.as_deref())?;
-                let cells = words.map(|words| by_active_index(model, &words));
-                let list = cells.map(|cells| listed(gpu, model, 2 * revision + 1, &cells));
-                (revision, list.transpose()?)
+                let list = match grid.visible_words(view) {
+                    Some(words) => {
+                        grid.meet(gpu, Some(&words))?;
+                        let faces = visible_faces(model, &words)?;
+                        Some(FaceList::new(gpu, 2 * revision + 1, &faces)?)
+                    }
+                    None => None,
+                };
+                (revision, list)
             }
         };
         Ok(self.visible.insert(visible).1.is_some())
     }
-}
-
-/// Boundary faces of some cells of a grid, by active index.
-fn listed(gpu: &Gpu, model: &Grid, revision: u64, cells: &[bool]) -> Result<FaceList, RenderError> {
-    FaceList::new(
-        gpu,
-        revision,
-        &face_numbers(model, &model.boundary_faces(cells))?,
-    )
 }
 
 /// Draws boundary faces.

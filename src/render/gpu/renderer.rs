@@ -123,7 +123,7 @@ impl GpuRenderer {
             surfaces.update(gpu, of_case, on_device, view, boundary, light.work())?;
         }
         let met = match strategy.needs_faces() {
-            true => faces.of_met(gpu, grid, on_device, view)?,
+            true => faces.of_met(gpu, grid, on_device, drawn, view)?,
             false => None,
         };
         let preparation = Preparation {

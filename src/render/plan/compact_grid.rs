@@ -130,6 +130,13 @@ impl CompactGrid {
     }
 }
 
+/// Position in the depth lists of a layer's top (0) or bottom (1), by a column's list with its flags.
+#[inline]
+pub fn list_entry(list: u32, layer: u32, bottom: u32) -> u32 {
+    let step = if list & LIST_GAPPED != 0 { 2 } else { 1 };
+    (list & LIST_OFFSET) + step * layer + bottom
+}
+
 /// Words two by two; the last one of an odd number has a zero beside it.
 pub fn pairs(words: &[u32]) -> impl Iterator<Item = [u32; 2]> {
     words.chunks(2).map(|pair| match *pair {

@@ -21,5 +21,5 @@ pub mod visible;
 pub mod volume;
 
 pub use cells::{cell_bits, drawn_words, ghost_words, values};
-pub use compact_grid::{CompactGrid, GridFacts};
+pub use compact_grid::{CompactGrid, GridFacts, list_entry};
 pub use face_bins::face_bins;

@@ -3,11 +3,13 @@
 
 use rayon::prelude::*;
 
-use super::GridFacts;
+use super::faces::face_numbers;
 use super::frame::ghost;
-use super::layout::{LIST_GAPPED, LIST_OFFSET, per_unit};
+use super::layout::per_unit;
 use super::majorants::Majorants;
+use super::{GridFacts, list_entry};
 use crate::model::Grid;
+use crate::render::RenderError;
 use crate::scene::{Interpolation, StrategyKind};
 use crate::view::View;
 
@@ -83,8 +85,7 @@ impl HeldCells<'_> {
         let (column, layer) = (slot / self.nk, slot % self.nk);
         let mut range = [f32::MAX, f32::MIN];
         for list in self.lists[column as usize] {
-            let layers = if list & LIST_GAPPED != 0 { 2 } else { 1 };
-            let top = ((list & LIST_OFFSET) + layers * layer) as usize;
+            let top = list_entry(list, layer, 0) as usize;
             for value in &self.values[top..top + 2] {
                 range = [range[0].min(*value), range[1].max(*value)];
             }
@@ -93,8 +94,17 @@ impl HeldCells<'_> {
     }
 }
 
+/// Boundary faces, by number, of the cells that have a bit, of the grid that rays pass.
+///
+/// # Errors
+/// When the faces of the grid cannot be numbered.
+pub fn visible_faces(grid: &Grid, words: &[u32]) -> Result<Vec<u32>, RenderError> {
+    let cells = by_active_index(grid, words);
+    face_numbers(grid, &grid.boundary_faces(&cells))
+}
+
 /// The cells of some bits by active index of the grid that rays pass.
-pub fn by_active_index(grid: &Grid, words: &[u32]) -> Vec<bool> {
+fn by_active_index(grid: &Grid, words: &[u32]) -> Vec<bool> {
     let dims = grid.dims();
     grid.map_active(|column, k| {
         let slot = (column.i + dims.ni * column.j) * dims.nk + k;
