@@ -41,7 +41,19 @@ pub fn write<W: Write, N: AsRef<str>>(
     arrays: impl IntoIterator<Item = (N, Vec<f32>)>,
 ) -> io::Result<W> {
     let mut out = RecordWriter::new(out);
-    write_heads(&mut out, head, 0.0)?;
-    write_arrays(&mut out, head, arrays)?;
+    write_to(&mut out, head, arrays)?;
     out.finish()
+}
+
+/// As [`write`], into a file of any form.
+///
+/// # Errors
+/// As [`write`].
+pub fn write_to<W: Write, N: AsRef<str>>(
+    out: &mut RecordWriter<W>,
+    head: &Head,
+    arrays: impl IntoIterator<Item = (N, Vec<f32>)>,
+) -> io::Result<()> {
+    write_heads(out, head, 0.0)?;
+    write_arrays(out, head, arrays)
 }

@@ -63,15 +63,15 @@ pub fn unified_from_bytes(
             false => i32::try_from(n).unwrap_or(0),
         };
         let step = step(&file, start..end, u32::try_from(report).unwrap_or(0))?;
-        let at = At::Byte(entries[start].offset);
+        let at = || file.place(entries[start].offset);
         if step.arrays.find("INTEHEAD").is_none() {
             let message = format!("report {report} has no INTEHEAD and was left out");
-            warnings.push(path, at, message);
+            warnings.push(path, at(), message);
             continue;
         }
         if !known.insert(step.report) {
             let message = format!("report {report} is there more than once; all are kept");
-            warnings.push(path, at, message);
+            warnings.push(path, at(), message);
         }
         steps.push(step);
     }
@@ -242,9 +242,13 @@ pub struct RestartWriter<W: Write> {
 }
 
 impl<W: Write> RestartWriter<W> {
-    /// A writer to `out`, which needs no buffer of its own.
+    /// A writer of a binary file to `out`, which needs no buffer of its own.
     pub fn new(out: W) -> Self {
-        let out = RecordWriter::new(out);
+        Self::to(RecordWriter::new(out))
+    }
+
+    /// A writer of a file of any form.
+    pub fn to(out: RecordWriter<W>) -> Self {
         Self { out }
     }
 

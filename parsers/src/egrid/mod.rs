@@ -235,7 +235,7 @@ fn map_axes(
     let values = file.f64s(entry)?.try_into().ok();
     if values.is_none() {
         let message = format!("MAPAXES has {} values, not 6: left out", entry.count);
-        warnings.push(file.path(), At::Byte(entry.offset), message);
+        warnings.push(file.path(), file.place(entry.offset), message);
     }
     Ok(values)
 }

@@ -3,7 +3,7 @@
 use strataray_parsers::cells::Head;
 use strataray_parsers::egrid::{Egrid, GridUnit, PorosityModel};
 use strataray_parsers::init;
-use strataray_parsers::records::RecordWriter;
+use strataray_parsers::records::{Kind, RecordFile, RecordWriter};
 use strataray_parsers::restart::RestartWriter;
 
 /// A deck of one cell, with its corners at depths 0 and 1.
@@ -29,6 +29,25 @@ pub fn cell() -> Egrid {
         local_connections: 0,
         local_grids: Vec::new(),
     }
+}
+
+/// The text twin of a binary file.
+pub fn formatted(binary: &[u8]) -> Vec<u8> {
+    let file = RecordFile::from_bytes(("A", binary.to_vec())).unwrap();
+    let mut out = RecordWriter::formatted(Vec::new());
+    for entry in file.entries() {
+        let name = entry.name();
+        match entry.kind {
+            Kind::Inte => out.inte(name, &file.i32s(entry).unwrap()),
+            Kind::Real => out.real(name, &file.f32s(entry).unwrap()),
+            Kind::Doub => out.doub(name, &file.f64s(entry).unwrap()),
+            Kind::Logi => out.logi(name, &file.bools(entry).unwrap()),
+            Kind::Text(width) => out.text(name, width, &file.strings(entry).unwrap()),
+            Kind::Mess => out.mess(name),
+        }
+        .unwrap();
+    }
+    out.finish().unwrap()
 }
 
 pub fn egrid() -> Vec<u8> {

@@ -128,6 +128,29 @@ fn mutated_records() {
 }
 
 #[test]
+fn mutated_formatted_records() {
+    let text = fixtures::formatted(&fixtures::records());
+    mutate(6, &text, |bytes| {
+        let file = RecordFile::from_bytes(("A", bytes))?;
+        decode(&file);
+        // Values are looked at when they are decoded.
+        let entries = file.entries().iter().filter(|entry| entry.is_numeric());
+        entries.map(|entry| file.f64s(entry).map(drop)).collect()
+    });
+}
+
+#[test]
+fn mutated_formatted_egrid() {
+    let text = fixtures::formatted(&rich_egrid());
+    mutate(7, &text, |bytes| {
+        let grid = Egrid::from_bytes(("A.FEGRID", bytes), &mut Warnings::default())?;
+        let lengths = [grid.coord.len(), grid.zcorn.len()];
+        check_grid(grid.dims, lengths, grid.actnum.as_deref());
+        Ok(())
+    });
+}
+
+#[test]
 fn mutated_init() {
     mutate(2, &fixtures::init(), |bytes| {
         let arrays = init::from_bytes(("A.INIT", bytes.clone()), &mut Warnings::default())?;
