@@ -8,7 +8,7 @@ use crate::records::Form;
 /// Where the grid is.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum GridSource {
-    /// An EGRID file, binary or formatted.
+    /// An EGRID or legacy GRID file, binary or formatted.
     Egrid(PathBuf),
     /// A text deck or grid file: corner-point or block-centered.
     Deck(PathBuf),
@@ -75,17 +75,21 @@ fn role(path: &Path) -> Option<Role> {
         "DATA" => Role::Deck,
         "SMSPEC" | "UNSMRY" | "ESMRY" | "FSMSPEC" | "FUNSMRY" => Role::Summary,
         "GRDECL" => Role::Text,
+        "ROFF" => Role::NotRead("a ROFF file is not opened as a case"),
+        "EPC" => Role::NotRead("RESQML is not read"),
         // Text grids are called .grid too.
         "GRID" if form(path).is_none() => Role::Text,
-        "GRID" | "FGRID" => Role::NotRead("the legacy GRID format is not read yet"),
+        "GRID" | "FGRID" => Role::Egrid,
         _ => Role::Separate(numbered('X').or_else(|| numbered('F'))?),
     })
 }
 
-/// True for the extensions of formatted files, beside which binary ones are preferred.
-fn is_called_formatted(path: &Path) -> bool {
+/// Which of several files of one role is preferred: EGRID before GRID, which has less, and binary before formatted.
+fn rank(path: &Path) -> usize {
     let extension = path.extension().and_then(|e| e.to_str());
-    extension.is_some_and(|e| e.starts_with(['F', 'f']))
+    let extension = extension.unwrap_or_default().to_ascii_uppercase();
+    let is_legacy = matches!(extension.as_str(), "GRID" | "FGRID");
+    2 * usize::from(is_legacy) + usize::from(extension.starts_with('F'))
 }
 
 /// The form of a file of arrays; `None` for other files.
@@ -125,11 +129,11 @@ pub fn find(path: &Path) -> Result<CaseFiles, ParseError> {
     };
     let stem = stem.and_then(|s| s.to_str()).unwrap_or_default().to_owned();
     let mut files = siblings(path, &stem)?;
-    // What the user named wins over a sibling of the same role, then exact letter case of the stem, then binary.
+    // What the user named wins over a sibling of the same role, then exact letter case of the stem.
     let exact = |p: &Path| p.file_stem().and_then(|s| s.to_str()) == Some(&stem);
     files.sort_by_key(|(p, _)| {
         let is_other = p.file_name() != path.file_name();
-        (is_other, !exact(p), is_called_formatted(p), p.clone())
+        (is_other, !exact(p), rank(p), p.clone())
     });
     let first = |wanted: Role| {
         let file = files.iter().find(|(_, r)| *r == wanted);
@@ -229,17 +233,14 @@ pub fn find_with(path: &Path, with: &[PathBuf]) -> Result<CaseFiles, ParseError>
     Ok(files)
 }
 
-/// The grid of a folder that has one case, the binary one where it is there in both forms.
+/// The grid of a folder that has one case.
 fn only_grid(folder: &Path) -> Option<PathBuf> {
     let files = std::fs::read_dir(folder).ok()?.flatten().map(|e| e.path());
     let mut grids: Vec<PathBuf> = files.filter(|p| role(p) == Some(Role::Egrid)).collect();
-    grids.sort_by_key(|p| is_called_formatted(p));
-    let only = match &grids[..] {
-        [_] => true,
-        [a, b] => a.file_stem() == b.file_stem() && is_called_formatted(b),
-        _ => false,
-    };
-    grids.into_iter().next().filter(|_| only)
+    grids.sort_by_key(|p| rank(p));
+    let first = grids.first()?;
+    let same = grids.iter().all(|p| p.file_stem() == first.file_stem());
+    same.then(|| first.clone())
 }
 
 /// Files beside `path` with the same stem, whatever the letter case, and a known extension.

@@ -75,10 +75,7 @@ impl Scan<'_> {
         let found = self.places.find(&written, source.path());
         let path = found.unwrap_or_else(|places| places.into_iter().next().unwrap_or_default());
         let file = self.places.files.open(&path);
-        if file
-            .as_ref()
-            .is_ok_and(|file| Form::of(file.bytes()).is_none())
-        {
+        if file.as_ref().is_ok_and(|file| !holds_arrays(file.bytes())) {
             return self.include_file(source, keyword, at, file);
         }
         let place = Place {

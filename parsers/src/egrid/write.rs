@@ -16,7 +16,7 @@ impl Egrid {
     ///
     /// # Errors
     /// When writing fails, an array has the wrong length, a coordinate is not finite, or there are
-    /// local grids, which are known by name only.
+    /// local grids, which are not written.
     pub fn write<W: Write>(&self, out: W) -> io::Result<W> {
         let mut out = RecordWriter::new(out);
         self.write_to(&mut out)?;
@@ -28,7 +28,7 @@ impl Egrid {
     /// # Errors
     /// As [`Self::write`].
     pub fn write_to<W: Write>(&self, out: &mut RecordWriter<W>) -> io::Result<()> {
-        if !self.local_grids.is_empty() || self.local_connections > 0 {
+        if !self.local_grids.is_empty() || !self.local_nnc.is_empty() {
             return Err(refused("local grids cannot be written".into()));
         }
         let actnum = self.actnum.as_deref();

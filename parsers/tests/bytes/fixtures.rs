@@ -26,7 +26,7 @@ pub fn cell() -> Egrid {
         grid_unit: None,
         porosity_model: PorosityModel::Single,
         nnc: Vec::new(),
-        local_connections: 0,
+        local_nnc: Vec::new(),
         local_grids: Vec::new(),
     }
 }
@@ -78,6 +78,25 @@ pub fn rich_egrid() -> Vec<u8> {
     out.inte("GRIDHEAD", &[1, 2, 2, 2]).unwrap();
     out.inte("ACTNUM", &[1, 1, 1, 1, 0, 1, 1, 1]).unwrap();
     out.mess("ENDLGR").unwrap();
+    out.finish().unwrap()
+}
+
+/// A legacy grid of two cells, of which the file has both.
+pub fn legacy() -> Vec<u8> {
+    let mut out = RecordWriter::new(Vec::new());
+    out.inte("DIMENS", &[2, 1, 1]).unwrap();
+    for (i, x) in [(1, 0.0_f32), (2, 1.0)] {
+        out.inte("COORDS", &[i, 1, 1, i, 1, 0, 0]).unwrap();
+        let corner = |c: u8| {
+            [
+                x + f32::from(c & 1),
+                f32::from(c >> 1 & 1),
+                f32::from(c >> 2),
+            ]
+        };
+        let corners: Vec<f32> = (0..8).flat_map(corner).collect();
+        out.real("CORNERS", &corners).unwrap();
+    }
     out.finish().unwrap()
 }
 

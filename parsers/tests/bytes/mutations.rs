@@ -103,6 +103,21 @@ fn mutated_egrid() {
     });
 }
 
+#[test]
+fn mutated_legacy_grid() {
+    for (seed, bytes) in [
+        (8, fixtures::legacy()),
+        (9, fixtures::formatted(&fixtures::legacy())),
+    ] {
+        mutate(seed, &bytes, |bytes| {
+            let grid = Egrid::from_bytes(("A.GRID", bytes), &mut Warnings::default())?;
+            let lengths = [grid.coord.len(), grid.zcorn.len()];
+            check_grid(grid.dims, lengths, grid.actnum.as_deref());
+            Ok(())
+        });
+    }
+}
+
 /// Decodes every array in every way; one that can be decoded has as many values as its header says.
 fn decode(file: &RecordFile) {
     for entry in file.entries() {
