@@ -11,7 +11,7 @@ use crate::cells::{CellArrays, Head, write_arrays, write_heads};
 use crate::error::{At, ErrorKind, ParseError, Warnings};
 use crate::records::{RecordFile, RecordWriter, refused};
 
-/// One report step of the global grid.
+/// One report step.
 #[derive(Debug, Clone)]
 pub struct Step {
     /// Report number, which need not start at 0 nor be without gaps: SEQNUM, or the number in the file's extension.
@@ -20,7 +20,7 @@ pub struct Step {
     pub days: f64,
     /// What INTEHEAD says.
     pub head: Head,
-    /// The step's arrays.
+    /// The step's arrays of the global grid, from which those of local grids are had.
     pub arrays: CellArrays,
 }
 
@@ -201,7 +201,7 @@ fn step(
     range: std::ops::Range<usize>,
     report: u32,
 ) -> Result<Step, ParseError> {
-    let arrays = CellArrays::new(file, range, &["ENDLGR", "LGRSGONE"]);
+    let arrays = CellArrays::new(file, range);
     let days = match arrays.find("DOUBHEAD") {
         Some(entry) => file.f64s(entry)?.first().copied().unwrap_or(0.0),
         None => 0.0,

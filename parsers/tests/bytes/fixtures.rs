@@ -75,9 +75,15 @@ pub fn rich_egrid() -> Vec<u8> {
     let mut out = RecordWriter::new(grid.write(Vec::new()).unwrap());
     out.chars("LGR", &["FINE"]).unwrap();
     out.chars("LGRPARNT", &[""]).unwrap();
-    out.inte("GRIDHEAD", &[1, 2, 2, 2]).unwrap();
+    out.inte("GRIDHEAD", &[1, 2, 2, 2, 1]).unwrap();
+    out.real("COORD", &[0.5; 54]).unwrap();
+    out.real("ZCORN", &[1.5; 64]).unwrap();
     out.inte("ACTNUM", &[1, 1, 1, 1, 0, 1, 1, 1]).unwrap();
+    out.inte("HOSTNUM", &[1; 8]).unwrap();
     out.mess("ENDLGR").unwrap();
+    out.inte("NNCHEAD", &[2, 1]).unwrap();
+    out.inte("NNCL", &[1, 8]).unwrap();
+    out.inte("NNCG", &[2, 3]).unwrap();
     out.finish().unwrap()
 }
 

@@ -99,6 +99,14 @@ fn mutated_egrid() {
             grid.actnum.as_deref(),
         );
         assert!(grid.coord.iter().chain(&grid.zcorn).all(|v| v.is_finite()));
+        for local in &grid.local_grids {
+            let lengths = [local.coord.len(), local.zcorn.len()];
+            let [ni, nj, _] = local.dims;
+            // Of one coordinate system or several.
+            let pillars = 6 * (ni + 1) * (nj + 1);
+            assert!(lengths[0].is_multiple_of(pillars));
+            check_grid(local.dims, [pillars, lengths[1]], local.actnum.as_deref());
+        }
         Ok(())
     });
 }

@@ -3,6 +3,7 @@
 
 mod formatted;
 mod legacy;
+mod local;
 
 use std::path::PathBuf;
 
