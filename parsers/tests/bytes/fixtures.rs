@@ -106,6 +106,39 @@ pub fn legacy() -> Vec<u8> {
     out.finish().unwrap()
 }
 
+/// A step with two wells, one of them in a local grid too.
+pub fn wells() -> Vec<u8> {
+    let mut out = RecordWriter::new(Vec::new());
+    let mut head = [0; 40];
+    for (item, value) in [
+        (10, 2),
+        (16, 2),
+        (17, 2),
+        (24, 12),
+        (27, 1),
+        (32, 15),
+        (33, 5),
+    ] {
+        head[item] = value;
+    }
+    out.inte("SEQNUM", &[1]).unwrap();
+    out.inte("INTEHEAD", &head).unwrap();
+    out.logi("LOGIHEAD", &[true; 15]).unwrap();
+    out.inte("IWEL", &[2; 24]).unwrap();
+    out.chars("ZWEL", &["P1", "I2"]).unwrap();
+    out.inte("ICON", &[2; 60]).unwrap();
+    out.real("SCON", &[0.5; 20]).unwrap();
+    out.chars("LGR", &["FINE"]).unwrap();
+    head[16] = 1;
+    out.inte("INTEHEAD", &head).unwrap();
+    out.inte("IWEL", &[1; 12]).unwrap();
+    out.chars("ZWEL", &["I2"]).unwrap();
+    out.inte("LGWEL", &[2]).unwrap();
+    out.inte("ICON", &[1; 30]).unwrap();
+    out.inte("ENDLGR", &[]).unwrap();
+    out.finish().unwrap()
+}
+
 /// An array of every type, and one whose count takes two headers and whose values stand in small blocks.
 pub fn records() -> Vec<u8> {
     let mut out = RecordWriter::new(Vec::new());

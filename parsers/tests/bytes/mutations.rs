@@ -6,7 +6,7 @@ use fastrand::Rng;
 use strataray_parsers::deck::{Grdecl, MemoryFiles};
 use strataray_parsers::egrid::Egrid;
 use strataray_parsers::records::RecordFile;
-use strataray_parsers::{ErrorKind, ParseError, Warnings, init, restart};
+use strataray_parsers::{At, ErrorKind, ParseError, Warnings, init, restart, wells};
 
 use super::fixtures::{self, PORO, rich_deck, rich_egrid};
 
@@ -124,6 +124,29 @@ fn mutated_legacy_grid() {
             Ok(())
         });
     }
+}
+
+#[test]
+fn mutated_wells() {
+    mutate(10, &fixtures::wells(), |bytes| {
+        let mut warnings = Warnings::default();
+        for step in restart::unified_from_bytes(("A.UNRST", bytes), &mut warnings)? {
+            for well in wells::read(&step.arrays)? {
+                assert!(well.completions.len() <= 60 && !well.name.is_empty());
+            }
+        }
+        // Files that end early are read up to there.
+        match warnings.is_empty() {
+            true => Ok(()),
+            false => Err(ParseError::of(
+                ErrorKind::Truncated,
+                Path::new("A"),
+                At::File,
+                "",
+                "cut",
+            )),
+        }
+    });
 }
 
 /// Decodes every array in every way; one that can be decoded has as many values as its header says.
