@@ -1,5 +1,6 @@
 //! Cell arrays by grid: the part that INIT and restart steps have in common.
 
+use std::collections::HashMap;
 use std::io::{self, Write};
 use std::ops::Range;
 use std::sync::Arc;
@@ -86,13 +87,15 @@ impl CellArrays {
     /// When the name of a grid cannot be read.
     pub fn local_grids(&self) -> Result<Vec<LocalArrays>, ParseError> {
         let mut grids: Vec<LocalArrays> = Vec::new();
+        let mut places = HashMap::new();
         for section in &self.sections {
             let entry = &self.file.entries()[section.start];
             let is_named = entry.name() == "LGR";
             let names = is_named.then(|| self.file.strings(entry)).transpose()?;
             let name = names.and_then(|n| n.into_iter().next()).unwrap_or_default();
             let entries = section.start + usize::from(is_named)..section.end;
-            match grids.iter_mut().find(|grid| grid.name == name) {
+            let known = *places.entry(name.clone()).or_insert(grids.len());
+            match grids.get_mut(known) {
                 Some(grid) => grid.arrays.entries.extend(entries),
                 None => grids.push(LocalArrays {
                     name,

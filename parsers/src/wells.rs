@@ -29,6 +29,8 @@
 //! # }
 //! ```
 
+use std::collections::HashMap;
+
 use crate::cells::CellArrays;
 use crate::error::{ErrorKind, ParseError};
 use crate::records::Entry;
@@ -167,6 +169,11 @@ pub struct Flow {
 /// When an array is damaged, or shorter than INTEHEAD says.
 pub fn read(arrays: &CellArrays) -> Result<Vec<Well>, ParseError> {
     let mut wells: Vec<Well> = Section::new(arrays)?.wells()?;
+    let names = wells
+        .iter()
+        .enumerate()
+        .map(|(n, well)| (well.name.clone(), n));
+    let names: HashMap<String, usize> = names.collect();
     for local in arrays.local_grids()? {
         let section = Section::new(&local.arrays)?;
         // LGWEL: which of the global wells each of the local ones is, from 1.
@@ -175,7 +182,7 @@ pub fn read(arrays: &CellArrays) -> Result<Vec<Well>, ParseError> {
             let number = numbers.get(n).and_then(|n| usize::try_from(*n).ok());
             let by_number = number.and_then(|n| n.checked_sub(1));
             let by_number = by_number.filter(|n| wells.get(*n).is_some_and(|w| is_same(w, &found)));
-            let by_name = || wells.iter().position(|w| w.name == found.name);
+            let by_name = || names.get(&found.name).copied();
             if let Some(well) = by_number.or_else(by_name) {
                 wells[well].local.push(LocalWell {
                     grid: local.name.clone(),

@@ -1,5 +1,7 @@
 //! Non-neighbor connections: within a grid, from a local grid to the global one, between local grids.
 
+use std::collections::HashMap;
+
 use crate::error::{At, ErrorKind, ParseError, Warnings};
 use crate::records::{Entry, RecordFile};
 
@@ -77,12 +79,12 @@ fn leave_unknown(
     lists: &mut [GridConnections],
     warnings: &mut Warnings,
 ) {
+    let sizes: HashMap<i32, usize> = sizes.iter().copied().collect();
     let (mut all, mut left) = (0, 0);
     for list in lists {
-        let cells = list.grids.map(|grid| {
-            let size = sizes.iter().find(|(number, _)| *number == grid);
-            size.map_or(0, |(_, cells)| *cells)
-        });
+        let cells = list
+            .grids
+            .map(|grid| sizes.get(&grid).copied().unwrap_or(0));
         let known = |n: usize, cell: i32| {
             let cell = usize::try_from(cell).unwrap_or(0);
             (1..=cells[n]).contains(&cell)

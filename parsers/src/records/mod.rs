@@ -41,7 +41,7 @@ impl Form {
     }
 
     /// The place that people are told of a byte.
-    fn place(self, bytes: &[u8], at: u64) -> At {
+    pub(crate) fn place(self, bytes: &[u8], at: u64) -> At {
         match self {
             Self::Binary => At::Byte(at),
             Self::Formatted => text::place(bytes, at),

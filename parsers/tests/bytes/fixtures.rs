@@ -166,6 +166,54 @@ pub fn summary(is_extended: bool) -> Vec<u8> {
     out.finish().unwrap()
 }
 
+/// A grid of one cell with a property, as ROFF text.
+pub fn roff_text() -> String {
+    "roff-asc\n#ROFF file#\ntag filedata\nint byteswaptest 1\nchar filetype \"grid\"\nendtag\n\
+     tag dimensions\nint nX 1 int nY 1 int nZ 1\nendtag\n\
+     tag cornerLines\narray float data 24\n0 0 -2 0 0 -1  0 1 -2 0 1 -1  1 0 -2 1 0 -1  1 1 -2 1 1 -1\nendtag\n\
+     tag zvalues\narray byte splitEnz 8\n1 1 1 1 1 1 1 1\narray float data 8\n-2 -1 -2 -1 -2 -1 -2 -1\nendtag\n\
+     tag active\narray bool data 1\n1\nendtag\n\
+     tag parameter\nchar name \"PORO\"\narray float data 1\n0.25\nendtag\n"
+        .into()
+}
+
+/// The same in binary.
+pub fn roff_binary() -> Vec<u8> {
+    let mut bytes =
+        b"roff-bin\0#ROFF file#\0tag\0filedata\0int\0byteswaptest\0\x01\0\0\0endtag\0".to_vec();
+    bytes.extend(b"tag\0dimensions\0");
+    for name in ["nX", "nY", "nZ"] {
+        bytes.extend([b"int\0", name.as_bytes(), b"\0\x01\0\0\0"].concat());
+    }
+    bytes.extend(b"endtag\0");
+    let mut floats = |tag: &str, before: &[u8], values: &[f32]| {
+        bytes.extend(
+            [
+                b"tag\0",
+                tag.as_bytes(),
+                b"\0",
+                before,
+                b"array\0float\0data\0",
+            ]
+            .concat(),
+        );
+        bytes.extend((values.len() as i32).to_le_bytes());
+        values.iter().for_each(|v| bytes.extend(v.to_le_bytes()));
+        bytes.extend(b"endtag\0");
+    };
+    let line = |n: u8| [f32::from(n / 2), f32::from(n % 2), -2.0];
+    let lines = (0..4).flat_map(|n| [line(n), line(n)]).flatten();
+    floats("cornerLines", b"", &lines.collect::<Vec<f32>>());
+    let splits = b"array\0byte\0splitEnz\0\x08\0\0\0\x01\x01\x01\x01\x01\x01\x01\x01";
+    floats(
+        "zvalues",
+        splits,
+        &[-2.0, -1.0, -2.0, -1.0, -2.0, -1.0, -2.0, -1.0],
+    );
+    floats("parameter", b"char\0name\0PORO\0", &[0.25]);
+    bytes
+}
+
 /// An array of every type, and one whose count takes two headers and whose values stand in small blocks.
 pub fn records() -> Vec<u8> {
     let mut out = RecordWriter::new(Vec::new());

@@ -4,6 +4,7 @@
 mod formatted;
 mod legacy;
 mod local;
+mod roff;
 mod summary;
 mod wells;
 
