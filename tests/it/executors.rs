@@ -132,8 +132,16 @@ fn rays_search_only_where_cells_are() {
             let covered = stats.covered_pixels as f64;
             let locations = stats.point_locations as f64 / covered;
             let iterations = stats.newton_iterations as f64 / stats.cell_crossings as f64;
+            let cells = stats.cell_crossings as f64 / covered;
+            let bytes = stats.bytes_read(&view) as f64 / covered;
             let name = executor.info().executor;
-            println!("{} {name}: {locations:.2} {iterations:.2}", case.about.name);
+            println!(
+                "{} {name}: {locations:.2} {iterations:.2} {bytes:.0} B",
+                case.about.name
+            );
+            // A cell takes 160 bytes by values at its vertices.
+            assert!((bytes / (160.0 * (cells + locations)) - 1.0).abs() < 1e-6);
+            assert!(bytes < 5000.0, "{name} {bytes}");
             assert!(
                 locations < 3.0 && stats.lost_samples == 0,
                 "{name} {stats:?}"
