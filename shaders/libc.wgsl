@@ -196,7 +196,7 @@ fn begin(@builtin(global_invocation_id) id: vec3u) {
     let pixel = tile.origin + id.xy;
     let whole = ray_of(pixel);
     let layers = layers_of(pixel, 0u);
-    let ray = before_hull(whole, layers);
+    let ray = before_opaque(whole, layers);
     var walk: Walk;
     var tally: Tally;
     walk.done = ray.enter;
@@ -248,7 +248,7 @@ fn walk(@builtin(global_invocation_id) id: vec3u) {
     var walk = load_walk(number);
     let place = in_tile(number);
     var layers = layers_of(tile.origin + place, walk.passed);
-    let ray = before_hull(ray_of(tile.origin + place), layers);
+    let ray = before_opaque(ray_of(tile.origin + place), layers);
     let r = frame_of(ray);
     let sums = bitcast<vec4f>(ray_states[LIBC_STATE * number]);
     var sum = Accumulated(sums.rgb, sums.a);
@@ -505,10 +505,11 @@ fn segment_value(s: Segment, t: f32) -> f32 {
 }
 
 // Adds what lies between the current place of the ray and its exit at distance `t`; false where the ray
-// pauses before. Surfaces lie on faces, so those that are nearer than the exit lie at the entry.
+// pauses before. Surfaces lie on faces, so those that are nearer than the exit lie at the entry, and what is
+// opaque ends the ray.
 fn integrate(walk: ptr<function, Walk>, sum: ptr<function, Accumulated>, layers: ptr<function, Layers>, ray: Ray,
     t: f32, uvw: vec3f, tally: ptr<function, Tally>) -> bool {
-    while blend_layer(layers, sum, 0.5 * ((*walk).t + t)) {}
+    while blend_layer(layers, sum, 0.5 * ((*walk).t + min(t, ray.leave))) {}
     var s: Segment;
     s.t = (*walk).t;
     s.length = max(t - s.t, 1e-20);

@@ -8,7 +8,7 @@
 #import surfaces
 
 @group(3) @binding(0) var<uniform> paint: PaintInfo;
-// Face number + 1, or 0, and the bits of its distance.
+// Face number + 1, or 0, and the bits of its distance; of tubes a color in 10 bits a channel below a bit that is set.
 @group(3) @binding(1) var points: texture_2d<u32>;
 // Faces on faults, in rising order, each with the number of its color.
 @group(3) @binding(2) var<storage, read> fault_faces: array<vec2u>;
@@ -34,7 +34,13 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         store_layer(first + paint.layer, Layer(NO_LAYER, vec3f(0.0), 0.0));
         return;
     }
-    insert(first, layer_at(point.x - 1u, bitcast<f32>(point.y), pixel_ray(tile.origin + in_part)));
+    let ray = pixel_ray(tile.origin + in_part);
+    let distance = bitcast<f32>(point.y);
+    if paint.look == LOOK_TUBE {
+        insert(first, tube_layer(point.x, distance, ray));
+    } else {
+        insert(first, layer_at(point.x - 1u, distance, ray));
+    }
     count(COUNT_WORK, PAINT_WORK + select(lighting.work, 0u, paint.look == LOOK_FAINT));
 }
 
@@ -46,6 +52,12 @@ fn insert(first: u32, layer: Layer) {
         at -= 1u;
     }
     store_layer(at, layer);
+}
+
+// A point of a well, which carries no number, as ghosts do.
+fn tube_layer(packed: u32, distance: f32, ray: PixelRay) -> Layer {
+    let color = vec3f((vec3u(packed) >> vec3u(20u, 10u, 0u)) & vec3u(0x3ffu)) / 1023.0;
+    return Layer(distance, shade(color, ray.origin + distance * ray.direction, true), 1.0);
 }
 
 fn layer_at(face: u32, distance: f32, ray: PixelRay) -> Layer {

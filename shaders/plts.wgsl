@@ -55,7 +55,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         sum = Accumulated(section.rgb, 1.0 - section.a);
     }
     var layers = layers_of(pixel, passed);
-    let ray = before_hull(whole, layers);
+    let ray = before_opaque(whole, layers);
     var samples = 0u;
     // Two phases, so that rays side by side locate together and march together.
     while n < ray.count && is_open(sum) && track.work < tile.work_limit {

@@ -298,6 +298,7 @@ const PACKED_GHOST: u32 = 2047u;
 // What a layer shows: values or faults; or that there is something.
 const LOOK_COLORED: u32 = 0u;
 const LOOK_FAINT: u32 = 1u;
+const LOOK_TUBE: u32 = 2u;
 // Points of sheets that a ray meets, at most.
 const SHEET_LAYERS: u32 = 4u;
 // Loop iterations that a point of a surface costs beside its light, about.

@@ -86,8 +86,8 @@ impl SceneOptions {
             written.insert("mode".into(), serde_json::to_value(mode)?);
         }
         let scene = self.over(look::opening(case, &written.into())?)?;
-        if let Some(sentence) = scene.not_drawn() {
-            reporter.note(sentence);
+        if scene.show.wells && case.about.wells.is_empty() {
+            reporter.note("the scene asks for wells, and this case has none");
         }
         Ok(scene)
     }

@@ -318,6 +318,7 @@ pub(super) mod tests {
             shown: Shown {
                 property: "SWAT".into(),
                 step: 0,
+                wells: std::sync::Arc::default(),
                 cells: ShownCells::new(
                     CellField::new(Vec::new()).into(),
                     Vec::new(),

@@ -137,6 +137,7 @@ fn view(grid: &Grid, field: CellField, extinction: f64, sampling_step: f64) -> V
         shown: Shown {
             property: "TEST".into(),
             step: 0,
+            wells: std::sync::Arc::default(),
             connections: std::sync::Arc::default(),
             named_faults: std::sync::Arc::default(),
             chosen_faults: None,

@@ -105,15 +105,6 @@ impl Default for Scene {
     }
 }
 
-impl Scene {
-    /// One sentence where the scene asks for something that is not drawn yet.
-    pub fn not_drawn(&self) -> Option<&'static str> {
-        let sentence =
-            "the scene asks for wells (\"show\": {\"wells\": true}), which are not drawn yet";
-        self.show.wells.then_some(sentence)
-    }
-}
-
 /// A time step by number, date or name.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(
@@ -182,7 +173,7 @@ pub struct Show {
     pub faults: ShownFaults,
     /// Lines between the cells of non-neighbor connections.
     pub nnc: bool,
-    /// Wells; not drawn yet, see [`Scene::not_drawn`].
+    /// Wells, with their names.
     pub wells: bool,
     /// Edges of the cells on hull, faults and opaque sections; where absent they are drawn in the mode `cells`.
     #[serde(skip_serializing_if = "Option::is_none")]

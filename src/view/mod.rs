@@ -17,6 +17,7 @@ mod sequence;
 pub mod step;
 pub mod surfaces;
 pub mod voxels;
+pub mod wells;
 
 use std::sync::Arc;
 
@@ -35,6 +36,7 @@ pub use look::default_property;
 pub use resolve::resolve;
 pub use sequence::{Sequence, Turn};
 pub use surfaces::Surfaces;
+pub use wells::Wells;
 
 use crate::image::Blending;
 use crate::model::{CellField, FaultFaces, Grid, Spaces};
@@ -95,6 +97,8 @@ pub struct Shown {
     pub clip: Vec<ClipPlane>,
     /// Ends in world space of the connections that are marked: those of drawn cells.
     pub connections: Arc<Vec<[DVec3; 2]>>,
+    /// Wells of the step.
+    pub wells: Arc<Wells>,
     /// Which faces lie on faults that have a name.
     pub named_faults: Arc<FaultFaces>,
     /// By number of the named faults: true where the fault is drawn, of which those without a name are none;

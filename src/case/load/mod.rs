@@ -19,7 +19,7 @@ use self::grids::Loaded;
 use self::properties::Setting;
 use self::slots::{CellSlots, ResultCells};
 use self::source::FileSource;
-use crate::case::{About, Case, FieldCache, OverSteps, Step};
+use crate::case::{About, Case, FieldCache, OverSteps, Step, WellsOfSteps};
 
 /// Opens the case that `path` names: any of its files, or its base name.
 ///
@@ -198,6 +198,7 @@ fn build(
         source: Box::new(source),
         cache: FieldCache::default(),
         over_steps: OverSteps::default(),
+        wells: WellsOfSteps::default(),
         minus: None,
     }
 }

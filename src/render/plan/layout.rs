@@ -286,6 +286,8 @@ pub const PACKED_GHOST: u32 = 2047;
 pub const LOOK_COLORED: u32 = 0;
 /// A layer of a faint hull.
 pub const LOOK_FAINT: u32 = 1;
+/// Points of wells, which have their colors.
+pub const LOOK_TUBE: u32 = 2;
 pub use crate::view::surfaces::SHEET_LAYERS;
 /// Loop iterations that a point of a surface costs beside its light, about.
 pub const PAINT_WORK: u32 = 2;

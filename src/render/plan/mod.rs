@@ -17,6 +17,7 @@ pub mod majorants;
 pub mod srg;
 pub mod surfaces;
 pub mod transfer;
+pub mod tubes;
 pub mod visible;
 pub mod volume;
 
