@@ -3,11 +3,12 @@
 use std::path::{Path, PathBuf};
 
 use crate::error::{At, ErrorKind, ParseError};
+use crate::records::Form;
 
 /// Where the grid is.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum GridSource {
-    /// A binary EGRID file.
+    /// An EGRID or legacy GRID file, binary or formatted.
     Egrid(PathBuf),
     /// A text deck or grid file: corner-point or block-centered.
     Deck(PathBuf),
@@ -68,34 +69,41 @@ fn role(path: &Path) -> Option<Role> {
             .ok()
     };
     Some(match extension.as_str() {
-        "EGRID" => Role::Egrid,
-        "INIT" => Role::Init,
-        "UNRST" => Role::Unified,
+        "EGRID" | "FEGRID" => Role::Egrid,
+        "INIT" | "FINIT" => Role::Init,
+        "UNRST" | "FUNRST" => Role::Unified,
         "DATA" => Role::Deck,
-        "SMSPEC" | "UNSMRY" | "ESMRY" => Role::Summary,
+        "SMSPEC" | "UNSMRY" | "ESMRY" | "FSMSPEC" | "FUNSMRY" => Role::Summary,
         "GRDECL" => Role::Text,
-        // Text grids are called .grid too; a binary file starts with the length of its first record.
-        "GRID" if !starts_binary(path) => Role::Text,
-        "GRID" => Role::NotRead("the legacy GRID format is not read yet"),
-        "FEGRID" | "FINIT" | "FUNRST" | "FGRID" => {
-            Role::NotRead("formatted files are not read yet")
-        }
-        _ if numbered('F').is_some() => Role::NotRead("formatted files are not read yet"),
-        _ => Role::Separate(numbered('X')?),
+        "ROFF" => Role::NotRead("a ROFF file is not opened as a case"),
+        "EPC" => Role::NotRead("RESQML is not read"),
+        // Text grids are called .grid too.
+        "GRID" if form(path).is_none() => Role::Text,
+        "GRID" | "FGRID" => Role::Egrid,
+        _ => Role::Separate(numbered('X').or_else(|| numbered('F'))?),
     })
 }
 
-fn starts_binary(path: &Path) -> bool {
-    let mut start = [0; 4];
-    let read =
-        std::fs::File::open(path).and_then(|mut f| std::io::Read::read_exact(&mut f, &mut start));
-    read.is_ok() && start == 16i32.to_be_bytes()
+/// Which of several files of one role is preferred: EGRID before GRID, which has less, and binary before formatted.
+fn rank(path: &Path) -> usize {
+    let extension = path.extension().and_then(|e| e.to_str());
+    let extension = extension.unwrap_or_default().to_ascii_uppercase();
+    let is_legacy = matches!(extension.as_str(), "GRID" | "FGRID");
+    2 * usize::from(is_legacy) + usize::from(extension.starts_with('F'))
+}
+
+/// The form of a file of arrays; `None` for other files.
+fn form(path: &Path) -> Option<Form> {
+    let mut start = Vec::new();
+    let file = std::fs::File::open(path).ok()?;
+    std::io::Read::read_to_end(&mut std::io::Read::take(file, 64), &mut start).ok()?;
+    Form::of(&start)
 }
 
 /// What the content of the file named by the user shows, where its extension says nothing sure.
 fn sniff(path: &Path) -> Role {
     match role(path) {
-        None | Some(Role::Text) if starts_binary(path) => Role::Egrid,
+        None | Some(Role::Text) if form(path).is_some() => Role::Egrid,
         None => Role::Text,
         Some(role) => role,
     }
@@ -123,7 +131,10 @@ pub fn find(path: &Path) -> Result<CaseFiles, ParseError> {
     let mut files = siblings(path, &stem)?;
     // What the user named wins over a sibling of the same role, then exact letter case of the stem.
     let exact = |p: &Path| p.file_stem().and_then(|s| s.to_str()) == Some(&stem);
-    files.sort_by_key(|(p, _)| (p.file_name() != path.file_name(), !exact(p), p.clone()));
+    files.sort_by_key(|(p, _)| {
+        let is_other = p.file_name() != path.file_name();
+        (is_other, !exact(p), rank(p), p.clone())
+    });
     let first = |wanted: Role| {
         let file = files.iter().find(|(_, r)| *r == wanted);
         file.map(|(p, _)| p.clone())
@@ -225,9 +236,11 @@ pub fn find_with(path: &Path, with: &[PathBuf]) -> Result<CaseFiles, ParseError>
 /// The grid of a folder that has one case.
 fn only_grid(folder: &Path) -> Option<PathBuf> {
     let files = std::fs::read_dir(folder).ok()?.flatten().map(|e| e.path());
-    let mut grids = files.filter(|p| role(p) == Some(Role::Egrid));
-    let first = grids.next()?;
-    grids.next().is_none().then_some(first)
+    let mut grids: Vec<PathBuf> = files.filter(|p| role(p) == Some(Role::Egrid)).collect();
+    grids.sort_by_key(|p| rank(p));
+    let first = grids.first()?;
+    let same = grids.iter().all(|p| p.file_stem() == first.file_stem());
+    same.then(|| first.clone())
 }
 
 /// Files beside `path` with the same stem, whatever the letter case, and a known extension.

@@ -1,4 +1,4 @@
-//! Cell arrays of the global grid: the part that INIT and restart steps have in common.
+//! Cell arrays by grid: the part that INIT and restart steps have in common.
 
 use std::io::{self, Write};
 use std::ops::Range;
@@ -13,11 +13,23 @@ const INTEHEAD_ITEMS: usize = 411;
 const LOGIHEAD_ITEMS: usize = 121;
 const SIMULATOR: i32 = 100;
 
-/// A run of arrays that belongs to the global grid.
+/// The arrays of a grid within an INIT file or a step; those of the global grid know where local grids have theirs.
 #[derive(Debug, Clone)]
 pub struct CellArrays {
     file: Arc<RecordFile>,
     entries: Vec<usize>,
+    /// Sections of local grids, each from its LGR on.
+    sections: Vec<Range<usize>>,
+}
+
+/// The arrays of a local grid.
+#[derive(Debug, Clone)]
+pub struct LocalArrays {
+    /// Name of the grid, as the EGRID has it.
+    pub name: String,
+    /// Its arrays. INIT files have several sections for a grid, which stand one after the other here. In the one of
+    /// the transmissibilities, TRANNNC belongs to NNC1 and NNC2 of the EGRID, and TRANGL to NNCL and NNCG.
+    pub arrays: CellArrays,
 }
 
 /// Facts of an INTEHEAD array.
@@ -43,23 +55,75 @@ pub struct Head {
 
 impl CellArrays {
     /// The arrays within `range` of a file that are not in a section of a local grid.
-    pub(crate) fn new(file: &Arc<RecordFile>, range: Range<usize>, ends_local: &[&str]) -> Self {
+    pub(crate) fn new(file: &Arc<RecordFile>, range: Range<usize>) -> Self {
         let mut inside_local = false;
         let mut entries = Vec::new();
+        let mut sections: Vec<Range<usize>> = Vec::new();
         for n in range {
             let name = file.entries()[n].name();
             if name == "LGR" || name == "LGRHEADI" && !inside_local {
                 inside_local = true;
-            } else if ends_local.contains(&name) {
+                sections.push(n..n);
+            } else if matches!(name, "LGRSGONE" | "ENDLGR") {
                 inside_local = false;
             } else if !inside_local {
                 entries.push(n);
+            }
+            if let Some(section) = sections.last_mut().filter(|_| inside_local) {
+                section.end = n + 1;
             }
         }
         Self {
             file: Arc::clone(file),
             entries,
+            sections,
         }
+    }
+
+    /// The arrays of local grids, in the order in which the file first has them.
+    ///
+    /// # Errors
+    /// When the name of a grid cannot be read.
+    pub fn local_grids(&self) -> Result<Vec<LocalArrays>, ParseError> {
+        let mut grids: Vec<LocalArrays> = Vec::new();
+        for section in &self.sections {
+            let entry = &self.file.entries()[section.start];
+            let is_named = entry.name() == "LGR";
+            let names = is_named.then(|| self.file.strings(entry)).transpose()?;
+            let name = names.and_then(|n| n.into_iter().next()).unwrap_or_default();
+            let entries = section.start + usize::from(is_named)..section.end;
+            match grids.iter_mut().find(|grid| grid.name == name) {
+                Some(grid) => grid.arrays.entries.extend(entries),
+                None => grids.push(LocalArrays {
+                    name,
+                    arrays: Self {
+                        file: Arc::clone(&self.file),
+                        entries: entries.collect(),
+                        sections: Vec::new(),
+                    },
+                }),
+            }
+        }
+        Ok(grids)
+    }
+
+    /// Transmissibilities between local grids: each TRANLL with the names of the two grids, from the LGRJOIN before it.
+    /// They belong to NNA1 and NNA2 of the EGRID.
+    ///
+    /// # Errors
+    /// When a LGRJOIN cannot be read.
+    pub fn joins(&self) -> Result<Vec<([String; 2], Entry)>, ParseError> {
+        let sections = self.sections.iter().cloned().flatten();
+        let all = self.entries.iter().copied().chain(sections);
+        let all: Vec<&Entry> = all.map(|n| &self.file.entries()[n]).collect();
+        let mut joins = Vec::new();
+        for pair in all.windows(2) {
+            if (pair[0].name(), pair[1].name()) == ("LGRJOIN", "TRANLL") {
+                let names = self.file.strings(pair[0])?.try_into();
+                joins.extend(names.ok().map(|names| (names, *pair[1])));
+            }
+        }
+        Ok(joins)
     }
 
     /// The arrays in file order.

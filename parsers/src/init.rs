@@ -1,4 +1,4 @@
-//! INIT: static properties of the global grid.
+//! INIT: static properties of the global grid, and of local ones.
 
 use std::io::{self, Write};
 use std::path::Path;
@@ -9,8 +9,8 @@ use crate::cells::{CellArrays, Head, write_arrays, write_heads};
 use crate::error::{ParseError, Warnings};
 use crate::records::{RecordFile, RecordWriter};
 
-/// Opens an INIT file; sections of local grids (LGR to LGRSGONE or ENDLGR) are left out. Of a file that ends within
-/// an array, those before it are kept, with a warning.
+/// Opens an INIT file; sections of local grids (LGR to LGRSGONE or ENDLGR) are [`CellArrays::local_grids`]. Of a file
+/// that ends within an array, those before it are kept, with a warning.
 ///
 /// # Errors
 /// When the file holds no whole array.
@@ -28,7 +28,7 @@ pub fn from_bytes(
 ) -> Result<CellArrays, ParseError> {
     let file = Arc::new(RecordFile::from_bytes_lenient(file, warnings)?);
     let all = 0..file.entries().len();
-    Ok(CellArrays::new(&file, all, &["LGRSGONE", "ENDLGR"]))
+    Ok(CellArrays::new(&file, all))
 }
 
 /// Writes an INIT file; each of `arrays` has one value per active cell and is made when its turn comes.
@@ -41,7 +41,19 @@ pub fn write<W: Write, N: AsRef<str>>(
     arrays: impl IntoIterator<Item = (N, Vec<f32>)>,
 ) -> io::Result<W> {
     let mut out = RecordWriter::new(out);
-    write_heads(&mut out, head, 0.0)?;
-    write_arrays(&mut out, head, arrays)?;
+    write_to(&mut out, head, arrays)?;
     out.finish()
+}
+
+/// As [`write`], into a file of any form.
+///
+/// # Errors
+/// As [`write`].
+pub fn write_to<W: Write, N: AsRef<str>>(
+    out: &mut RecordWriter<W>,
+    head: &Head,
+    arrays: impl IntoIterator<Item = (N, Vec<f32>)>,
+) -> io::Result<()> {
+    write_heads(out, head, 0.0)?;
+    write_arrays(out, head, arrays)
 }

@@ -110,6 +110,7 @@ mod parallel;
 pub mod records;
 pub mod restart;
 pub mod units;
+pub mod wells;
 
 pub use bytes::FileBytes;
 pub use error::{At, ErrorKind, ParseError, Warning, Warnings};

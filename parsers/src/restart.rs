@@ -11,7 +11,7 @@ use crate::cells::{CellArrays, Head, write_arrays, write_heads};
 use crate::error::{At, ErrorKind, ParseError, Warnings};
 use crate::records::{RecordFile, RecordWriter, refused};
 
-/// One report step of the global grid.
+/// One report step.
 #[derive(Debug, Clone)]
 pub struct Step {
     /// Report number, which need not start at 0 nor be without gaps: SEQNUM, or the number in the file's extension.
@@ -20,7 +20,7 @@ pub struct Step {
     pub days: f64,
     /// What INTEHEAD says.
     pub head: Head,
-    /// The step's arrays.
+    /// The step's arrays of the global grid, from which those of local grids are had.
     pub arrays: CellArrays,
 }
 
@@ -63,15 +63,15 @@ pub fn unified_from_bytes(
             false => i32::try_from(n).unwrap_or(0),
         };
         let step = step(&file, start..end, u32::try_from(report).unwrap_or(0))?;
-        let at = At::Byte(entries[start].offset);
+        let at = || file.place(entries[start].offset);
         if step.arrays.find("INTEHEAD").is_none() {
             let message = format!("report {report} has no INTEHEAD and was left out");
-            warnings.push(path, at, message);
+            warnings.push(path, at(), message);
             continue;
         }
         if !known.insert(step.report) {
             let message = format!("report {report} is there more than once; all are kept");
-            warnings.push(path, at, message);
+            warnings.push(path, at(), message);
         }
         steps.push(step);
     }
@@ -201,7 +201,7 @@ fn step(
     range: std::ops::Range<usize>,
     report: u32,
 ) -> Result<Step, ParseError> {
-    let arrays = CellArrays::new(file, range, &["ENDLGR", "LGRSGONE"]);
+    let arrays = CellArrays::new(file, range);
     let days = match arrays.find("DOUBHEAD") {
         Some(entry) => file.f64s(entry)?.first().copied().unwrap_or(0.0),
         None => 0.0,
@@ -242,9 +242,13 @@ pub struct RestartWriter<W: Write> {
 }
 
 impl<W: Write> RestartWriter<W> {
-    /// A writer to `out`, which needs no buffer of its own.
+    /// A writer of a binary file to `out`, which needs no buffer of its own.
     pub fn new(out: W) -> Self {
-        let out = RecordWriter::new(out);
+        Self::to(RecordWriter::new(out))
+    }
+
+    /// A writer of a file of any form.
+    pub fn to(out: RecordWriter<W>) -> Self {
         Self { out }
     }
 

@@ -50,7 +50,7 @@ fn grid() -> Egrid {
         }),
         porosity_model: PorosityModel::DualPermeability,
         nnc: vec![[1, 60], [60, 119]],
-        local_connections: 0,
+        local_nnc: Vec::new(),
         local_grids: Vec::new(),
     }
 }
@@ -104,10 +104,7 @@ fn err_egrid_that_could_not_be_read() {
             |g| {
                 g.local_grids.push(LocalGrid {
                     name: "L1".into(),
-                    parent: String::new(),
-                    dims: [1; 3],
-                    active: 1,
-                    is_radial: false,
+                    ..LocalGrid::default()
                 });
             },
             "local grids",

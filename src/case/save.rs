@@ -177,7 +177,7 @@ fn to_egrid(geometry: Geometry) -> Egrid {
         }),
         porosity_model: PorosityModel::Single,
         nnc: Vec::new(),
-        local_connections: 0,
+        local_nnc: Vec::new(),
         local_grids: Vec::new(),
     }
 }

@@ -87,7 +87,7 @@ pub fn egrid() -> Egrid {
         }),
         porosity_model: PorosityModel::Single,
         nnc: Vec::new(),
-        local_connections: 0,
+        local_nnc: Vec::new(),
         local_grids: Vec::new(),
     }
 }

@@ -8,6 +8,7 @@ use super::scan::{Flow, Scan};
 use super::source::Source;
 use crate::bytes::FileBytes;
 use crate::error::{ErrorKind, ParseError};
+use crate::records::Form;
 
 /// Deepest nesting and largest number of included files.
 const DEEPEST: usize = 64;
@@ -57,7 +58,7 @@ impl Scan<'_> {
         self.include_file(source, keyword, at, file)
     }
 
-    /// GDFILE: a text file is included, a binary one noted for when the grid is built.
+    /// GDFILE: a text file is included, one of arrays noted for when the grid is built.
     pub(super) fn grid_file(
         &mut self,
         source: &Rc<Source>,
@@ -74,7 +75,7 @@ impl Scan<'_> {
         let found = self.places.find(&written, source.path());
         let path = found.unwrap_or_else(|places| places.into_iter().next().unwrap_or_default());
         let file = self.places.files.open(&path);
-        if file.as_ref().is_ok_and(|file| !is_binary(file.bytes())) {
+        if file.as_ref().is_ok_and(|file| !holds_arrays(file.bytes())) {
             return self.include_file(source, keyword, at, file);
         }
         let place = Place {
@@ -130,8 +131,9 @@ fn named_file(
     included_path(cursor).ok_or_else(missing)
 }
 
-fn is_binary(bytes: &[u8]) -> bool {
-    bytes.iter().take(64).any(|&byte| byte == 0)
+/// True for a file of arrays, binary or formatted, also where a binary one is damaged.
+fn holds_arrays(bytes: &[u8]) -> bool {
+    Form::of(bytes).is_some() || bytes.iter().take(64).any(|&byte| byte == 0)
 }
 
 /// The path behind INCLUDE, in quotes or bare up to a blank, and moves behind its record.

@@ -1,16 +1,24 @@
-//! EGRID: the geometry of a case, as written.
+//! EGRID, and the legacy GRID: the geometry of a case, as written.
 //!
-//! Keywords: FILEHEAD, MAPUNITS, MAPAXES, GRIDUNIT, GRIDHEAD, COORD, ZCORN, ACTNUM, CORSNUM, NNC1 with NNC2;
-//! sections of local grids start at LGR and end at ENDLGR. The README lists what is skipped.
+//! Keywords: FILEHEAD, MAPUNITS, MAPAXES, GRIDUNIT, GRIDHEAD, COORD, ZCORN, ACTNUM, CORSNUM; sections of local grids
+//! start at LGR and end at ENDLGR; then connections, NNCHEAD and NNCHEADA with what follows them. The README lists
+//! what is skipped.
 
+mod connections;
+mod legacy;
+mod local;
+mod section;
 mod write;
 
 use std::path::Path;
 
 use crate::bytes::FileBytes;
 use crate::error::{At, ErrorKind, ParseError, Warnings};
-use crate::geometry::{Lengths, MOST_CELLS, first_not, unaddressable};
 use crate::records::{Entry, RecordFile};
+use section::Section;
+
+pub use connections::GridConnections;
+pub use local::LocalGrid;
 
 /// Unit of the grid's coordinates.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -32,22 +40,7 @@ pub enum PorosityModel {
     DualPermeability,
 }
 
-/// A local grid, by name only: its geometry is not read.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct LocalGrid {
-    /// Name.
-    pub name: String,
-    /// Name of the grid it refines; empty for the global grid.
-    pub parent: String,
-    /// Cells along i, j and k.
-    pub dims: [usize; 3],
-    /// Active cells.
-    pub active: usize,
-    /// True where COORD holds radii and angles.
-    pub is_radial: bool,
-}
-
-/// The global grid of an EGRID file.
+/// The grids of an EGRID file: the global one, and the local ones within it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Egrid {
     /// Cells along i, j and k.
@@ -70,14 +63,16 @@ pub struct Egrid {
     pub porosity_model: PorosityModel,
     /// Non-neighbor connections of the global grid: cell numbers from 1.
     pub nnc: Vec<[i32; 2]>,
-    /// Number of connections within a local grid, to its host or to another one.
-    pub local_connections: u64,
-    /// Local grids.
+    /// Connections within a local grid, to the global one, or from one local grid to another.
+    pub local_nnc: Vec<GridConnections>,
+    /// Local grids, nested ones too, in the order of the file.
     pub local_grids: Vec<LocalGrid>,
 }
 
 impl Egrid {
-    /// Reads the global grid.
+    /// Reads the grids of an EGRID, FEGRID, GRID or FGRID file; which one it is its content says.
+    ///
+    /// A local grid that is damaged is left out with a warning.
     ///
     /// # Errors
     /// When the file is damaged, lacks a keyword, is no corner-point grid, or an array has the
@@ -95,128 +90,83 @@ impl Egrid {
         warnings: &mut Warnings,
     ) -> Result<Self, ParseError> {
         let file = RecordFile::from_bytes(file)?;
-        let path = file.path();
         let entries = file.entries();
         // The global grid comes first; sections of local grids start at LGR, and NNC lists follow.
-        let first_local = entries
-            .iter()
-            .position(|e| e.name() == "LGR")
-            .unwrap_or(entries.len());
-        let global = &entries[..first_local];
-        let find = |name: &str| global.iter().find(|e| e.name() == name);
-        let need = |name: &str| {
-            find(name).ok_or_else(|| {
-                ParseError::of(
-                    ErrorKind::MissingKeyword,
-                    path,
-                    At::File,
-                    name,
-                    "is missing; a grid needs GRIDHEAD, COORD and ZCORN",
-                )
-            })
+        let first_local = entries.iter().position(|e| e.name() == "LGR");
+        let global = Section {
+            file: &file,
+            entries: &entries[..first_local.unwrap_or(entries.len())],
         };
-        let head = need("GRIDHEAD")?;
-        let dims = dimensions(&file, head)?;
-        let Some(lengths) = Lengths::of(dims) else {
-            return Err(file.error(ErrorKind::TooLarge, head, unaddressable(dims)));
-        };
-        let cells = lengths.cells;
-        let mut coord = sized(&file, need("COORD")?, lengths.coord, true)?;
-        if coord.len() > lengths.coord {
+        let is_legacy = global.find("GRIDHEAD").is_none() && global.find("COORDS").is_some();
+        if is_legacy {
+            return legacy::read(&global, warnings);
+        }
+        let head = global.head()?;
+        if head.is_radial {
+            let message = "the grid is radial; only Cartesian corner-point grids are read";
+            return Err(file.error(ErrorKind::Unsupported, global.need("GRIDHEAD")?, message));
+        }
+        let geometry = global.geometry(head.dims)?;
+        let mut coord = geometry.coord;
+        if coord.len() > geometry.pillars {
             warnings.push(
-                path,
+                file.path(),
                 At::File,
                 "COORD has several coordinate reservoirs; the first is used for all layers",
             );
-            coord.truncate(lengths.coord);
+            coord.truncate(geometry.pillars);
         }
-        let zcorn = sized(&file, need("ZCORN")?, lengths.zcorn, false)?;
-        let of_cells = |name: &str| match find(name) {
-            None => Ok(None),
-            Some(entry) if entry.count == cells as u64 => file.i32s(entry).map(Some),
-            Some(entry) => {
-                let found = entry.count;
-                Err(file.error(
-                    ErrorKind::WrongCount,
-                    entry,
-                    format!("expected {cells} values, found {found}"),
-                ))
-            }
-        };
-        let actnum = of_cells("ACTNUM")?;
-        let coarse = of_cells("CORSNUM")?;
-        let grid_unit = find("GRIDUNIT").map(|e| grid_unit(&file, e)).transpose()?;
-        let map_axes = match find("MAPAXES") {
-            Some(entry) => map_axes(&file, entry, warnings)?,
-            None => None,
-        };
+        let cells = geometry.zcorn.len() / 8;
+        let map = MapKeywords::read(&global, warnings)?;
         let porosity_model = porosity_model(&file)?;
         // Fracture cells are numbered on behind the matrix cells.
-        let numbered = match porosity_model {
+        let numbered = |cells: usize| match porosity_model {
             PorosityModel::Single => cells,
             _ => cells.saturating_mul(2),
         };
-        let (nnc, local_connections) = connections(&file, numbered, warnings)?;
+        let local_grids = local::read(&file, warnings);
+        let sizes = local_grids.iter().map(|g| (g.number, g.zcorn.len() / 8));
+        let sizes: Vec<_> = [(0, cells)].into_iter().chain(sizes).collect();
+        let sizes: Vec<_> = sizes.into_iter().map(|(n, c)| (n, numbered(c))).collect();
+        let (nnc, local_nnc) = connections::read(&file, &sizes, warnings)?;
         Ok(Self {
-            dims,
+            dims: head.dims,
             coord,
-            zcorn,
-            actnum,
-            coarse,
-            map_units: find("MAPUNITS")
-                .map(|e| file.strings(e))
-                .transpose()?
-                .and_then(|s| s.into_iter().next()),
-            map_axes,
-            grid_unit,
+            zcorn: geometry.zcorn,
+            actnum: geometry.actnum,
+            coarse: global.of_cells("CORSNUM", cells)?,
+            map_units: map.units,
+            map_axes: map.axes,
+            grid_unit: map.grid_unit,
             porosity_model,
             nnc,
-            local_connections,
-            local_grids: local_grids(&file)?,
+            local_nnc,
+            local_grids,
         })
     }
 }
 
-fn dimensions(file: &RecordFile, head: &Entry) -> Result<[usize; 3], ParseError> {
-    let values = file.i32s(head)?;
-    let [kind, ni, nj, nk, ..] = values[..] else {
-        return Err(file.error(
-            ErrorKind::WrongCount,
-            head,
-            format!("has {} values and needs at least 4", values.len()),
-        ));
-    };
-    if kind != 1 {
-        return Err(file.error(
-            ErrorKind::Unsupported,
-            head,
-            format!("the grid is of type {kind}; only corner-point grids (type 1) are read"),
-        ));
-    }
-    if is_radial(&values) {
-        let message = "the grid is radial; only Cartesian corner-point grids are read";
-        return Err(file.error(ErrorKind::Unsupported, head, message));
-    }
-    let dims = [ni, nj, nk].map(|n| usize::try_from(n).unwrap_or(0));
-    let cells = dims
-        .iter()
-        .try_fold(1usize, |product, &n| product.checked_mul(n));
-    match cells {
-        Some(1..=MOST_CELLS) => Ok(dims),
-        _ => {
-            let kind = match dims.contains(&0) {
-                true => ErrorKind::BadValue,
-                false => ErrorKind::TooLarge,
-            };
-            let message = format!("dimensions {ni} x {nj} x {nk} are not possible");
-            Err(file.error(kind, head, message))
-        }
-    }
+/// MAPUNITS, MAPAXES and GRIDUNIT.
+struct MapKeywords {
+    units: Option<String>,
+    axes: Option<[f64; 6]>,
+    grid_unit: Option<GridUnit>,
 }
 
-/// Item 27 of GRIDHEAD: sectors around the axis.
-fn is_radial(grid_head: &[i32]) -> bool {
-    grid_head.get(26).is_some_and(|&sectors| sectors > 0)
+impl MapKeywords {
+    fn read(global: &Section<'_>, warnings: &mut Warnings) -> Result<Self, ParseError> {
+        let file = global.file;
+        let axes = match global.find("MAPAXES") {
+            Some(entry) => map_axes(file, entry, warnings)?,
+            None => None,
+        };
+        let unit = global.find("GRIDUNIT");
+        Ok(Self {
+            units: global.string("MAPUNITS")?,
+            axes,
+            grid_unit: unit.map(|e| grid_unit(file, e)).transpose()?,
+        })
+    }
 }
 
 fn grid_unit(file: &RecordFile, entry: &Entry) -> Result<GridUnit, ParseError> {
@@ -235,35 +185,9 @@ fn map_axes(
     let values = file.f64s(entry)?.try_into().ok();
     if values.is_none() {
         let message = format!("MAPAXES has {} values, not 6: left out", entry.count);
-        warnings.push(file.path(), At::Byte(entry.offset), message);
+        warnings.push(file.path(), file.place(entry.offset), message);
     }
     Ok(values)
-}
-
-fn sized(
-    file: &RecordFile,
-    entry: &Entry,
-    expected: usize,
-    more_allowed: bool,
-) -> Result<Vec<f32>, ParseError> {
-    let (found, needed) = (entry.count, expected as u64);
-    let fits = found == needed || more_allowed && found > needed && found.is_multiple_of(needed);
-    if !fits {
-        return Err(file.error(
-            ErrorKind::WrongCount,
-            entry,
-            format!("expected {expected} values, found {found}"),
-        ));
-    }
-    let values = file.f32s(entry)?;
-    match first_not(&values, |v| v.is_finite()) {
-        Some(number) => Err(file.error(
-            ErrorKind::BadValue,
-            entry,
-            format!("value {number} is not a finite number"),
-        )),
-        None => Ok(values),
-    }
 }
 
 fn porosity_model(file: &RecordFile) -> Result<PorosityModel, ParseError> {
@@ -275,85 +199,4 @@ fn porosity_model(file: &RecordFile) -> Result<PorosityModel, ParseError> {
         Some(2) => PorosityModel::DualPermeability,
         _ => PorosityModel::Single,
     })
-}
-
-/// Connections of the global grid, the NNC1 and NNC2 that follow an NNCHEAD for grid 0, and the
-/// number of all others.
-fn connections(
-    file: &RecordFile,
-    numbered: usize,
-    warnings: &mut Warnings,
-) -> Result<(Vec<[i32; 2]>, u64), ParseError> {
-    let mut global = true;
-    let mut local = 0;
-    let mut from = Vec::new();
-    let mut pairs = Vec::new();
-    for entry in file.entries() {
-        match entry.name() {
-            "NNCHEAD" => global = file.i32s(entry)?.get(1).is_none_or(|&grid| grid == 0),
-            "NNC1" if global => from = file.i32s(entry)?,
-            "NNC2" if global => {
-                let to = file.i32s(entry)?;
-                if to.len() != from.len() {
-                    let (expected, found) = (from.len(), to.len());
-                    let message = format!("expected {expected} values as in NNC1, found {found}");
-                    return Err(file.error(ErrorKind::WrongCount, entry, message));
-                }
-                pairs.extend(from.drain(..).zip(to).map(|(a, b)| [a, b]));
-            }
-            "NNC1" | "NNCL" | "NNA1" => local += entry.count,
-            _ => {}
-        }
-    }
-    let known = |cell: i32| usize::try_from(cell).is_ok_and(|c| (1..=numbered).contains(&c));
-    let all = pairs.len();
-    pairs.retain(|pair| pair.iter().all(|&c| known(c)));
-    if pairs.len() < all {
-        let message = format!(
-            "{} of {all} connections in NNC1 and NNC2 name cells outside the grid: left out",
-            all - pairs.len()
-        );
-        warnings.push(file.path(), At::File, message);
-    }
-    Ok((pairs, local))
-}
-
-fn local_grids(file: &RecordFile) -> Result<Vec<LocalGrid>, ParseError> {
-    let first_string = |entry| {
-        let strings = file.strings(entry)?;
-        Ok(strings.into_iter().next().unwrap_or_default())
-    };
-    let mut grids: Vec<LocalGrid> = Vec::new();
-    let mut inside = false;
-    for entry in file.entries() {
-        if entry.name() == "LGR" {
-            inside = true;
-            grids.push(LocalGrid {
-                name: first_string(entry)?,
-                parent: String::new(),
-                dims: [0; 3],
-                active: 0,
-                is_radial: false,
-            });
-            continue;
-        }
-        let Some(grid) = grids.last_mut().filter(|_| inside) else {
-            continue;
-        };
-        match entry.name() {
-            "ENDLGR" => inside = false,
-            "LGRPARNT" => grid.parent = first_string(entry)?,
-            "GRIDHEAD" => {
-                let head = file.i32s(entry)?;
-                grid.is_radial = is_radial(&head);
-                if let [_, ni, nj, nk, ..] = head[..] {
-                    grid.dims = [ni, nj, nk].map(|n| usize::try_from(n).unwrap_or(0));
-                    grid.active = grid.dims.iter().fold(1, |p: usize, &n| p.saturating_mul(n));
-                }
-            }
-            "ACTNUM" => grid.active = file.i32s(entry)?.iter().filter(|a| **a != 0).count(),
-            _ => {}
-        }
-    }
-    Ok(grids)
 }

@@ -12,13 +12,23 @@ const HEAD_ITEMS: usize = 100;
 const VERSION: [i32; 2] = [3, 2007];
 
 impl Egrid {
-    /// Writes the grid; MAPAXES are rounded to f32, as files hold them.
+    /// Writes the grid as a binary file; MAPAXES are rounded to f32, as files hold them.
     ///
     /// # Errors
     /// When writing fails, an array has the wrong length, a coordinate is not finite, or there are
-    /// local grids, which are known by name only.
+    /// local grids, which are not written.
     pub fn write<W: Write>(&self, out: W) -> io::Result<W> {
-        if !self.local_grids.is_empty() || self.local_connections > 0 {
+        let mut out = RecordWriter::new(out);
+        self.write_to(&mut out)?;
+        out.finish()
+    }
+
+    /// As [`Self::write`], into a file of any form.
+    ///
+    /// # Errors
+    /// As [`Self::write`].
+    pub fn write_to<W: Write>(&self, out: &mut RecordWriter<W>) -> io::Result<()> {
+        if !self.local_grids.is_empty() || !self.local_nnc.is_empty() {
             return Err(refused("local grids cannot be written".into()));
         }
         let actnum = self.actnum.as_deref();
@@ -32,7 +42,6 @@ impl Egrid {
             )));
         }
         let [ni, nj, nk] = self.dims.map(|n| n as i32);
-        let mut out = RecordWriter::new(out);
         out.inte("FILEHEAD", &file_head(self.porosity_model))?;
         if let Some(units) = &self.map_units {
             out.chars("MAPUNITS", &[units])?;
@@ -64,7 +73,7 @@ impl Egrid {
             out.inte("NNC1", &side(0))?;
             out.inte("NNC2", &side(1))?;
         }
-        out.finish()
+        Ok(())
     }
 }
 

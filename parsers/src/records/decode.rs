@@ -1,7 +1,8 @@
 //! Decoding of arrays, in parallel when they are large.
 
-use super::{Entry, Kind, RecordFile, bytes_at, i32_at};
-use crate::error::{At, ErrorKind, ParseError};
+use super::text::{logical, real, whole};
+use super::{Entry, Form, Kind, RecordFile, bytes_at, i32_at};
+use crate::error::{ErrorKind, ParseError};
 use crate::geometry::zeros;
 use crate::parallel;
 
@@ -15,9 +16,17 @@ impl RecordFile {
     /// When the array holds no numbers or is damaged.
     pub fn f32s(&self, entry: &Entry) -> Result<Vec<f32>, ParseError> {
         match entry.kind {
-            Kind::Real => self.decode(entry, f32::from_be_bytes),
-            Kind::Inte => self.decode(entry, |b| i32::from_be_bytes(b) as f32),
-            Kind::Doub => self.decode(entry, |b| f64::from_be_bytes(b) as f32),
+            Kind::Real => self.decode(entry, f32::from_be_bytes, real),
+            Kind::Inte => self.decode(
+                entry,
+                |b| i32::from_be_bytes(b) as f32,
+                |t| Some(whole(t)? as f32),
+            ),
+            Kind::Doub => self.decode(
+                entry,
+                |b| f64::from_be_bytes(b) as f32,
+                |t| Some(real::<f64>(t)? as f32),
+            ),
             _ => Err(self.error(ErrorKind::WrongType, entry, "holds no numbers")),
         }
     }
@@ -28,10 +37,22 @@ impl RecordFile {
     /// When the array holds no numbers or is damaged.
     pub fn f64s(&self, entry: &Entry) -> Result<Vec<f64>, ParseError> {
         match entry.kind {
-            Kind::Real => self.decode(entry, |b| f64::from(f32::from_be_bytes(b))),
-            Kind::Inte => self.decode(entry, |b| f64::from(i32::from_be_bytes(b))),
-            Kind::Doub => self.decode(entry, f64::from_be_bytes),
-            Kind::Logi => self.decode(entry, |b: [u8; 4]| f64::from(u8::from(b != [0; 4]))),
+            Kind::Real => self.decode(
+                entry,
+                |b| f64::from(f32::from_be_bytes(b)),
+                |t| real::<f32>(t).map(f64::from),
+            ),
+            Kind::Inte => self.decode(
+                entry,
+                |b| f64::from(i32::from_be_bytes(b)),
+                |t| whole(t).map(f64::from),
+            ),
+            Kind::Doub => self.decode(entry, f64::from_be_bytes, real),
+            Kind::Logi => self.decode(
+                entry,
+                |b: [u8; 4]| f64::from(u8::from(b != [0; 4])),
+                |t| logical(t).map(|v| f64::from(u8::from(v))),
+            ),
             _ => Err(self.error(ErrorKind::WrongType, entry, "holds no numbers")),
         }
     }
@@ -42,7 +63,7 @@ impl RecordFile {
     /// When the array holds no integers or is damaged.
     pub fn i32s(&self, entry: &Entry) -> Result<Vec<i32>, ParseError> {
         match entry.kind {
-            Kind::Inte => self.decode(entry, i32::from_be_bytes),
+            Kind::Inte => self.decode(entry, i32::from_be_bytes, whole),
             _ => Err(self.error(ErrorKind::WrongType, entry, "holds no integers")),
         }
     }
@@ -53,7 +74,7 @@ impl RecordFile {
     /// When the array holds no logicals or is damaged.
     pub fn bools(&self, entry: &Entry) -> Result<Vec<bool>, ParseError> {
         match entry.kind {
-            Kind::Logi => self.decode(entry, |b: [u8; 4]| b != [0; 4]),
+            Kind::Logi => self.decode(entry, |b: [u8; 4]| b != [0; 4], logical),
             _ => Err(self.error(ErrorKind::WrongType, entry, "holds no logicals")),
         }
     }
@@ -66,20 +87,29 @@ impl RecordFile {
         let Kind::Text(length) = entry.kind else {
             return Err(self.error(ErrorKind::WrongType, entry, "holds no strings"));
         };
-        let blocks = self.blocks(entry)?;
-        let strings = blocks
-            .iter()
-            .flat_map(|b| b.chunks_exact(usize::from(length)));
-        Ok(strings
-            .map(|s| String::from_utf8_lossy(s).trim_end().to_owned())
-            .collect())
+        self.check_whole(entry)?;
+        let strings = match self.form {
+            Form::Formatted => self.text_strings(entry, length)?,
+            Form::Binary => {
+                let blocks = self.blocks(entry)?.into_iter();
+                let strings = blocks.flat_map(|b| b.chunks_exact(usize::from(length)));
+                strings.collect()
+            }
+        };
+        let string = |s: &[u8]| String::from_utf8_lossy(s).trim_end().to_owned();
+        Ok(strings.into_iter().map(string).collect())
     }
 
     fn decode<const N: usize, T: Send + Sync + Copy + Default>(
         &self,
         entry: &Entry,
         convert: impl Fn([u8; N]) -> T + Sync,
+        parse: impl Fn(&[u8]) -> Option<T> + Sync,
     ) -> Result<Vec<T>, ParseError> {
+        self.check_whole(entry)?;
+        if self.form == Form::Formatted {
+            return self.parse_text(entry, parse);
+        }
         let blocks = self.blocks(entry)?;
         // The index has checked that the file is larger than the values, but they may be wider here.
         let count = usize::try_from(entry.count).ok();
@@ -104,13 +134,21 @@ impl RecordFile {
         Ok(values)
     }
 
+    fn check_whole(&self, entry: &Entry) -> Result<(), ParseError> {
+        match self.file.is_whole() {
+            true => Ok(()),
+            false => Err(self.shortened(entry)),
+        }
+    }
+
+    /// The error about a file that has become shorter since it was opened.
+    pub(super) fn shortened(&self, entry: &Entry) -> ParseError {
+        let message = "cannot be read: the file was cut off while it was open; load the case again";
+        self.error(ErrorKind::Truncated, entry, message)
+    }
+
     /// The data of each block, with both markers checked.
     fn blocks(&self, entry: &Entry) -> Result<Vec<&[u8]>, ParseError> {
-        if !self.file.is_whole() {
-            let message =
-                "cannot be read: the file was cut off while it was open; load the case again";
-            return Err(self.error(ErrorKind::Truncated, entry, message));
-        }
         let bytes = self.file.bytes();
         let mut blocks = Vec::new();
         let mut at = entry.data;
@@ -126,7 +164,7 @@ impl RecordFile {
                 return Err(ParseError::of(
                     ErrorKind::Malformed,
                     self.path(),
-                    At::Byte(at),
+                    self.place(at),
                     entry.name(),
                     message,
                 ));

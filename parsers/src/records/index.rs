@@ -1,8 +1,8 @@
 //! The index of a record file: headers, found by skipping over the data.
 
-use super::{Entry, Kind, i32_at};
+use super::{Entry, Form, Kind, i32_at, text};
 use crate::bytes::FileBytes;
-use crate::error::{At, ErrorKind, ParseError};
+use crate::error::{ErrorKind, ParseError};
 
 /// Header record with its markers.
 const HEADER: u64 = 24;
@@ -10,7 +10,7 @@ const HEADER: u64 = 24;
 const X231: &[u8] = b"X231";
 
 /// What stopped the indexing.
-struct Fault {
+pub(super) struct Fault {
     kind: ErrorKind,
     at: u64,
     keyword: String,
@@ -19,29 +19,33 @@ struct Fault {
 
 /// A header record.
 #[derive(Clone, Copy)]
-struct Header<'a> {
-    name: [u8; 8],
-    count: i32,
-    kind: &'a [u8],
+pub(super) struct Header<'a> {
+    pub(super) name: [u8; 8],
+    pub(super) count: i32,
+    pub(super) kind: &'a [u8],
+    /// Byte offset behind it.
+    pub(super) behind: u64,
 }
 
 /// The complete arrays from the start, and what stopped the indexing before the end.
-pub(super) fn index(file: &FileBytes) -> (Vec<Entry>, Option<ParseError>) {
+pub(super) fn index(file: &FileBytes, form: Form) -> (Vec<Entry>, Option<ParseError>) {
     let bytes = file.bytes();
     let mut entries = Vec::new();
-    let stop =
-        |f: Fault| ParseError::of(f.kind, file.path(), At::Byte(f.at), &f.keyword, f.message);
+    let stop = |f: Fault| {
+        let at = form.place(bytes, f.at);
+        ParseError::of(f.kind, file.path(), at, &f.keyword, f.message)
+    };
     if bytes.is_empty() {
         return (
             entries,
             Some(stop(fault(ErrorKind::Truncated, 0, "the file is empty"))),
         );
     }
-    let mut at = 0;
+    let mut at = form.next(bytes, 0);
     while at < bytes.len() as u64 {
-        match array(bytes, at) {
+        match array(bytes, at, form) {
             Ok(entry) => {
-                at = entry.end;
+                at = form.next(bytes, entry.end);
                 entries.push(entry);
             }
             Err(mut fault) => {
@@ -57,7 +61,31 @@ pub(super) fn index(file: &FileBytes) -> (Vec<Entry>, Option<ParseError>) {
     (entries, None)
 }
 
-fn fault(kind: ErrorKind, at: u64, message: impl Into<String>) -> Fault {
+impl Form {
+    /// Where the header stands that follows at `at`.
+    fn next(self, bytes: &[u8], at: u64) -> u64 {
+        match self {
+            Self::Binary => at,
+            Self::Formatted => usize::try_from(at).map_or(at, |at| text::visible(bytes, at) as u64),
+        }
+    }
+
+    fn header(self, bytes: &[u8], at: u64) -> Result<Header<'_>, Fault> {
+        match self {
+            Self::Binary => header(bytes, at),
+            Self::Formatted => text::header(bytes, at),
+        }
+    }
+
+    fn data_end(self, bytes: &[u8], data: u64, count: u64, kind: Kind) -> Result<u64, Fault> {
+        match self {
+            Self::Binary => data_end(bytes, data, count, kind),
+            Self::Formatted => text::data_end(bytes, data, count, kind),
+        }
+    }
+}
+
+pub(super) fn fault(kind: ErrorKind, at: u64, message: impl Into<String>) -> Fault {
     Fault {
         kind,
         at,
@@ -67,18 +95,19 @@ fn fault(kind: ErrorKind, at: u64, message: impl Into<String>) -> Fault {
 }
 
 /// The array whose header is at `at`.
-fn array(bytes: &[u8], at: u64) -> Result<Entry, Fault> {
-    let first = header(bytes, at)?;
+fn array(bytes: &[u8], at: u64, form: Form) -> Result<Entry, Fault> {
+    let first = form.header(bytes, at)?;
     let named = |mut fault: Fault| {
         fault.keyword = String::from_utf8_lossy(&first.name).into_owned();
         fault
     };
     let wrong = |message: String| Err(named(fault(ErrorKind::Malformed, at, message)));
-    let (high, second, data) = match first.kind {
+    let (high, second) = match first.kind {
         X231 => match u64::try_from(-i64::from(first.count)) {
             Ok(multiple) => {
-                let second = header(bytes, at + HEADER).map_err(named)?;
-                (multiple << 31, second, at + 2 * HEADER)
+                let at = form.next(bytes, first.behind);
+                let second = form.header(bytes, at).map_err(named)?;
+                (multiple << 31, second)
             }
             Err(_) => {
                 let count = first.count;
@@ -87,7 +116,7 @@ fn array(bytes: &[u8], at: u64) -> Result<Entry, Fault> {
                 ));
             }
         },
-        _ => (0, first, at + HEADER),
+        _ => (0, first),
     };
     if second.name != first.name {
         return wrong("its X231 header is not followed by a second header of that name".into());
@@ -100,7 +129,8 @@ fn array(bytes: &[u8], at: u64) -> Result<Entry, Fault> {
         return wrong(format!("has a count of {}", second.count));
     };
     let count = high + low;
-    let end = data_end(bytes, data, count, kind).map_err(named)?;
+    let data = second.behind;
+    let end = form.data_end(bytes, data, count, kind).map_err(named)?;
     Ok(Entry {
         name: first.name,
         kind,
@@ -115,12 +145,8 @@ fn header(bytes: &[u8], at: u64) -> Result<Header<'_>, Fault> {
     let rest = usize::try_from(at).ok().and_then(|at| bytes.get(at..));
     let rest = rest.unwrap_or_default();
     let damaged = || {
-        let message = "not an array header: this is not an Eclipse binary file, or it is damaged";
+        let message = "not an array header: this is neither a binary nor a formatted Eclipse file, or it is damaged";
         match at {
-            _ if rest.starts_with(b" '") => {
-                let message = "this is a formatted (text) file, and those are not read yet";
-                fault(ErrorKind::Unsupported, at, message)
-            }
             0 => fault(ErrorKind::NotThisFormat, at, message),
             _ => fault(ErrorKind::Malformed, at, message),
         }
@@ -141,6 +167,7 @@ fn header(bytes: &[u8], at: u64) -> Result<Header<'_>, Fault> {
             name,
             count,
             kind: &record[16..20],
+            behind: at + HEADER,
         }),
         _ => Err(damaged()),
     }

@@ -1,11 +1,13 @@
-//! Fortran-record files: named, typed arrays in big-endian blocks (EGRID, INIT, UNRST, ...).
+//! Fortran-record files: named, typed arrays (EGRID, INIT, UNRST, ...), in big-endian blocks or as text.
 //!
-//! Each array has a header record of 16 bytes (name, count, type) and data in blocks, every record
-//! between two copies of its length in bytes. Opening a file indexes the headers by skipping over
+//! Each array of a binary file has a header record of 16 bytes (name, count, type) and data in blocks, every record
+//! between two copies of its length in bytes; a formatted file (FEGRID, FINIT, FUNRST, ...) has the same as text.
+//! Which one it is the content says, not the name. Opening a file indexes the headers by skipping over
 //! the data; an array is decoded when asked for.
 
 mod decode;
 mod index;
+mod text;
 mod write;
 
 use std::path::Path;
@@ -19,6 +21,33 @@ pub(crate) use write::refused;
 /// Elements in a block by convention: numbers, strings.
 const NUMBERS_PER_BLOCK: u64 = 1000;
 const STRINGS_PER_BLOCK: u64 = 105;
+
+/// How the arrays of a file are written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Form {
+    /// Big-endian blocks between their lengths.
+    Binary,
+    /// Text.
+    Formatted,
+}
+
+impl Form {
+    /// The form of a file that starts with these bytes; `None` where it has no arrays.
+    pub fn of(start: &[u8]) -> Option<Self> {
+        if i32_at(start, 0) == Some(16) {
+            return Some(Self::Binary);
+        }
+        text::is_text(start).then_some(Self::Formatted)
+    }
+
+    /// The place that people are told of a byte.
+    fn place(self, bytes: &[u8], at: u64) -> At {
+        match self {
+            Self::Binary => At::Byte(at),
+            Self::Formatted => text::place(bytes, at),
+        }
+    }
+}
 
 /// Type of the elements of an array.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -81,11 +110,11 @@ pub struct Entry {
     pub kind: Kind,
     /// Number of elements.
     pub count: u64,
-    /// Byte offset of the header record.
+    /// Byte offset of the header.
     pub offset: u64,
-    /// Byte offset of the first data record.
+    /// Byte offset of the data.
     data: u64,
-    /// Byte offset behind the last data record.
+    /// Byte offset behind the data.
     end: u64,
 }
 
@@ -107,6 +136,7 @@ impl Entry {
 #[derive(Debug)]
 pub struct RecordFile {
     file: FileBytes,
+    form: Form,
     entries: Vec<Entry>,
     is_cut: bool,
 }
@@ -126,11 +156,13 @@ impl RecordFile {
     /// When it is not such a file, or ends within an array.
     pub fn from_bytes(file: impl Into<FileBytes>) -> Result<Self, ParseError> {
         let file = file.into();
-        let (entries, broken) = index::index(&file);
+        let form = Form::of(file.bytes()).unwrap_or(Form::Binary);
+        let (entries, broken) = index::index(&file, form);
         match broken {
             Some(error) => Err(error),
             None => Ok(Self {
                 file,
+                form,
                 entries,
                 is_cut: false,
             }),
@@ -155,7 +187,8 @@ impl RecordFile {
         warnings: &mut Warnings,
     ) -> Result<Self, ParseError> {
         let file = file.into();
-        let (entries, broken) = index::index(&file);
+        let form = Form::of(file.bytes()).unwrap_or(Form::Binary);
+        let (entries, broken) = index::index(&file, form);
         let is_cut = broken.is_some();
         if let Some(error) = broken {
             if entries.is_empty() {
@@ -172,9 +205,20 @@ impl RecordFile {
         }
         Ok(Self {
             file,
+            form,
             entries,
             is_cut,
         })
+    }
+
+    /// Whether the file is binary or text.
+    pub fn form(&self) -> Form {
+        self.form
+    }
+
+    /// The place in the file that people are told of a byte: a line of text, or the byte itself.
+    pub fn place(&self, offset: u64) -> At {
+        self.form.place(self.file.bytes(), offset)
     }
 
     /// True where the file ends within an array, as one does that is being written.
@@ -204,7 +248,7 @@ impl RecordFile {
         entry: &Entry,
         message: impl Into<String>,
     ) -> ParseError {
-        let at = At::Byte(entry.offset);
+        let at = self.place(entry.offset);
         ParseError::of(kind, self.path(), at, entry.name(), message)
     }
 }

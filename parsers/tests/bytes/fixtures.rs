@@ -3,7 +3,7 @@
 use strataray_parsers::cells::Head;
 use strataray_parsers::egrid::{Egrid, GridUnit, PorosityModel};
 use strataray_parsers::init;
-use strataray_parsers::records::RecordWriter;
+use strataray_parsers::records::{Kind, RecordFile, RecordWriter};
 use strataray_parsers::restart::RestartWriter;
 
 /// A deck of one cell, with its corners at depths 0 and 1.
@@ -26,9 +26,28 @@ pub fn cell() -> Egrid {
         grid_unit: None,
         porosity_model: PorosityModel::Single,
         nnc: Vec::new(),
-        local_connections: 0,
+        local_nnc: Vec::new(),
         local_grids: Vec::new(),
     }
+}
+
+/// The text twin of a binary file.
+pub fn formatted(binary: &[u8]) -> Vec<u8> {
+    let file = RecordFile::from_bytes(("A", binary.to_vec())).unwrap();
+    let mut out = RecordWriter::formatted(Vec::new());
+    for entry in file.entries() {
+        let name = entry.name();
+        match entry.kind {
+            Kind::Inte => out.inte(name, &file.i32s(entry).unwrap()),
+            Kind::Real => out.real(name, &file.f32s(entry).unwrap()),
+            Kind::Doub => out.doub(name, &file.f64s(entry).unwrap()),
+            Kind::Logi => out.logi(name, &file.bools(entry).unwrap()),
+            Kind::Text(width) => out.text(name, width, &file.strings(entry).unwrap()),
+            Kind::Mess => out.mess(name),
+        }
+        .unwrap();
+    }
+    out.finish().unwrap()
 }
 
 pub fn egrid() -> Vec<u8> {
@@ -56,9 +75,67 @@ pub fn rich_egrid() -> Vec<u8> {
     let mut out = RecordWriter::new(grid.write(Vec::new()).unwrap());
     out.chars("LGR", &["FINE"]).unwrap();
     out.chars("LGRPARNT", &[""]).unwrap();
-    out.inte("GRIDHEAD", &[1, 2, 2, 2]).unwrap();
+    out.inte("GRIDHEAD", &[1, 2, 2, 2, 1]).unwrap();
+    out.real("COORD", &[0.5; 54]).unwrap();
+    out.real("ZCORN", &[1.5; 64]).unwrap();
     out.inte("ACTNUM", &[1, 1, 1, 1, 0, 1, 1, 1]).unwrap();
+    out.inte("HOSTNUM", &[1; 8]).unwrap();
     out.mess("ENDLGR").unwrap();
+    out.inte("NNCHEAD", &[2, 1]).unwrap();
+    out.inte("NNCL", &[1, 8]).unwrap();
+    out.inte("NNCG", &[2, 3]).unwrap();
+    out.finish().unwrap()
+}
+
+/// A legacy grid of two cells, of which the file has both.
+pub fn legacy() -> Vec<u8> {
+    let mut out = RecordWriter::new(Vec::new());
+    out.inte("DIMENS", &[2, 1, 1]).unwrap();
+    for (i, x) in [(1, 0.0_f32), (2, 1.0)] {
+        out.inte("COORDS", &[i, 1, 1, i, 1, 0, 0]).unwrap();
+        let corner = |c: u8| {
+            [
+                x + f32::from(c & 1),
+                f32::from(c >> 1 & 1),
+                f32::from(c >> 2),
+            ]
+        };
+        let corners: Vec<f32> = (0..8).flat_map(corner).collect();
+        out.real("CORNERS", &corners).unwrap();
+    }
+    out.finish().unwrap()
+}
+
+/// A step with two wells, one of them in a local grid too.
+pub fn wells() -> Vec<u8> {
+    let mut out = RecordWriter::new(Vec::new());
+    let mut head = [0; 40];
+    for (item, value) in [
+        (10, 2),
+        (16, 2),
+        (17, 2),
+        (24, 12),
+        (27, 1),
+        (32, 15),
+        (33, 5),
+    ] {
+        head[item] = value;
+    }
+    out.inte("SEQNUM", &[1]).unwrap();
+    out.inte("INTEHEAD", &head).unwrap();
+    out.logi("LOGIHEAD", &[true; 15]).unwrap();
+    out.inte("IWEL", &[2; 24]).unwrap();
+    out.chars("ZWEL", &["P1", "I2"]).unwrap();
+    out.inte("ICON", &[2; 60]).unwrap();
+    out.real("SCON", &[0.5; 20]).unwrap();
+    out.chars("LGR", &["FINE"]).unwrap();
+    head[16] = 1;
+    out.inte("INTEHEAD", &head).unwrap();
+    out.inte("IWEL", &[1; 12]).unwrap();
+    out.chars("ZWEL", &["I2"]).unwrap();
+    out.inte("LGWEL", &[2]).unwrap();
+    out.inte("ICON", &[1; 30]).unwrap();
+    out.inte("ENDLGR", &[]).unwrap();
     out.finish().unwrap()
 }
 

@@ -288,11 +288,6 @@ fn unsupported() {
         read_deck(&CELL.replace(" F", " T")),
         read_deck(CELL),
     );
-    check(
-        ErrorKind::Unsupported,
-        read_egrid(" 'FILEHEAD'         100 'INTE'\n"),
-        read_egrid(egrid()),
-    );
     // The first 1 of GRIDHEAD is the type of the grid.
     check(
         ErrorKind::Unsupported,

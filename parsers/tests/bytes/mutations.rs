@@ -6,7 +6,7 @@ use fastrand::Rng;
 use strataray_parsers::deck::{Grdecl, MemoryFiles};
 use strataray_parsers::egrid::Egrid;
 use strataray_parsers::records::RecordFile;
-use strataray_parsers::{ErrorKind, ParseError, Warnings, init, restart};
+use strataray_parsers::{At, ErrorKind, ParseError, Warnings, init, restart, wells};
 
 use super::fixtures::{self, PORO, rich_deck, rich_egrid};
 
@@ -99,7 +99,53 @@ fn mutated_egrid() {
             grid.actnum.as_deref(),
         );
         assert!(grid.coord.iter().chain(&grid.zcorn).all(|v| v.is_finite()));
+        for local in &grid.local_grids {
+            let lengths = [local.coord.len(), local.zcorn.len()];
+            let [ni, nj, _] = local.dims;
+            // Of one coordinate system or several.
+            let pillars = 6 * (ni + 1) * (nj + 1);
+            assert!(lengths[0].is_multiple_of(pillars));
+            check_grid(local.dims, [pillars, lengths[1]], local.actnum.as_deref());
+        }
         Ok(())
+    });
+}
+
+#[test]
+fn mutated_legacy_grid() {
+    for (seed, bytes) in [
+        (8, fixtures::legacy()),
+        (9, fixtures::formatted(&fixtures::legacy())),
+    ] {
+        mutate(seed, &bytes, |bytes| {
+            let grid = Egrid::from_bytes(("A.GRID", bytes), &mut Warnings::default())?;
+            let lengths = [grid.coord.len(), grid.zcorn.len()];
+            check_grid(grid.dims, lengths, grid.actnum.as_deref());
+            Ok(())
+        });
+    }
+}
+
+#[test]
+fn mutated_wells() {
+    mutate(10, &fixtures::wells(), |bytes| {
+        let mut warnings = Warnings::default();
+        for step in restart::unified_from_bytes(("A.UNRST", bytes), &mut warnings)? {
+            for well in wells::read(&step.arrays)? {
+                assert!(well.completions.len() <= 60 && !well.name.is_empty());
+            }
+        }
+        // Files that end early are read up to there.
+        match warnings.is_empty() {
+            true => Ok(()),
+            false => Err(ParseError::of(
+                ErrorKind::Truncated,
+                Path::new("A"),
+                At::File,
+                "",
+                "cut",
+            )),
+        }
     });
 }
 
@@ -123,6 +169,29 @@ fn decode(file: &RecordFile) {
 fn mutated_records() {
     mutate(5, &fixtures::records(), |bytes| {
         decode(&RecordFile::from_bytes(("A", bytes))?);
+        Ok(())
+    });
+}
+
+#[test]
+fn mutated_formatted_records() {
+    let text = fixtures::formatted(&fixtures::records());
+    mutate(6, &text, |bytes| {
+        let file = RecordFile::from_bytes(("A", bytes))?;
+        decode(&file);
+        // Values are looked at when they are decoded.
+        let entries = file.entries().iter().filter(|entry| entry.is_numeric());
+        entries.map(|entry| file.f64s(entry).map(drop)).collect()
+    });
+}
+
+#[test]
+fn mutated_formatted_egrid() {
+    let text = fixtures::formatted(&rich_egrid());
+    mutate(7, &text, |bytes| {
+        let grid = Egrid::from_bytes(("A.FEGRID", bytes), &mut Warnings::default())?;
+        let lengths = [grid.coord.len(), grid.zcorn.len()];
+        check_grid(grid.dims, lengths, grid.actnum.as_deref());
         Ok(())
     });
 }

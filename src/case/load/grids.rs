@@ -147,9 +147,9 @@ fn read_egrid(
         .local_grids
         .into_iter()
         .map(|l| LocalGrid {
+            active: l.active(),
             name: l.name,
             dims: l.dims,
-            active: l.active,
         })
         .collect();
     let connections = connections(&egrid.nnc, grid.dims());

@@ -1,0 +1,291 @@
+//! The legacy GRID: eight corners for each cell, put together to pillars and depths.
+//!
+//! DIMENS, MAPUNITS, MAPAXES, GRIDUNIT, then for each cell COORDS (i, j, k from 1, cell number, and where written 1 for
+//! active, host cell, coarse group) and CORNERS (x, y, depth of eight corners, i first, then j, then k), as the
+//! open readers of the format have them (resdata's `rd_grid.cpp`).
+//!
+//! Files may leave out cells. They are inactive here, and of no volume: their corners lie where the nearest cell of
+//! their column ends, or on the upper end of a pillar that no cell has, which is taken from the nearest one.
+
+use super::section::{Section, dimensions};
+use super::{Egrid, MapKeywords, PorosityModel};
+use crate::error::{At, ErrorKind, ParseError, Warnings};
+use crate::geometry::{Lengths, unaddressable, zeros};
+use crate::records::Entry;
+
+/// Most cells for each that the file has, so that memory stays in proportion to the file.
+const MOST_ABSENT: usize = 100;
+/// How far a corner may lie off its pillar, in parts of the grid's extent, and in parts of the coordinates, which
+/// have 24 bits.
+const OF_EXTENT: f32 = 1e-4;
+const OF_VALUE: f32 = 1e-6;
+
+/// A cell as written.
+struct Cell {
+    ijk: [usize; 3],
+    is_active: bool,
+    /// x, y and depth of each corner.
+    corners: [[f32; 3]; 8],
+}
+
+/// Reads the global grid; local grids, which a section names LGR, are left out with a warning.
+pub(super) fn read(global: &Section<'_>, warnings: &mut Warnings) -> Result<Egrid, ParseError> {
+    let file = global.file;
+    let head = global.need_of_legacy("DIMENS")?;
+    let values = file.i32s(head)?;
+    let [ni, nj, nk, ..] = values[..] else {
+        let message = format!("has {} values and needs 3", values.len());
+        return Err(file.error(ErrorKind::WrongCount, head, message));
+    };
+    if let Some(radial) = global.find("RADIAL")
+        && global.string("RADIAL")?.is_some_and(|s| s.starts_with('T'))
+    {
+        let message = "the grid is radial; only Cartesian pillar grids are read";
+        return Err(file.error(ErrorKind::Unsupported, radial, message));
+    }
+    let dims = dimensions(file, head, [ni, nj, nk])?;
+    let map = MapKeywords::read(global, warnings)?;
+    let cells = cells(global, dims)?;
+    let pillars = Pillars::new(global, head, dims, &cells)?;
+    let local = file.entries().iter().filter(|e| e.name() == "LGR").count();
+    if local > 0 {
+        let message =
+            format!("{local} local grids were left out: they are read from EGRID files alone");
+        warnings.push(file.path(), At::File, message);
+    }
+    let total = pillars.zcorn.len() / 8;
+    if cells.len() < total {
+        let message = format!(
+            "{} of {total} cells are not in the file: they are inactive, without volume",
+            total - cells.len()
+        );
+        warnings.push(file.path(), At::File, message);
+    }
+    Ok(Egrid {
+        dims,
+        coord: pillars.coord,
+        zcorn: pillars.zcorn,
+        actnum: Some(pillars.actnum),
+        coarse: None,
+        map_units: map.units,
+        map_axes: map.axes,
+        grid_unit: map.grid_unit,
+        porosity_model: PorosityModel::Single,
+        nnc: Vec::new(),
+        local_nnc: Vec::new(),
+        local_grids: Vec::new(),
+    })
+}
+
+impl<'a> Section<'a> {
+    fn need_of_legacy(&self, name: &str) -> Result<&'a Entry, ParseError> {
+        self.find(name).ok_or_else(|| {
+            let message = "is missing; a GRID file needs DIMENS, COORDS and CORNERS";
+            let kind = ErrorKind::MissingKeyword;
+            ParseError::of(kind, self.file.path(), At::File, name, message)
+        })
+    }
+}
+
+fn cells(global: &Section<'_>, dims: [usize; 3]) -> Result<Vec<Cell>, ParseError> {
+    let file = global.file;
+    global.need_of_legacy("CORNERS")?;
+    let mut cells: Vec<Cell> = Vec::new();
+    let mut coords: Option<&Entry> = None;
+    for entry in global.entries {
+        if entry.name() == "COORDS" {
+            coords = Some(entry);
+        }
+        let ("CORNERS", Some(head)) = (entry.name(), coords) else {
+            continue;
+        };
+        coords = None;
+        let values = file.i32s(head)?;
+        let place = match values[..] {
+            [i, j, k, ..] => [i, j, k].map(|n| usize::try_from(n).unwrap_or(0)),
+            _ => [0; 3],
+        };
+        if place.iter().zip(dims).any(|(n, size)| *n < 1 || *n > size) {
+            let message = format!(
+                "no cell of a grid of {} x {} x {}: {values:?}",
+                dims[0], dims[1], dims[2]
+            );
+            return Err(file.error(ErrorKind::BadValue, head, message));
+        }
+        let corners = file.f32s(entry)?;
+        if corners.len() != 24 || corners.iter().any(|v| !v.is_finite()) {
+            let message = "is not 24 finite numbers: x, y and depth of eight corners";
+            return Err(file.error(ErrorKind::BadValue, entry, message));
+        }
+        cells.push(Cell {
+            ijk: place.map(|n| n - 1),
+            is_active: values.get(4).is_none_or(|active| *active != 0),
+            corners: std::array::from_fn(|c| std::array::from_fn(|n| corners[3 * c + n])),
+        });
+    }
+    Ok(cells)
+}
+
+/// The arrays of an EGRID.
+struct Pillars {
+    dims: [usize; 3],
+    coord: Vec<f32>,
+    zcorn: Vec<f32>,
+    actnum: Vec<i32>,
+    /// Which cells the file has.
+    is_there: Vec<bool>,
+    /// Which pillars a cell of the file has.
+    is_known: Vec<bool>,
+}
+
+impl Pillars {
+    fn new(
+        global: &Section<'_>,
+        head: &Entry,
+        dims: [usize; 3],
+        cells: &[Cell],
+    ) -> Result<Self, ParseError> {
+        let file = global.file;
+        let lengths = Lengths::of(dims)
+            .ok_or_else(|| file.error(ErrorKind::TooLarge, head, unaddressable(dims)))?;
+        if lengths.cells / MOST_ABSENT > cells.len() || cells.is_empty() {
+            let message = format!(
+                "says {} cells, and the file has {}",
+                lengths.cells,
+                cells.len()
+            );
+            return Err(file.error(ErrorKind::WrongCount, head, message));
+        }
+        let memory = || file.error(ErrorKind::TooLarge, head, "not enough memory for its cells");
+        let mut pillars = Self {
+            dims,
+            coord: zeros(lengths.coord).ok_or_else(memory)?,
+            zcorn: zeros(lengths.zcorn).ok_or_else(memory)?,
+            actnum: zeros(lengths.cells).ok_or_else(memory)?,
+            is_there: zeros(lengths.cells).ok_or_else(memory)?,
+            is_known: zeros(lengths.coord / 6).ok_or_else(memory)?,
+        };
+        cells.iter().for_each(|cell| pillars.add(cell));
+        pillars.settle_known();
+        pillars.check(cells).map_err(|place| {
+            let message = format!(
+                "the corners of cells at pillar {} {} do not lie on one line; only pillar grids are read",
+                place[0] + 1,
+                place[1] + 1
+            );
+            file.error(ErrorKind::Unsupported, head, message)
+        })?;
+        pillars.settle_absent();
+        Ok(pillars)
+    }
+
+    fn pillar(&self, i: usize, j: usize) -> usize {
+        j * (self.dims[0] + 1) + i
+    }
+
+    /// Index of a depth, with `c` the number of the corner in the cell.
+    fn depth(&self, [i, j, k]: [usize; 3], c: usize) -> usize {
+        let [ni, nj, _] = self.dims;
+        let (di, dj, dk) = (c & 1, c >> 1 & 1, c >> 2);
+        2 * i + di + 2 * ni * (2 * j + dj) + 4 * ni * nj * (2 * k + dk)
+    }
+
+    fn cell(&self, [i, j, k]: [usize; 3]) -> usize {
+        i + self.dims[0] * (j + self.dims[1] * k)
+    }
+
+    /// Takes in a cell: depths, and the ends of its pillars where it reaches farther than those before.
+    fn add(&mut self, cell: &Cell) {
+        let [i, j, _] = cell.ijk;
+        let index = self.cell(cell.ijk);
+        self.actnum[index] = i32::from(cell.is_active);
+        self.is_there[index] = true;
+        for (c, point) in cell.corners.iter().enumerate() {
+            let depth = self.depth(cell.ijk, c);
+            self.zcorn[depth] = point[2];
+            let pillar = self.pillar(i + (c & 1), j + (c >> 1 & 1));
+            let is_first = !std::mem::replace(&mut self.is_known[pillar], true);
+            let ends = &mut self.coord[6 * pillar..6 * pillar + 6];
+            if is_first || point[2] < ends[2] {
+                ends[..3].copy_from_slice(point);
+            }
+            if is_first || point[2] > ends[5] {
+                ends[3..].copy_from_slice(point);
+            }
+        }
+    }
+
+    /// Pillars without length, where all cells end in one point, become vertical.
+    fn settle_known(&mut self) {
+        for ends in self.coord.as_chunks_mut::<6>().0 {
+            if ends[2] == ends[5] {
+                (ends[3], ends[4]) = (ends[0], ends[1]);
+                ends[5] += 1.0;
+            }
+        }
+    }
+
+    /// True where all corners lie on their pillars; else the pillar of the first that does not.
+    fn check(&self, cells: &[Cell]) -> Result<(), [usize; 2]> {
+        let mut low = [f32::INFINITY; 2];
+        let mut high = [f32::NEG_INFINITY; 2];
+        for point in cells.iter().flat_map(|cell| &cell.corners) {
+            for n in 0..2 {
+                low[n] = low[n].min(point[n]);
+                high[n] = high[n].max(point[n]);
+            }
+        }
+        let value = low.iter().chain(&high).fold(0.0_f32, |m, v| m.max(v.abs()));
+        let extent = (high[0] - low[0]).max(high[1] - low[1]);
+        let most = OF_EXTENT * extent + OF_VALUE * value;
+        for cell in cells {
+            for (c, [x, y, z]) in cell.corners.iter().enumerate() {
+                let place = [cell.ijk[0] + (c & 1), cell.ijk[1] + (c >> 1 & 1)];
+                let pillar = self.pillar(place[0], place[1]);
+                let ends = &self.coord[6 * pillar..6 * pillar + 6];
+                let along = (z - ends[2]) / (ends[5] - ends[2]);
+                let off = |n: usize, v: f32| (ends[n] + along * (ends[n + 3] - ends[n]) - v).abs();
+                let is_on = off(0, *x) <= most && off(1, *y) <= most;
+                if !is_on {
+                    return Err(place);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Gives a place to what the file leaves out.
+    fn settle_absent(&mut self) {
+        let [ni, nj, nk] = self.dims;
+        // From the pillar before, along the rows; those at the start from the first one known.
+        let first = self.is_known.iter().position(|known| *known).unwrap_or(0);
+        let mut last = first;
+        for pillar in 0..self.is_known.len() {
+            match self.is_known[pillar] {
+                true => last = pillar,
+                false => self.coord.copy_within(6 * last..6 * last + 6, 6 * pillar),
+            }
+        }
+        for j in 0..nj {
+            for i in 0..ni {
+                for c in 0..4 {
+                    let layers = (0..nk).find(|k| self.is_there[self.cell([i, j, *k])]);
+                    let pillar = self.pillar(i + (c & 1), j + (c >> 1));
+                    let mut depth = match layers {
+                        Some(k) => self.zcorn[self.depth([i, j, k], c)],
+                        None => self.coord[6 * pillar + 2],
+                    };
+                    for k in 0..nk {
+                        let [upper, lower] = [c, c + 4].map(|c| self.depth([i, j, k], c));
+                        if self.is_there[self.cell([i, j, k])] {
+                            depth = self.zcorn[lower];
+                        } else {
+                            self.zcorn[upper] = depth;
+                            self.zcorn[lower] = depth;
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
