@@ -31,9 +31,63 @@ pub fn moment(text: &str) -> Option<f64> {
     (is_date && is_clock).then(|| days(date) as f64 + seconds.sum::<i64>() as f64 / 86_400.0)
 }
 
+/// The time so many days after 1970-01-01, to the minute: `YYYY-MM-DD`, or `YYYY-MM-DD hh:mm` where it is not midnight.
+///
+/// Empty beyond the year 9999.
+pub fn text(moment: f64) -> String {
+    let minutes = (moment * 1440.0).round();
+    if !minutes.is_finite() || minutes.abs() > 5e9 {
+        return String::new();
+    }
+    let minutes = minutes as i64;
+    let (day, minute) = (minutes.div_euclid(1440), minutes.rem_euclid(1440));
+    // Back from the number of a day as `days` counts it, with years that begin in March.
+    let day = day + 719_468;
+    let (era, of_era) = (day.div_euclid(146_097), day.rem_euclid(146_097));
+    let of_era_year = (of_era - of_era / 1460 + of_era / 36_524 - of_era / 146_096) / 365;
+    let of_year = of_era - (365 * of_era_year + of_era_year / 4 - of_era_year / 100);
+    let from_march = (5 * of_year + 2) / 153;
+    let day = of_year - (153 * from_march + 2) / 5 + 1;
+    let month = if from_march < 10 {
+        from_march + 3
+    } else {
+        from_march - 9
+    };
+    let year = 400 * era + of_era_year + i64::from(month <= 2);
+    match minute {
+        _ if !(0..10_000).contains(&year) => String::new(),
+        0 => format!("{year:04}-{month:02}-{day:02}"),
+        _ => format!(
+            "{year:04}-{month:02}-{day:02} {:02}:{:02}",
+            minute / 60,
+            minute % 60
+        ),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn text_is_the_inverse_of_moment() {
+        for day in (-700_000..2_900_000).step_by(97) {
+            let day = f64::from(day);
+            assert_eq!(moment(&text(day)), Some(day), "{}", text(day));
+        }
+        for date in [
+            "2000-02-29",
+            "2100-03-01",
+            "1999-12-31 23:59",
+            "1969-07-20 20:17",
+        ] {
+            assert_eq!(text(moment(date).unwrap()), date);
+        }
+        assert_eq!(text(1.0 - 1e-5), "1970-01-02");
+        for wild in [f64::NAN, f64::INFINITY, 1e300, 3e6] {
+            assert_eq!(text(wild), "");
+        }
+    }
 
     #[test]
     fn days_between_dates() {

@@ -26,6 +26,27 @@ pub enum RestartSource {
     Separate(Vec<(u32, PathBuf)>),
 }
 
+/// Where the curves over time are.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum SummarySource {
+    /// All of them in one file.
+    Unified {
+        /// SMSPEC or FSMSPEC: what the vectors are.
+        spec: PathBuf,
+        /// UNSMRY or FUNSMRY: their values.
+        data: PathBuf,
+    },
+    /// One file of values per report.
+    Separate {
+        /// As above.
+        spec: PathBuf,
+        /// S0001 or A0001 and so on, with their numbers, rising.
+        data: Vec<(u32, PathBuf)>,
+    },
+    /// ESMRY: both in one file.
+    Extended(PathBuf),
+}
+
 /// The files of a case.
 #[derive(Debug, Clone)]
 pub struct CaseFiles {
@@ -54,9 +75,18 @@ enum Role {
     Separate(u32),
     Deck,
     Text,
-    /// Curves over time, which belong to the case but are no part of it here.
-    Summary,
+    /// Curves over time, which [`find_summary`] finds.
+    Summary(SummaryPart),
     NotRead(&'static str),
+}
+
+/// A file of curves over time.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum SummaryPart {
+    Spec,
+    Unified,
+    Separate(u32),
+    Extended,
 }
 
 fn role(path: &Path) -> Option<Role> {
@@ -73,14 +103,22 @@ fn role(path: &Path) -> Option<Role> {
         "INIT" | "FINIT" => Role::Init,
         "UNRST" | "FUNRST" => Role::Unified,
         "DATA" => Role::Deck,
-        "SMSPEC" | "UNSMRY" | "ESMRY" | "FSMSPEC" | "FUNSMRY" => Role::Summary,
+        "SMSPEC" | "FSMSPEC" => Role::Summary(SummaryPart::Spec),
+        "UNSMRY" | "FUNSMRY" => Role::Summary(SummaryPart::Unified),
+        "ESMRY" => Role::Summary(SummaryPart::Extended),
         "GRDECL" => Role::Text,
         "ROFF" => Role::NotRead("a ROFF file is not opened as a case"),
         "EPC" => Role::NotRead("RESQML is not read"),
         // Text grids are called .grid too.
         "GRID" if form(path).is_none() => Role::Text,
         "GRID" | "FGRID" => Role::Egrid,
-        _ => Role::Separate(numbered('X').or_else(|| numbered('F'))?),
+        _ => match numbered('X').or_else(|| numbered('F')) {
+            Some(report) => Role::Separate(report),
+            None => {
+                let report = numbered('S').or_else(|| numbered('A'))?;
+                Role::Summary(SummaryPart::Separate(report))
+            }
+        },
     })
 }
 
@@ -89,7 +127,8 @@ fn rank(path: &Path) -> usize {
     let extension = path.extension().and_then(|e| e.to_str());
     let extension = extension.unwrap_or_default().to_ascii_uppercase();
     let is_legacy = matches!(extension.as_str(), "GRID" | "FGRID");
-    2 * usize::from(is_legacy) + usize::from(extension.starts_with('F'))
+    // A0001 is the formatted S0001.
+    2 * usize::from(is_legacy) + usize::from(extension.starts_with(['F', 'A']))
 }
 
 /// The form of a file of arrays; `None` for other files.
@@ -123,18 +162,7 @@ pub fn find(path: &Path) -> Result<CaseFiles, ParseError> {
         return find(&only);
     }
     let named = path.is_file().then(|| sniff(path));
-    let stem = match named.or_else(|| role(path)) {
-        Some(_) => path.file_stem(),
-        None => path.file_name(),
-    };
-    let stem = stem.and_then(|s| s.to_str()).unwrap_or_default().to_owned();
-    let mut files = siblings(path, &stem)?;
-    // What the user named wins over a sibling of the same role, then exact letter case of the stem.
-    let exact = |p: &Path| p.file_stem().and_then(|s| s.to_str()) == Some(&stem);
-    files.sort_by_key(|(p, _)| {
-        let is_other = p.file_name() != path.file_name();
-        (is_other, !exact(p), rank(p), p.clone())
-    });
+    let (stem, files) = family(path, named)?;
     let first = |wanted: Role| {
         let file = files.iter().find(|(_, r)| *r == wanted);
         file.map(|(p, _)| p.clone())
@@ -222,7 +250,7 @@ pub fn find_with(path: &Path, with: &[PathBuf]) -> Result<CaseFiles, ParseError>
                     "is a grid of its own and cannot be added to another one",
                 ));
             }
-            Role::Summary => return Err(refuse("holds curves over time, which are not read")),
+            Role::Summary(_) => return Err(refuse("holds curves over time, which are not read")),
             Role::NotRead(why) => return Err(refuse(why)),
         }
     }
@@ -233,6 +261,57 @@ pub fn find_with(path: &Path, with: &[PathBuf]) -> Result<CaseFiles, ParseError>
     Ok(files)
 }
 
+/// Finds the summary files of the case that `path` names, as [`find`] does; the case needs no grid.
+///
+/// Of several forms the unified one goes first, then one file per report, then ESMRY, and what the user named before
+/// all.
+///
+/// # Errors
+/// When there are none; the sentence says what was looked for.
+pub fn find_summary(path: &Path) -> Result<SummarySource, ParseError> {
+    let only = only_grid(path);
+    let path = only.as_deref().unwrap_or(path);
+    let named = path.is_file().then(|| role(path)).flatten();
+    let (stem, files) = family(path, named)?;
+    let first = |wanted: SummaryPart| {
+        let file = files.iter().find(|(_, r)| *r == Role::Summary(wanted));
+        file.map(|(p, _)| p.clone())
+    };
+    let mut separate: Vec<(u32, PathBuf)> = Vec::new();
+    for (file, role) in &files {
+        if let Role::Summary(SummaryPart::Separate(report)) = role
+            && !separate.iter().any(|s| s.0 == *report)
+        {
+            separate.push((*report, file.clone()));
+        }
+    }
+    separate.sort();
+    let is_named = |part: fn(SummaryPart) -> bool| match named {
+        Some(Role::Summary(named)) => part(named),
+        _ => false,
+    };
+    let extended = first(SummaryPart::Extended);
+    if let (Some(file), true) = (&extended, is_named(|p| p == SummaryPart::Extended)) {
+        return Ok(SummarySource::Extended(file.clone()));
+    }
+    let wants_separate = is_named(|p| matches!(p, SummaryPart::Separate(_)));
+    let unified = first(SummaryPart::Unified).filter(|_| !wants_separate);
+    match (first(SummaryPart::Spec), unified, extended) {
+        (Some(spec), Some(data), _) => Ok(SummarySource::Unified { spec, data }),
+        (Some(spec), None, _) if !separate.is_empty() => Ok(SummarySource::Separate {
+            spec,
+            data: separate,
+        }),
+        (_, _, Some(file)) => Ok(SummarySource::Extended(file)),
+        _ => {
+            let message = format!(
+                "this case has no summary: looked for {stem}.SMSPEC with {stem}.UNSMRY or {stem}.S0001, and {stem}.ESMRY"
+            );
+            Err(not_found(path, message))
+        }
+    }
+}
+
 /// The grid of a folder that has one case.
 fn only_grid(folder: &Path) -> Option<PathBuf> {
     let files = std::fs::read_dir(folder).ok()?.flatten().map(|e| e.path());
@@ -241,6 +320,23 @@ fn only_grid(folder: &Path) -> Option<PathBuf> {
     let first = grids.first()?;
     let same = grids.iter().all(|p| p.file_stem() == first.file_stem());
     same.then(|| first.clone())
+}
+
+/// The stem of a case and its files: first what the user named, then those of exactly this letter case, then by
+/// [`rank`].
+fn family(path: &Path, named: Option<Role>) -> Result<(String, Vec<(PathBuf, Role)>), ParseError> {
+    let stem = match named.or_else(|| role(path)) {
+        Some(_) => path.file_stem(),
+        None => path.file_name(),
+    };
+    let stem = stem.and_then(|s| s.to_str()).unwrap_or_default().to_owned();
+    let mut files = siblings(path, &stem)?;
+    let exact = |p: &Path| p.file_stem().and_then(|s| s.to_str()) == Some(&stem);
+    files.sort_by_key(|(p, _)| {
+        let is_other = p.file_name() != path.file_name();
+        (is_other, !exact(p), rank(p), p.clone())
+    });
+    Ok((stem, files))
 }
 
 /// Files beside `path` with the same stem, whatever the letter case, and a known extension.

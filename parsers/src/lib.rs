@@ -109,6 +109,7 @@ mod mapped;
 mod parallel;
 pub mod records;
 pub mod restart;
+pub mod summary;
 pub mod units;
 pub mod wells;
 

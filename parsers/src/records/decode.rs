@@ -31,6 +31,48 @@ impl RecordFile {
         }
     }
 
+    /// One value of a REAL or DOUB array, from 0, without decoding the others.
+    ///
+    /// # Errors
+    /// When the array holds no reals, has no such value, or is damaged.
+    pub fn f32_at(&self, entry: &Entry, index: usize) -> Result<f32, ParseError> {
+        self.check_whole(entry)?;
+        let lacks = || {
+            let message = format!("has no value {}", index + 1);
+            self.error(ErrorKind::WrongCount, entry, message)
+        };
+        if index as u64 >= entry.count {
+            return Err(lacks());
+        }
+        match (self.form, entry.kind) {
+            (Form::Formatted, Kind::Real | Kind::Doub) => self.parse_text_at(entry, index),
+            (Form::Binary, Kind::Real) => {
+                let bytes = self.element(entry, index)?.and_then(|b| b.try_into().ok());
+                bytes.map(f32::from_be_bytes).ok_or_else(lacks)
+            }
+            (Form::Binary, Kind::Doub) => {
+                let bytes = self.element(entry, index)?.and_then(|b| b.try_into().ok());
+                bytes
+                    .map(|b| f64::from_be_bytes(b) as f32)
+                    .ok_or_else(lacks)
+            }
+            _ => Err(self.error(ErrorKind::WrongType, entry, "holds no real numbers")),
+        }
+    }
+
+    /// The bytes of one element of a binary array.
+    fn element(&self, entry: &Entry, index: usize) -> Result<Option<&[u8]>, ParseError> {
+        let size = usize::try_from(entry.kind.size()).unwrap_or(1);
+        let mut at = index * size;
+        for block in self.blocks(entry)? {
+            match block.get(at..at + size) {
+                Some(element) => return Ok(Some(element)),
+                None => at -= block.len().min(at),
+            }
+        }
+        Ok(None)
+    }
+
     /// Values of a REAL, DOUB, INTE or LOGI array as f64; true is 1, false 0.
     ///
     /// # Errors

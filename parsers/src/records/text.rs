@@ -191,12 +191,7 @@ impl RecordFile {
         });
         let mut values = Vec::new();
         for piece in pieces {
-            let piece = piece.map_err(|(at, token)| {
-                let shown: String = String::from_utf8_lossy(token).chars().take(40).collect();
-                let at = self.place(entry.data + at as u64);
-                let message = format!("{shown:?} is not a value of its type");
-                ParseError::of(ErrorKind::BadValue, self.path(), at, entry.name(), message)
-            })?;
+            let piece = piece.map_err(|(at, token)| self.not_a_value(entry, at, token))?;
             match values.is_empty() {
                 true => values = piece,
                 false => values.extend(piece),
@@ -211,6 +206,28 @@ impl RecordFile {
             values.len()
         );
         Err(self.error(ErrorKind::Malformed, entry, message))
+    }
+
+    /// One value of an array of reals of a formatted file.
+    pub(super) fn parse_text_at(&self, entry: &Entry, index: usize) -> Result<f32, ParseError> {
+        let text = self.text(entry)?;
+        let Some(token) = tokens(text).nth(index) else {
+            let message = format!("has no value {}; the file is damaged", index + 1);
+            return Err(self.error(ErrorKind::Malformed, entry, message));
+        };
+        let value = match entry.kind {
+            Kind::Doub => real::<f64>(token).map(|v| v as f32),
+            _ => real(token),
+        };
+        value.ok_or_else(|| self.not_a_value(entry, offset(text, token), token))
+    }
+
+    /// The error about what stands `at` bytes behind the start of the data.
+    fn not_a_value(&self, entry: &Entry, at: usize, token: &[u8]) -> ParseError {
+        let shown: String = String::from_utf8_lossy(token).chars().take(40).collect();
+        let at = self.place(entry.data + at as u64);
+        let message = format!("{shown:?} is not a value of its type");
+        ParseError::of(ErrorKind::BadValue, self.path(), at, entry.name(), message)
     }
 
     /// The strings of an array of a formatted file, each of at most `width` bytes.

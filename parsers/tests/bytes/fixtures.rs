@@ -139,6 +139,33 @@ pub fn wells() -> Vec<u8> {
     out.finish().unwrap()
 }
 
+/// SMSPEC and UNSMRY in one file, as both readers can have it, or an ESMRY.
+pub fn summary(is_extended: bool) -> Vec<u8> {
+    let mut out = RecordWriter::new(Vec::new());
+    if is_extended {
+        out.inte("START", &[1, 1, 2000, 0, 0, 0, 0]).unwrap();
+        out.text("KEYCHECK", 12, &["TIME", "WOPR:P1"]).unwrap();
+        out.chars("UNITS", &["DAYS", "SM3/DAY"]).unwrap();
+        out.inte("RSTEP", &[0, 1]).unwrap();
+        out.real("V0", &[1.0, 2.0]).unwrap();
+        out.real("V1", &[3.0, 4.0]).unwrap();
+        return out.finish().unwrap();
+    }
+    out.inte("DIMENS", &[4, 2, 2, 2]).unwrap();
+    out.chars("KEYWORDS", &["TIME", "WOPR", "BPR", "ROFT"])
+        .unwrap();
+    out.chars("WGNAMES", &["", "P1", "", ""]).unwrap();
+    out.inte("NUMS", &[0, 1, 8, 425_986]).unwrap();
+    out.chars("UNITS", &["DAYS", "SM3/DAY", "BARSA", "SM3"])
+        .unwrap();
+    out.inte("STARTDAT", &[1, 1, 2000, 0, 0, 0]).unwrap();
+    for n in 0..3_u8 {
+        out.inte("SEQHDR", &[i32::from(n)]).unwrap();
+        out.real("PARAMS", &[f32::from(n); 4]).unwrap();
+    }
+    out.finish().unwrap()
+}
+
 /// An array of every type, and one whose count takes two headers and whose values stand in small blocks.
 pub fn records() -> Vec<u8> {
     let mut out = RecordWriter::new(Vec::new());

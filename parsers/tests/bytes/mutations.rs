@@ -6,6 +6,7 @@ use fastrand::Rng;
 use strataray_parsers::deck::{Grdecl, MemoryFiles};
 use strataray_parsers::egrid::Egrid;
 use strataray_parsers::records::RecordFile;
+use strataray_parsers::summary::Summary;
 use strataray_parsers::{At, ErrorKind, ParseError, Warnings, init, restart, wells};
 
 use super::fixtures::{self, PORO, rich_deck, rich_egrid};
@@ -146,6 +147,41 @@ fn mutated_wells() {
                 "cut",
             )),
         }
+    });
+}
+
+#[test]
+fn mutated_summary() {
+    let values = |summary: &Summary| {
+        assert!(summary.dates().len() <= summary.steps.len());
+        for vector in &summary.vectors {
+            let values = summary.values(vector)?;
+            assert_eq!(values.len(), summary.steps.len(), "{vector}");
+        }
+        Ok(())
+    };
+    for (seed, is_text) in [(11, false), (12, true)] {
+        let bytes = fixtures::summary(false);
+        let bytes = if is_text {
+            fixtures::formatted(&bytes)
+        } else {
+            bytes
+        };
+        mutate(seed, &bytes, |bytes| {
+            let file = || ("A.UNSMRY", bytes.clone());
+            values(&Summary::from_bytes(
+                file(),
+                file(),
+                &mut Warnings::default(),
+            )?)
+        });
+    }
+    mutate(13, &fixtures::summary(true), |bytes| {
+        let mut warnings = Warnings::default();
+        values(&Summary::extended_from_bytes(
+            ("A.ESMRY", bytes),
+            &mut warnings,
+        )?)
     });
 }
 

@@ -4,6 +4,7 @@
 mod formatted;
 mod legacy;
 mod local;
+mod summary;
 mod wells;
 
 use std::path::PathBuf;
