@@ -287,6 +287,7 @@ fn twins() -> BTreeMap<String, Number> {
         ("EMITTER_SPOT", layout::EMITTER_SPOT),
         ("LOOK_COLORED", layout::LOOK_COLORED),
         ("LOOK_FAINT", layout::LOOK_FAINT),
+        ("LOOK_TUBE", layout::LOOK_TUBE),
         ("PACKED_SHIFT", layout::PACKED_SHIFT),
         ("PACKED_COVERAGE", layout::PACKED_COVERAGE),
         ("PACKED_VALUES", layout::PACKED_VALUES),

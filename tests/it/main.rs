@@ -50,3 +50,4 @@ mod srg;
 mod statistics;
 mod surfaces;
 mod synthetic;
+mod wells;
