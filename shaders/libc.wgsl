@@ -482,8 +482,8 @@ fn cross_fault(walk: ptr<function, Walk>, r: RayFrame) {
 
 // True where the ray passes below the upper or lower edge of a layer between two pillars.
 fn is_below(r: RayFrame, a: Pillar, b: Pillar, lists: vec2u, layer: u32, bottom: u32, sense: f32) -> bool {
-    let p = project(r, a, depths[list_entry(lists.x, layer, bottom)]);
-    let q = project(r, b, depths[list_entry(lists.y, layer, bottom)]);
+    let p = project(r, a, depth_at(list_entry(lists.x, layer, bottom)));
+    let q = project(r, b, depth_at(list_entry(lists.y, layer, bottom)));
     return sense * cross2d(p, q) > 0.0;
 }
 
@@ -519,7 +519,7 @@ fn integrate(walk: ptr<function, Walk>, sum: ptr<function, Accumulated>, layers:
         s.top = values_at(layer_entries(lists, (*walk).layer, 0u));
         s.bottom = values_at(layer_entries(lists, (*walk).layer, 1u));
     } else {
-        s.top = vec4f(values[drawn_rank((*walk).column, (*walk).layer)]);
+        s.top = vec4f(cell_value((*walk).column, (*walk).layer));
         s.bottom = s.top;
     }
     let is_ghost = is_ghost((*walk).column, (*walk).layer);

@@ -179,7 +179,7 @@ fn meet(r: RayFrame, number: u32) -> Passage {
     var q: array<vec3f, 4>;
     for (var n = 0u; n < 4u; n++) {
         let corner = face_corner(side, n);
-        let depth = depths[list_entry(lists[corner & 3u], layer, corner >> 2u)];
+        let depth = depth_at(list_entry(lists[corner & 3u], layer, corner >> 2u));
         q[n] = project(r, load_pillar(pillars[corner & 3u]), depth);
     }
     let a = cross2d(q[0], q[1]);

@@ -71,6 +71,17 @@ pub enum Integration {
     Segments,
 }
 
+/// How depths and values are held where they are many.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Storage {
+    /// As f32.
+    #[default]
+    Exact,
+    /// In 16 bits, rounded; on a GPU that halves the memory they take.
+    Compact,
+}
+
 /// Settings of the strategy SRG. A switch that is a number is off at 0.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]

@@ -48,5 +48,6 @@ mod reported;
 mod shadows;
 mod srg;
 mod statistics;
+mod storage;
 mod surfaces;
 mod synthetic;

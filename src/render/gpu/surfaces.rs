@@ -37,8 +37,8 @@ pub fn constants(surfaces: Surfaces) -> [(&'static str, f64); 5] {
 
 /// Finds surface points and gives them colors.
 pub struct SurfacePainter {
-    peel: RasterPipeline,
-    /// Compiled when it is first asked for.
+    /// Compiled when they are first asked for.
+    peel: Option<Arc<RasterPipeline>>,
     paint: Option<Arc<Pipeline>>,
     surfaces: Surfaces,
     shown: Option<ShownSurfaces>,
@@ -64,13 +64,10 @@ struct ShownSurfaces {
 }
 
 impl SurfacePainter {
-    /// Compiles the shader that finds points.
-    ///
-    /// # Errors
-    /// When the driver refuses it.
-    pub fn new(gpu: &Gpu) -> Result<Self, RenderError> {
-        Ok(Self {
-            peel: RasterPipeline::new(gpu, "peel", &[FORMAT])?,
+    /// With nothing to find.
+    pub fn new(gpu: &Gpu) -> Self {
+        Self {
+            peel: None,
             paint: None,
             surfaces: Surfaces::default(),
             shown: None,
@@ -80,7 +77,7 @@ impl SurfacePainter {
             work: 0,
             targets: Vec::new(),
             nothing: faces::texture(gpu, [1; 2], FORMAT),
-        })
+        }
     }
 
     /// True where the boundary faces of all drawn cells are the hull.
@@ -105,7 +102,9 @@ impl SurfacePainter {
     ) -> Result<(), RenderError> {
         self.surfaces = view.style.surfaces;
         let shading = Shading::of(&view.style.lighting);
-        let constants = [&constants(self.surfaces)[..], &shading.pairs()].concat();
+        let of_grid = [grid.constants().storage()];
+        self.peel = Some(RasterPipeline::variant(gpu, "peel", &[FORMAT], &of_grid)?);
+        let constants = [&of_grid[..], &constants(self.surfaces), &shading.pairs()].concat();
         self.paint = Some(Pipeline::variant(gpu, "paint", "main", &constants)?);
         let is_known = |s: &ShownSurfaces| s.revision == grid.revisions.surfaces;
         let shown = match self.shown.take().filter(is_known) {
@@ -136,7 +135,7 @@ impl SurfacePainter {
 
     /// Records the passes that find the points of all layers.
     pub fn peel(&mut self, round: &Round<'_>, encoder: &mut wgpu::CommandEncoder) {
-        let Some(shown) = &self.shown else {
+        let (Some(shown), Some(peel)) = (&self.shown, &self.peel) else {
             return;
         };
         let layers = layers(self.surfaces);
@@ -160,8 +159,8 @@ impl SurfacePainter {
                     faces.numbers.as_entire_binding(),
                     wgpu::BindingResource::TextureView(&before),
                 ];
-                let own = round.gpu.bind(&self.peel.own, &own);
-                pass.set_pipeline(&self.peel.pipeline);
+                let own = round.gpu.bind(&peel.own, &own);
+                pass.set_pipeline(&peel.pipeline);
                 pass.set_bind_group(3, &own, &[]);
                 pass.draw(0..6 * faces.count, 0..1);
             }
