@@ -19,6 +19,7 @@
 #import surfaces
 #import facing
 #import projection
+#import segments
 
 // Rays go on across faults and collapsed layers.
 override CROSSES: bool = true;
@@ -60,10 +61,6 @@ const MOST_STALLS: u32 = 32u;
 // Recoveries of one ray after which it counts as lost.
 const MOST_RECOVERIES: u32 = 1000u;
 const NOWHERE: f32 = -1e30;
-// Optical depth and part of the value range that one piece of a segment may have.
-const PIECE_DEPTH: f32 = 0.5;
-const PIECE_RANGE: f32 = 0.05;
-const MOST_PIECES: f32 = 16.0;
 
 struct Walk {
     phase: u32,
@@ -581,14 +578,7 @@ fn lit(entry: vec4f, ray: Ray, t: f32, is_ghost: bool, tally: ptr<function, Tall
     return entry;
 }
 
-// Adds a stretch of one color and an optical depth.
-fn absorb(a: Accumulated, color: vec4f, optical_depth: f32) -> Accumulated {
-    let passed = exp(-optical_depth);
-    return Accumulated(a.color + a.transmittance * (1.0 - passed) * color.rgb, a.transmittance * passed);
-}
-
-// The segment in pieces so small that the order of colors within one does not matter; in each the means
-// of extinction and color over its values are differences of integrals.
+// Adds a segment in pieces.
 fn integrate_segment(s: Segment, sum: ptr<function, Accumulated>, ray: Ray, from_t: f32, to_t: f32,
     tally: ptr<function, Tally>) {
     if to_t <= from_t {
@@ -598,16 +588,13 @@ fn integrate_segment(s: Segment, sum: ptr<function, Accumulated>, ray: Ray, from
     let first = segment_value(s, from_t);
     let middle = segment_value(s, from_t + 0.5 * length);
     let last = segment_value(s, to_t);
-    let depth = length * max(max(transfer(first).w, transfer(middle).w), transfer(last).w);
-    let range = (max(max(first, middle), last) - min(min(first, middle), last)) * frame.value_scale;
-    let pieces = clamp(ceil(max(depth / PIECE_DEPTH, range / PIECE_RANGE)), 1.0, MOST_PIECES);
+    let pieces = piece_count(vec3f(first, middle, last), length);
     var before = first;
     for (var n = 1.0; n <= pieces && is_open(*sum); n += 1.0) {
         let value = segment_value(s, from_t + length * n / pieces);
-        let mean = transfer_mean(before, value);
-        let entry = vec4f(mean.rgb / max(mean.w, 1e-30), mean.w);
+        let entry = piece_entry(before, value);
         let middle = from_t + length * (n - 0.5) / pieces;
-        *sum = absorb(*sum, lit(entry, ray, middle, false, tally), mean.w * length / pieces);
+        *sum = absorb(*sum, lit(entry, ray, middle, false, tally), entry.w * length / pieces);
         before = value;
         (*tally).samples += 1u;
         (*tally).work += 1u;

@@ -49,7 +49,7 @@ impl Default for LibcSettings {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct PltsSettings {
-    /// What is integrated; segments on the CPU alone.
+    /// What is integrated.
     pub integration: Integration,
 }
 
