@@ -108,13 +108,13 @@ fn fault_color(face: u32) -> vec4f {
 
 fn value_on(column: u32, layer: u32, side: u32, at: vec2f) -> f32 {
     if frame.interpolation == INTERPOLATION_CELL {
-        return values[drawn_rank(column, layer)];
+        return cell_value(column, layer);
     }
     let lists = column_lists(column);
     var corners: vec4f;
     for (var n = 0u; n < 4u; n++) {
         let corner = face_corner(side, n);
-        corners[n] = values[list_entry(lists[corner & 3u], layer, corner >> 2u)];
+        corners[n] = value_at(list_entry(lists[corner & 3u], layer, corner >> 2u));
     }
     let pair = mix(corners.xz, corners.yw, at.x);
     return mix(pair.x, pair.y, at.y);
@@ -128,7 +128,7 @@ fn spot_on(column: u32, layer: u32, side: u32, r: RayFrame, steps: mat2x3f) -> S
     var q: array<vec3f, 4>;
     for (var n = 0u; n < 4u; n++) {
         let corner = face_corner(side, n);
-        let depth = depths[list_entry(lists[corner & 3u], layer, corner >> 2u)];
+        let depth = depth_at(list_entry(lists[corner & 3u], layer, corner >> 2u));
         corners[n] = from_origin(r, load_pillar(numbers[corner & 3u]), depth);
         q[n] = projected(r, corners[n]);
     }

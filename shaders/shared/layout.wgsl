@@ -266,6 +266,9 @@ const LIST_OFFSET: u32 = 0x3fffffffu;
 const COINCIDENT: f32 = 1e-3;
 // Flag of a bin, in the position of its first entry: points there are found only by a search of all cells.
 const BIN_IS_ODD: u32 = 0x80000000u;
+// Numbers of a block of those that take 16 bits, and words that these take.
+const BLOCK: u32 = 32u;
+const BLOCK_WORDS: u32 = 17u;
 // Voxels along one side of a brick.
 const BRICK: u32 = 8u;
 // Voxels that a thread fills one after the other, downward.

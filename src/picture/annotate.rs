@@ -322,6 +322,7 @@ pub(super) mod tests {
                 libc: crate::scene::LibcSettings::default(),
                 plts: crate::scene::PltsSettings::default(),
                 srg: crate::scene::SrgSettings::default(),
+                storage: crate::scene::Storage::default(),
             },
             shown: Shown {
                 property: "SWAT".into(),

@@ -133,6 +133,7 @@ fn view(grid: &Grid, field: CellField, extinction: f64, sampling_step: f64) -> V
             libc: crate::scene::LibcSettings::default(),
             plts: crate::scene::PltsSettings::default(),
             srg: crate::scene::SrgSettings::default(),
+            storage: crate::scene::Storage::default(),
         },
         shown: Shown {
             property: "TEST".into(),

@@ -18,6 +18,8 @@ pub struct Frame {
     pub light: LightTimes,
     /// Bytes on the device by purpose.
     pub bytes: DeviceBytes,
+    /// What holding the grid in fewer bits has changed.
+    pub storage_error: StorageError,
 }
 
 impl Frame {
@@ -27,6 +29,15 @@ impl Frame {
         let middle = frames.len() / 2;
         (middle < frames.len()).then(|| frames.swap_remove(middle))
     }
+}
+
+/// The largest changes that came of holding numbers in 16 bits; none where these are exact.
+#[derive(Debug, Clone, Copy, Default, PartialEq, serde::Serialize)]
+pub struct StorageError {
+    /// Of a depth, in the grid's length unit.
+    pub depth: f64,
+    /// Of a value, in the scale of the colors.
+    pub value: f64,
 }
 
 /// What a frame cost.

@@ -16,7 +16,9 @@ use serde::{Deserialize, Serialize};
 pub use camera::{AutomaticCamera, CameraSpec, ExplicitCamera, FramingCamera, Projection};
 pub use filter::{Filter, Indices, PropertyFilter};
 pub use lighting::{LightMode, LightingSpec};
-pub use settings::{ClipSpec, CutFace, Integration, LibcSettings, PltsSettings, SrgSettings};
+pub use settings::{
+    ClipSpec, CutFace, Integration, LibcSettings, PltsSettings, SrgSettings, Storage,
+};
 pub use strategy::StrategyKind;
 pub use surfaces::{Hull, ShownFaults};
 pub use transfer::{
@@ -66,6 +68,8 @@ pub struct Scene {
     pub libc: LibcSettings,
     /// Settings of PLTS.
     pub plts: PltsSettings,
+    /// How depths and values are held.
+    pub storage: Storage,
     /// Occlusion and lights.
     pub lighting: LightingSpec,
     /// Which cells are drawn.
@@ -97,6 +101,7 @@ impl Default for Scene {
             srg: SrgSettings::default(),
             libc: LibcSettings::default(),
             plts: PltsSettings::default(),
+            storage: Storage::default(),
             lighting: LightingSpec::default(),
             filter: Filter::default(),
             clip: Vec::new(),

@@ -41,7 +41,7 @@ pub use wells::Wells;
 use crate::image::Blending;
 use crate::model::{CellField, FaultFaces, Grid, Spaces};
 use crate::scene::{
-    CameraSpec, Interpolation, LibcSettings, PltsSettings, SrgSettings, StrategyKind,
+    CameraSpec, Interpolation, LibcSettings, PltsSettings, SrgSettings, Storage, StrategyKind,
 };
 use crate::transfer::TransferFunction;
 use bounds::box_corners;
@@ -138,6 +138,8 @@ pub struct Sampling {
     pub plts: PltsSettings,
     /// Settings of the resampled-grid strategy.
     pub srg: SrgSettings,
+    /// How depths and values are held.
+    pub storage: Storage,
 }
 
 /// What is written beside and over an image.

@@ -146,6 +146,7 @@ fn sampling(
         libc: scene.libc,
         plts: scene.plts,
         srg: srg(scene, dims)?,
+        storage: scene.storage,
     })
 }
 

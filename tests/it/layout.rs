@@ -257,6 +257,8 @@ fn twins() -> BTreeMap<String, Number> {
         ("LIST_OFFSET", layout::LIST_OFFSET),
         ("BIN_IS_ODD", layout::BIN_IS_ODD),
         ("MAX_CLIP_PLANES", layout::MAX_CLIP_PLANES as u32),
+        ("BLOCK", layout::BLOCK),
+        ("BLOCK_WORDS", layout::BLOCK_WORDS),
         ("BRICK", layout::BRICK),
         ("RUN", layout::RUN),
         ("SHEET_LAYERS", layout::SHEET_LAYERS),

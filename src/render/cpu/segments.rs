@@ -1,4 +1,4 @@
-//! Parts of a ray in one cell, each integrated as a whole.
+//! Parts of a ray in one cell, each integrated as a whole. The twin of `shaders/shared/segments.wgsl`.
 
 use glam::{Vec3A, Vec4};
 

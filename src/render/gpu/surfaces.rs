@@ -39,8 +39,8 @@ pub fn constants(surfaces: Surfaces) -> [(&'static str, f64); 6] {
 
 /// Finds surface points and gives them colors.
 pub struct SurfacePainter {
-    peel: RasterPipeline,
-    /// Compiled when it is first asked for.
+    /// Compiled when they are first asked for.
+    peel: Option<Arc<RasterPipeline>>,
     paint: Option<Arc<Pipeline>>,
     surfaces: Surfaces,
     shown: Option<ShownSurfaces>,
@@ -69,13 +69,10 @@ struct ShownSurfaces {
 }
 
 impl SurfacePainter {
-    /// Compiles the shader that finds points.
-    ///
-    /// # Errors
-    /// When the driver refuses it.
-    pub fn new(gpu: &Gpu) -> Result<Self, RenderError> {
-        Ok(Self {
-            peel: RasterPipeline::new(gpu, "peel", &[FORMAT])?,
+    /// With nothing to find.
+    pub fn new(gpu: &Gpu) -> Self {
+        Self {
+            peel: None,
             paint: None,
             surfaces: Surfaces::default(),
             shown: None,
@@ -87,7 +84,7 @@ impl SurfacePainter {
             tubes: None,
             tube_target: None,
             nothing: faces::texture(gpu, [1; 2], FORMAT),
-        })
+        }
     }
 
     /// True where the boundary faces of all drawn cells are the hull.
@@ -112,7 +109,9 @@ impl SurfacePainter {
     ) -> Result<(), RenderError> {
         self.surfaces = view.style.surfaces;
         let shading = Shading::of(&view.style.lighting);
-        let constants = [&constants(self.surfaces)[..], &shading.pairs()].concat();
+        let of_grid = [grid.constants().storage()];
+        self.peel = Some(RasterPipeline::variant(gpu, "peel", &[FORMAT], &of_grid)?);
+        let constants = [&of_grid[..], &constants(self.surfaces), &shading.pairs()].concat();
         self.paint = Some(Pipeline::variant(gpu, "paint", "main", &constants)?);
         let is_known = |s: &ShownSurfaces| s.revision == grid.revisions.surfaces;
         let shown = match self.shown.take().filter(is_known) {
@@ -151,7 +150,7 @@ impl SurfacePainter {
     ) {
         let tubes = self.tubes.as_ref();
         self.tube_target = tubes.map(|points| tube_target(round.gpu, points, origin, round.size));
-        let Some(shown) = &self.shown else {
+        let (Some(shown), Some(peel)) = (&self.shown, &self.peel) else {
             return;
         };
         let layers = layers(self.surfaces);
@@ -178,8 +177,8 @@ impl SurfacePainter {
                     faces.numbers.as_entire_binding(),
                     wgpu::BindingResource::TextureView(&before),
                 ];
-                let own = round.gpu.bind(&self.peel.own, &own);
-                pass.set_pipeline(&self.peel.pipeline);
+                let own = round.gpu.bind(&peel.own, &own);
+                pass.set_pipeline(&peel.pipeline);
                 pass.set_bind_group(3, &own, &[]);
                 pass.draw(0..6 * faces.count, 0..1);
             }

@@ -256,6 +256,10 @@ pub const COLUMN_FLAG: u32 = 0x4000_0000;
 pub const LIST_OFFSET: u32 = 0x3fff_ffff;
 /// Flag of a bin where points are found only by a search of all cells.
 pub const BIN_IS_ODD: u32 = 0x8000_0000;
+/// Numbers of a block of those that take 16 bits.
+pub const BLOCK: u32 = 32;
+/// Words of a block.
+pub const BLOCK_WORDS: u32 = 1 + BLOCK / 2;
 /// Voxels along one side of a brick.
 pub const BRICK: u32 = 8;
 /// Voxels that a thread fills one after the other, downward.
