@@ -19,6 +19,7 @@
 #import surfaces
 #import facing
 #import projection
+#import segments
 
 // Rays go on across faults and collapsed layers.
 override CROSSES: bool = true;
@@ -60,10 +61,6 @@ const MOST_STALLS: u32 = 32u;
 // Recoveries of one ray after which it counts as lost.
 const MOST_RECOVERIES: u32 = 1000u;
 const NOWHERE: f32 = -1e30;
-// Optical depth and part of the value range that one piece of a segment may have.
-const PIECE_DEPTH: f32 = 0.5;
-const PIECE_RANGE: f32 = 0.05;
-const MOST_PIECES: f32 = 16.0;
 
 struct Walk {
     phase: u32,
@@ -196,7 +193,7 @@ fn begin(@builtin(global_invocation_id) id: vec3u) {
     let pixel = tile.origin + id.xy;
     let whole = ray_of(pixel);
     let layers = layers_of(pixel, 0u);
-    let ray = before_hull(whole, layers);
+    let ray = before_opaque(whole, layers);
     var walk: Walk;
     var tally: Tally;
     walk.done = ray.enter;
@@ -248,7 +245,7 @@ fn walk(@builtin(global_invocation_id) id: vec3u) {
     var walk = load_walk(number);
     let place = in_tile(number);
     var layers = layers_of(tile.origin + place, walk.passed);
-    let ray = before_hull(ray_of(tile.origin + place), layers);
+    let ray = before_opaque(ray_of(tile.origin + place), layers);
     let r = frame_of(ray);
     let sums = bitcast<vec4f>(ray_states[LIBC_STATE * number]);
     var sum = Accumulated(sums.rgb, sums.a);
@@ -482,8 +479,8 @@ fn cross_fault(walk: ptr<function, Walk>, r: RayFrame) {
 
 // True where the ray passes below the upper or lower edge of a layer between two pillars.
 fn is_below(r: RayFrame, a: Pillar, b: Pillar, lists: vec2u, layer: u32, bottom: u32, sense: f32) -> bool {
-    let p = project(r, a, depths[list_entry(lists.x, layer, bottom)]);
-    let q = project(r, b, depths[list_entry(lists.y, layer, bottom)]);
+    let p = project(r, a, depth_at(list_entry(lists.x, layer, bottom)));
+    let q = project(r, b, depth_at(list_entry(lists.y, layer, bottom)));
     return sense * cross2d(p, q) > 0.0;
 }
 
@@ -505,10 +502,11 @@ fn segment_value(s: Segment, t: f32) -> f32 {
 }
 
 // Adds what lies between the current place of the ray and its exit at distance `t`; false where the ray
-// pauses before. Surfaces lie on faces, so those that are nearer than the exit lie at the entry.
+// pauses before. Surfaces lie on faces, so those that are nearer than the exit lie at the entry, and what is
+// opaque ends the ray.
 fn integrate(walk: ptr<function, Walk>, sum: ptr<function, Accumulated>, layers: ptr<function, Layers>, ray: Ray,
     t: f32, uvw: vec3f, tally: ptr<function, Tally>) -> bool {
-    while blend_layer(layers, sum, 0.5 * ((*walk).t + t)) {}
+    while blend_layer(layers, sum, 0.5 * ((*walk).t + min(t, ray.leave))) {}
     var s: Segment;
     s.t = (*walk).t;
     s.length = max(t - s.t, 1e-20);
@@ -519,7 +517,7 @@ fn integrate(walk: ptr<function, Walk>, sum: ptr<function, Accumulated>, layers:
         s.top = values_at(layer_entries(lists, (*walk).layer, 0u));
         s.bottom = values_at(layer_entries(lists, (*walk).layer, 1u));
     } else {
-        s.top = vec4f(values[drawn_rank((*walk).column, (*walk).layer)]);
+        s.top = vec4f(cell_value((*walk).column, (*walk).layer));
         s.bottom = s.top;
     }
     let is_ghost = is_ghost((*walk).column, (*walk).layer);
@@ -581,14 +579,7 @@ fn lit(entry: vec4f, ray: Ray, t: f32, is_ghost: bool, tally: ptr<function, Tall
     return entry;
 }
 
-// Adds a stretch of one color and an optical depth.
-fn absorb(a: Accumulated, color: vec4f, optical_depth: f32) -> Accumulated {
-    let passed = exp(-optical_depth);
-    return Accumulated(a.color + a.transmittance * (1.0 - passed) * color.rgb, a.transmittance * passed);
-}
-
-// The segment in pieces so small that the order of colors within one does not matter; in each the means
-// of extinction and color over its values are differences of integrals.
+// Adds a segment in pieces.
 fn integrate_segment(s: Segment, sum: ptr<function, Accumulated>, ray: Ray, from_t: f32, to_t: f32,
     tally: ptr<function, Tally>) {
     if to_t <= from_t {
@@ -598,16 +589,13 @@ fn integrate_segment(s: Segment, sum: ptr<function, Accumulated>, ray: Ray, from
     let first = segment_value(s, from_t);
     let middle = segment_value(s, from_t + 0.5 * length);
     let last = segment_value(s, to_t);
-    let depth = length * max(max(transfer(first).w, transfer(middle).w), transfer(last).w);
-    let range = (max(max(first, middle), last) - min(min(first, middle), last)) * frame.value_scale;
-    let pieces = clamp(ceil(max(depth / PIECE_DEPTH, range / PIECE_RANGE)), 1.0, MOST_PIECES);
+    let pieces = piece_count(vec3f(first, middle, last), length);
     var before = first;
     for (var n = 1.0; n <= pieces && is_open(*sum); n += 1.0) {
         let value = segment_value(s, from_t + length * n / pieces);
-        let mean = transfer_mean(before, value);
-        let entry = vec4f(mean.rgb / max(mean.w, 1e-30), mean.w);
+        let entry = piece_entry(before, value);
         let middle = from_t + length * (n - 0.5) / pieces;
-        *sum = absorb(*sum, lit(entry, ray, middle, false, tally), mean.w * length / pieces);
+        *sum = absorb(*sum, lit(entry, ray, middle, false, tally), entry.w * length / pieces);
         before = value;
         (*tally).samples += 1u;
         (*tally).work += 1u;

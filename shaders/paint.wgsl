@@ -8,7 +8,7 @@
 #import surfaces
 
 @group(3) @binding(0) var<uniform> paint: PaintInfo;
-// Face number + 1, or 0, and the bits of its distance.
+// Face number + 1, or 0, and the bits of its distance; of tubes a color in 10 bits a channel below a bit that is set.
 @group(3) @binding(1) var points: texture_2d<u32>;
 // Faces on faults, in rising order, each with the number of its color.
 @group(3) @binding(2) var<storage, read> fault_faces: array<vec2u>;
@@ -34,7 +34,13 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         store_layer(first + paint.layer, Layer(NO_LAYER, vec3f(0.0), 0.0));
         return;
     }
-    insert(first, layer_at(point.x - 1u, bitcast<f32>(point.y), pixel_ray(tile.origin + in_part)));
+    let ray = pixel_ray(tile.origin + in_part);
+    let distance = bitcast<f32>(point.y);
+    if paint.look == LOOK_TUBE {
+        insert(first, tube_layer(point.x, distance, ray));
+    } else {
+        insert(first, layer_at(point.x - 1u, distance, ray));
+    }
     count(COUNT_WORK, PAINT_WORK + select(lighting.work, 0u, paint.look == LOOK_FAINT));
 }
 
@@ -46,6 +52,12 @@ fn insert(first: u32, layer: Layer) {
         at -= 1u;
     }
     store_layer(at, layer);
+}
+
+// A point of a well, which carries no number, as ghosts do.
+fn tube_layer(packed: u32, distance: f32, ray: PixelRay) -> Layer {
+    let color = vec3f((vec3u(packed) >> vec3u(20u, 10u, 0u)) & vec3u(0x3ffu)) / 1023.0;
+    return Layer(distance, shade(color, ray.origin + distance * ray.direction, true), 1.0);
 }
 
 fn layer_at(face: u32, distance: f32, ray: PixelRay) -> Layer {
@@ -96,13 +108,13 @@ fn fault_color(face: u32) -> vec4f {
 
 fn value_on(column: u32, layer: u32, side: u32, at: vec2f) -> f32 {
     if frame.interpolation == INTERPOLATION_CELL {
-        return values[drawn_rank(column, layer)];
+        return cell_value(column, layer);
     }
     let lists = column_lists(column);
     var corners: vec4f;
     for (var n = 0u; n < 4u; n++) {
         let corner = face_corner(side, n);
-        corners[n] = values[list_entry(lists[corner & 3u], layer, corner >> 2u)];
+        corners[n] = value_at(list_entry(lists[corner & 3u], layer, corner >> 2u));
     }
     let pair = mix(corners.xz, corners.yw, at.x);
     return mix(pair.x, pair.y, at.y);
@@ -116,7 +128,7 @@ fn spot_on(column: u32, layer: u32, side: u32, r: RayFrame, steps: mat2x3f) -> S
     var q: array<vec3f, 4>;
     for (var n = 0u; n < 4u; n++) {
         let corner = face_corner(side, n);
-        let depth = depths[list_entry(lists[corner & 3u], layer, corner >> 2u)];
+        let depth = depth_at(list_entry(lists[corner & 3u], layer, corner >> 2u));
         corners[n] = from_origin(r, load_pillar(numbers[corner & 3u]), depth);
         q[n] = projected(r, corners[n]);
     }

@@ -47,7 +47,7 @@ fn begin(@builtin(global_invocation_id) id: vec3u) {
     }
     let pixel = tile.origin + id.xy;
     let whole = ray_of(pixel);
-    let ray = before_hull(whole, layers_of(pixel, 0u));
+    let ray = before_opaque(whole, layers_of(pixel, 0u));
     let entry = textureLoad(entries, vec2i(id.xy), 0).xy;
     let exit = textureLoad(exits, vec2i(id.xy), 0).xy;
     let enter = select(bitcast<f32>(entry.y), ray.enter, ray.starts_inside);

@@ -17,6 +17,9 @@ const PASSAGE_MARGIN: f32 = 0.02;
 const MOST_TRIED: u32 = 8u;
 // Faces and bins that are looked at in one go, about.
 const MOST_LOOKED: u32 = 2000u;
+// Behind a face, and how far behind the face that it seems to begin at a cell is looked for again, at first: in samples.
+const BEHIND: f32 = 1e-3;
+const LATER: f32 = 0.1;
 const FAR_AWAY: f32 = 1e30;
 // Instead of a face: none up to the place; or all is to be searched from there on.
 const NO_FACE: u32 = 0xffffffffu;
@@ -57,15 +60,19 @@ fn find_behind_faces(track: ptr<function, Track>, ray: Ray, n: f32) -> f32 {
     let is_given = (*track).has_paused;
     (*track).has_paused = false;
     let leaves = (*track).has_last && (*track).gap == 0.0 && !is_given;
-    let is_searched = leaves || (n == 0.0 && ray.starts_inside);
+    let is_searched = leaves || (!(*track).has_last && (*track).gap == 0.0 && ray.starts_inside);
     for (var attempt = select(0u, MOST_TRIED, is_searched); attempt < MOST_TRIED; attempt++) {
         if !is_given {
             let passage = next_passage(look, track);
-            let at = ceil(passage.near);
-            if at > look.n {
+            // Where it is tried first: at a sample, or past a face where that is flat.
+            let begin = select(ceil(passage.near), passage.near, BY_SEGMENT);
+            let at = select(begin, min(passage.far + BEHIND, passage.near + LATER), BY_SEGMENT);
+            if begin > look.n {
                 if until >= look.n {
                     // A cell that was tried may begin behind this sample.
-                    return pass_by(track, look.n + 1.0 - n);
+                    let stride = clamp(look.n - look.tried.near, LATER, 1.0);
+                    let later = select(look.n + 1.0, min(until + BEHIND, look.n + stride), BY_SEGMENT);
+                    return pass_by(track, later - n);
                 }
                 if passage.face == ODD_BIN || passage.turn < 0.0 {
                     // The samples up to there lie in a cell, or may do so.
@@ -92,7 +99,10 @@ fn find_behind_faces(track: ptr<function, Track>, ray: Ray, n: f32) -> f32 {
             break;
         }
     }
-    return pass_by(track, look.n - n) + find(track, ray.base + look.n * ray.advance, ray.advance, frame.interpolation);
+    let passed = pass_by(track, look.n - n);
+    let more = find(track, ray.base + look.n * ray.advance, ray.advance, frame.interpolation);
+    // Behind a cell the next one may begin before the next sample.
+    return passed + select(more, min(more, LATER), BY_SEGMENT && leaves);
 }
 
 // Counts samples that lie in no cell.
@@ -179,7 +189,7 @@ fn meet(r: RayFrame, number: u32) -> Passage {
     var q: array<vec3f, 4>;
     for (var n = 0u; n < 4u; n++) {
         let corner = face_corner(side, n);
-        let depth = depths[list_entry(lists[corner & 3u], layer, corner >> 2u)];
+        let depth = depth_at(list_entry(lists[corner & 3u], layer, corner >> 2u));
         q[n] = project(r, load_pillar(pillars[corner & 3u]), depth);
     }
     let a = cross2d(q[0], q[1]);

@@ -60,7 +60,7 @@ fn load_cell(column: u32, layer: u32, interpolation: u32) -> Cell {
         top_values = values_at(top_entries);
         bottom_values = values_at(bottom_entries);
     } else {
-        top_values = vec4f(values[drawn_rank(column, layer)]);
+        top_values = vec4f(cell_value(column, layer));
         bottom_values = top_values;
     }
     let c0 = vec4f(0.0, 0.0, 0.0, top_values.x);

@@ -11,16 +11,20 @@
 //   in 2 x 16 bits;
 // - columns of the bins, two a pair.
 @group(1) @binding(1) var<storage, read> grid_words: array<vec2u>;
-@group(1) @binding(2) var<storage, read> depths: array<f32>;
+// Depths and values are f32, or in blocks where they take 16 bits: a word with the smallest number in steps above the
+// exponent of the step, and two words for each four numbers, how many steps each lies above the smallest.
+@group(1) @binding(2) var<storage, read> depth_words: array<u32>;
 // One bit a cell, column by column. A pair for each 32 cells: bits of the drawn ones, and how many are drawn
 // before; then, two words a pair, where inactive cells are shown the bits of these, and where rays pass what shows
 // nothing those of the cells that they meet.
 @group(1) @binding(3) var<storage, read> cell_bits: array<vec2u>;
 // One value a drawn cell, or one a depth-list entry, by frame.interpolation.
-@group(1) @binding(4) var<storage, read> values: array<f32>;
+@group(1) @binding(4) var<storage, read> value_words: array<u32>;
 
 // Inactive cells are shown, and drawn as any other but for their look.
 override GHOSTS: bool = false;
+// Depths and values take 16 bits.
+override PACKED_GRID: bool = false;
 
 struct Pillar {
     at: vec2f,
@@ -108,12 +112,39 @@ fn layer_entries(lists: vec4u, layer: u32, bottom: u32) -> vec4u {
     );
 }
 
+fn depth_at(entry: u32) -> f32 {
+    if !PACKED_GRID {
+        return bitcast<f32>(depth_words[entry]);
+    }
+    let block = BLOCK_WORDS * (entry / BLOCK);
+    return unpacked(depth_words[block], depth_words[block + 1u + entry % BLOCK / 2u], entry);
+}
+
+fn value_at(entry: u32) -> f32 {
+    if !PACKED_GRID {
+        return bitcast<f32>(value_words[entry]);
+    }
+    let block = BLOCK_WORDS * (entry / BLOCK);
+    return unpacked(value_words[block], value_words[block + 1u + entry % BLOCK / 2u], entry);
+}
+
+// A number of a block from its first word and the one that has it: steps are powers of two, and no bit is lost.
+fn unpacked(head: u32, pair: u32, entry: u32) -> f32 {
+    let above = pair >> (16u * (entry & 1u)) & 0xffffu;
+    return f32((bitcast<i32>(head) >> 8u) + i32(above)) * bitcast<f32>((head & 0xffu) << 23u);
+}
+
+// The value of a drawn cell, where values are constant in cells.
+fn cell_value(column: u32, layer: u32) -> f32 {
+    return value_at(drawn_rank(column, layer));
+}
+
 fn depths_at(entries: vec4u) -> vec4f {
-    return vec4f(depths[entries.x], depths[entries.y], depths[entries.z], depths[entries.w]);
+    return vec4f(depth_at(entries.x), depth_at(entries.y), depth_at(entries.z), depth_at(entries.w));
 }
 
 fn values_at(entries: vec4u) -> vec4f {
-    return vec4f(values[entries.x], values[entries.y], values[entries.z], values[entries.w]);
+    return vec4f(value_at(entries.x), value_at(entries.y), value_at(entries.z), value_at(entries.w));
 }
 
 fn all_coincide(a: vec4f, b: vec4f) -> bool {

@@ -266,6 +266,9 @@ const LIST_OFFSET: u32 = 0x3fffffffu;
 const COINCIDENT: f32 = 1e-3;
 // Flag of a bin, in the position of its first entry: points there are found only by a search of all cells.
 const BIN_IS_ODD: u32 = 0x80000000u;
+// Numbers of a block of those that take 16 bits, and words that these take.
+const BLOCK: u32 = 32u;
+const BLOCK_WORDS: u32 = 17u;
 // Voxels along one side of a brick.
 const BRICK: u32 = 8u;
 // Voxels that a thread fills one after the other, downward.
@@ -298,6 +301,7 @@ const PACKED_GHOST: u32 = 2047u;
 // What a layer shows: values or faults; or that there is something.
 const LOOK_COLORED: u32 = 0u;
 const LOOK_FAINT: u32 = 1u;
+const LOOK_TUBE: u32 = 2u;
 // Points of sheets that a ray meets, at most.
 const SHEET_LAYERS: u32 = 4u;
 // Loop iterations that a point of a surface costs beside its light, about.

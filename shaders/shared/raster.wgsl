@@ -31,7 +31,7 @@ fn face_vertex(face: u32, vertex: u32) -> Corner {
     let pillars_of = pillar_index(column);
     let lists = column_lists(column);
     let pillar = load_pillar(pillars_of[corner & 3u]);
-    let depth = depths[list_entry(lists[corner & 3u], layer, corner >> 2u)];
+    let depth = depth_at(list_entry(lists[corner & 3u], layer, corner >> 2u));
     let from_eye = vec3f((pillar.at - frame.eye.xy) + (pillar.low_bits + pillar.slope * depth), depth - frame.eye.z);
     let depth_in_view = dot(frame.view_z, from_eye);
     let w = mix(depth_in_view, 1.0, frame.is_parallel);

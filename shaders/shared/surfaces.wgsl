@@ -6,8 +6,10 @@
 #import transfer
 
 override SURFACES: bool = false;
-// The hull is opaque: it ends rays, and is the only layer.
+// The hull is opaque: it ends rays, and all layers are opaque.
 override HULL: bool = false;
+// Rays may meet tubes of wells, which are opaque.
+override TUBES: bool = false;
 // How many layers a ray has.
 override LAYERS: u32 = 1u;
 
@@ -86,14 +88,33 @@ fn blend_layer(layers: ptr<function, Layers>, sum: ptr<function, Accumulated>, d
     return true;
 }
 
-// A ray up to the hull, which ends it; nothing of it where nothing can be in front: only ghosts are outside.
-fn before_hull(ray: Ray, layers: Layers) -> Ray {
+// A ray up to the first opaque layer, which ends it. Nothing of it is left where that is the hull and nothing can be in
+// front: only ghosts are outside.
+fn before_opaque(ray: Ray, layers: Layers) -> Ray {
     var cut = ray;
-    if SURFACES && HULL && layers.distance < NO_LAYER {
-        let has_more = ray.starts_inside || GHOSTS;
-        let samples = ceil(layers.distance / frame.step - 0.5) - ray.first;
+    let distance = opaque_distance(layers);
+    if distance < NO_LAYER {
+        let has_more = !HULL || ray.starts_inside || GHOSTS;
+        let samples = ceil(distance / frame.step - 0.5) - ray.first;
         cut.count = select(0.0, clamp(samples, 0.0, ray.count), has_more);
-        cut.leave = select(ray.enter, min(ray.leave, layers.distance), has_more);
+        cut.leave = select(ray.enter, min(ray.leave, distance), has_more);
     }
     return cut;
+}
+
+// Distance of the first opaque layer: of an opaque hull or of a tube.
+fn opaque_distance(layers: Layers) -> f32 {
+    if !SURFACES || !(HULL || TUBES) {
+        return NO_LAYER;
+    }
+    if HULL {
+        return layers.distance;
+    }
+    for (var n = layers.passed; n < LAYERS; n++) {
+        let layer = load_layer(layers.first + n);
+        if layer.distance >= NO_LAYER || layer.opacity >= 1.0 {
+            return layer.distance;
+        }
+    }
+    return NO_LAYER;
 }

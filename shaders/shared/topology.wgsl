@@ -7,6 +7,11 @@
 const TOPOLOGICAL_LIMIT: u32 = 6u;
 // Steps below this end the iteration while marching; the error left is of its square.
 const MARCH_ENOUGH: f32 = 5e-4;
+// The same where no sample is taken at the place.
+const WAY_ENOUGH: f32 = 1e-2;
+
+// Ways through cells are followed, and places between the samples are found too.
+override BY_SEGMENT: bool = false;
 
 // Where a line of samples has come to, and what that cost.
 struct Track {
@@ -69,15 +74,7 @@ fn take(track: ptr<function, Track>, location: Location) -> f32 {
 // where samples outside all cells have come to an end, at one that is found or at the end of the line, which is
 // `left` samples ahead. Returns how many samples lie in no cell, this one included.
 fn settle(track: ptr<function, Track>, point: vec3f, advance: vec3f, left: f32, interpolation: u32) -> f32 {
-    var passed = 0.0;
-    if (*track).in_doubt {
-        var location: Location;
-        location.in_doubt = true;
-        location.skip = 1.0;
-        locate_thoroughly(Query(point, vec3f(0.0), MARCH_ENOUGH, interpolation), &location);
-        passed = take(track, location);
-        (*track).lost_in_gap += select(0u, 1u, location.is_lost);
-    }
+    let passed = settle_doubt(track, point, interpolation);
     if (*track).has_cell || passed >= left {
         let lost = max(lost_at_ends(*track, point + passed * advance, advance, interpolation), (*track).lost_in_gap);
         (*track).lost += lost;
@@ -90,6 +87,19 @@ fn settle(track: ptr<function, Track>, point: vec3f, advance: vec3f, left: f32, 
         }
     }
     return passed;
+}
+
+// Locates a sample that is in doubt. Returns how many samples lie in no cell, this one included.
+fn settle_doubt(track: ptr<function, Track>, point: vec3f, interpolation: u32) -> f32 {
+    if !(*track).in_doubt {
+        return 0.0;
+    }
+    var location: Location;
+    location.in_doubt = true;
+    location.skip = 1.0;
+    locate_thoroughly(Query(point, vec3f(0.0), MARCH_ENOUGH, interpolation), &location);
+    (*track).lost_in_gap += select(0u, 1u, location.is_lost);
+    return take(track, location);
 }
 
 // Counts the cell of the last sample where the line has come into it.
@@ -148,7 +158,7 @@ fn try_from(track: ptr<function, Track>, cell: vec2u, point: vec3f, interpolatio
 fn walk_to(track: ptr<function, Track>, point: vec3f, first: vec3f, interpolation: u32) -> bool {
     var start = first;
     for (var attempt = 0u; attempt <= TOPOLOGICAL_LIMIT; attempt++) {
-        let s = solve((*track).cell, relative_to((*track).cell, point), start, MARCH_ENOUGH);
+        let s = solve((*track).cell, relative_to((*track).cell, point), start, select(MARCH_ENOUGH, WAY_ENOUGH, BY_SEGMENT));
         (*track).solution = s;
         (*track).iterations += s.iterations;
         (*track).work += s.iterations + 2u;

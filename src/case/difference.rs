@@ -2,7 +2,9 @@
 
 use std::sync::Arc;
 
-use super::{About, Case, CaseError, FieldCache, Kind, OverSteps, Property, Source, Step};
+use super::{
+    About, Case, CaseError, FieldCache, Kind, OverSteps, Property, Source, Step, Well, WellsOfSteps,
+};
 use crate::model::CellField;
 
 /// Stands for the step shown, in place of another one's.
@@ -202,6 +204,7 @@ pub fn minus(
         }),
         cache: FieldCache::default(),
         over_steps: OverSteps::default(),
+        wells: WellsOfSteps::default(),
         minus: Some(Minus {
             name: name.to_owned(),
             now: now.to_owned(),
@@ -262,6 +265,10 @@ struct Subtracted {
 }
 
 impl Source for Subtracted {
+    fn wells(&self, step: usize) -> Result<Vec<Well>, CaseError> {
+        Ok(self.of[0].wells(step)?.to_vec())
+    }
+
     fn values(&self, name: &str, step: usize) -> Result<Option<Vec<f32>>, CaseError> {
         let [a, b] = &self.of;
         if name != self.own {

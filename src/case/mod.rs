@@ -6,6 +6,7 @@ pub mod load;
 mod over_steps;
 pub mod save;
 mod weights;
+mod wells;
 
 use std::sync::Arc;
 
@@ -18,6 +19,7 @@ use crate::model::{CellField, FaultFaces, Grid, Ijk};
 pub use difference::{Difference, Minus, difference_name, minus, nearest};
 pub use over_steps::{Categories, MAX_CATEGORIES, OverSteps, ValueRange};
 pub use weights::{Extent, Weighting, Weights};
+pub use wells::{Connection, ConnectionAxis, Well, WellKind, WellsOfSteps};
 
 /// Where a property's values come from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
@@ -193,6 +195,14 @@ pub trait Source: Send + Sync {
     /// # Errors
     /// When the file cannot be read.
     fn values(&self, name: &str, step: usize) -> Result<Option<Vec<f32>>, CaseError>;
+
+    /// The wells at a step; none where the files have none.
+    ///
+    /// # Errors
+    /// When the file cannot be read.
+    fn wells(&self, _step: usize) -> Result<Vec<Well>, CaseError> {
+        Ok(Vec::new())
+    }
 }
 
 /// One grid, its properties and time steps.
@@ -213,6 +223,8 @@ pub struct Case {
     pub source: Box<dyn Source>,
     /// Fields used last.
     pub cache: FieldCache,
+    /// Wells of steps, once read.
+    pub wells: WellsOfSteps,
     /// What was found out of properties over all steps.
     pub over_steps: OverSteps,
     /// The property that is a difference to another case, of a case made by [`minus`].
@@ -256,6 +268,14 @@ impl Case {
         let field = Arc::new(self.computed(name, step)?);
         self.cache.keep(name, step, &field);
         Ok(field)
+    }
+
+    /// The wells at a step, kept once they are read.
+    ///
+    /// # Errors
+    /// When the file cannot be read.
+    pub fn wells(&self, step: usize) -> Result<Arc<Vec<Well>>, CaseError> {
+        self.wells.get(step, || self.source.wells(step))
     }
 
     fn computed(&self, name: &str, step: usize) -> Result<CellField, CaseError> {

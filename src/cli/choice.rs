@@ -1,7 +1,7 @@
 //! Choices by name, as scene files have them, with a sentence for each.
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use strataray::scene::{Interpolation, LightMode, Mode, StrategyKind};
+use strataray::scene::{Interpolation, LightMode, Mode, Storage, StrategyKind};
 use strataray::view::TurnAxis;
 
 /// A name, what it stands for, and what that is in one sentence.
@@ -30,6 +30,15 @@ pub const INTERPOLATIONS: [NamedChoice<Interpolation>; 2] = [
         "vertex",
         Interpolation::Vertex,
         "Trilinear between averages at the vertices",
+    ),
+];
+
+pub const STORAGES: [NamedChoice<Storage>; 2] = [
+    ("exact", Storage::Exact, "As 32-bit numbers"),
+    (
+        "compact",
+        Storage::Compact,
+        "Rounded to 16 bits: half the memory on a GPU",
     ),
 ];
 

@@ -178,6 +178,7 @@ fn statistics(
         "lost_samples": stats.lost_samples,
         "cells": {"total": case.grid.dims().cells(), "active": case.grid.active_cells().len()},
         "gpu_bytes": frame.bytes,
+        "storage_error": frame.storage_error,
         "stages_ms": {
             "open": ms(stages.open.saturating_sub(load.model)),
             "read": ms(stages.read),

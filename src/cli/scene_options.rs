@@ -9,11 +9,11 @@ use strataray::render::{self, Executor};
 use strataray::scene::lighting::PRESETS;
 use strataray::scene::{
     CameraSpec, FramingCamera, Interpolation, LightMode, LightingSpec, Mode, Projection, Scene,
-    StepSpec, StrategyKind,
+    StepSpec, Storage, StrategyKind,
 };
 use strataray::view::look;
 
-use super::choice::{INTERPOLATIONS, LIGHT_MODES, MODES, STRATEGIES, one_of};
+use super::choice::{INTERPOLATIONS, LIGHT_MODES, MODES, STORAGES, STRATEGIES, one_of};
 use super::progress::Reporter;
 
 #[derive(clap::Args)]
@@ -33,6 +33,9 @@ pub struct SceneOptions {
     /// Values within a cell.
     #[arg(long, value_parser = one_of(&INTERPOLATIONS))]
     interpolation: Option<Interpolation>,
+    /// How depths and values are held.
+    #[arg(long, value_parser = one_of(&STORAGES))]
+    storage: Option<Storage>,
     /// Opaque cells, or rays through the inside; by default the one that shows more of the property.
     #[arg(long, value_parser = one_of(&MODES))]
     mode: Option<Mode>,
@@ -86,8 +89,8 @@ impl SceneOptions {
             written.insert("mode".into(), serde_json::to_value(mode)?);
         }
         let scene = self.over(look::opening(case, &written.into())?)?;
-        if let Some(sentence) = scene.not_drawn() {
-            reporter.note(sentence);
+        if scene.show.wells && case.about.wells.is_empty() {
+            reporter.note("the scene asks for wells, and this case has none");
         }
         Ok(scene)
     }
@@ -112,6 +115,9 @@ impl SceneOptions {
         }
         if let Some(interpolation) = self.interpolation {
             scene.interpolation = interpolation;
+        }
+        if let Some(storage) = self.storage {
+            scene.storage = storage;
         }
         if let Some(lighting) = &self.lighting {
             scene.lighting.clone_from(lighting);

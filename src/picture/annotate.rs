@@ -8,7 +8,7 @@ use super::info::Info;
 use super::layout::{LINE, Layout, Length, Parts};
 use super::legend::Key;
 use super::marks::mark_cells;
-use super::orientation::{Area, Orientation, Paper};
+use super::orientation::{Area, Orientation, Paper, well_names};
 use super::pen::Pen;
 use super::units::short_unit;
 use crate::case::{Case, Step};
@@ -211,19 +211,27 @@ fn over_volume(
     axes::draw_connections(&mut pen, view, size);
     if annotations.show_box {
         axes::draw_edges(&mut pen, image, &Orientation::box_edges(view, size));
-        let orientation = Orientation::of(
-            view,
-            &annotations.length_unit,
-            Paper {
-                size,
-                unit,
-                width: &|text| pen.canvas.text_width(text, unit),
-                is_dark: pen.dark_paper,
-                taken: Vec::new(),
-            },
-        );
-        axes::draw_marks(&mut pen, &orientation);
     }
+    let marks = {
+        let width = |text: &str| pen.canvas.text_width(text, unit);
+        let mut paper = Paper {
+            size,
+            unit,
+            width: &width,
+            is_dark: pen.dark_paper,
+            taken: Vec::new(),
+        };
+        let names = well_names(view, &paper);
+        let areas = names.iter().map(|name| name.area(width(&name.text)));
+        paper.taken.extend(areas);
+        let mut marks = match annotations.show_box {
+            true => Orientation::of(view, &annotations.length_unit, paper),
+            false => Orientation::default(),
+        };
+        marks.texts.extend(names);
+        marks
+    };
+    axes::draw_marks(&mut pen, &marks);
 }
 
 /// Draws title, legend and facts.
@@ -314,10 +322,12 @@ pub(super) mod tests {
                 libc: crate::scene::LibcSettings::default(),
                 plts: crate::scene::PltsSettings::default(),
                 srg: crate::scene::SrgSettings::default(),
+                storage: crate::scene::Storage::default(),
             },
             shown: Shown {
                 property: "SWAT".into(),
                 step: 0,
+                wells: std::sync::Arc::default(),
                 cells: ShownCells::new(
                     CellField::new(Vec::new()).into(),
                     Vec::new(),

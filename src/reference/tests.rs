@@ -133,10 +133,12 @@ fn view(grid: &Grid, field: CellField, extinction: f64, sampling_step: f64) -> V
             libc: crate::scene::LibcSettings::default(),
             plts: crate::scene::PltsSettings::default(),
             srg: crate::scene::SrgSettings::default(),
+            storage: crate::scene::Storage::default(),
         },
         shown: Shown {
             property: "TEST".into(),
             step: 0,
+            wells: std::sync::Arc::default(),
             connections: std::sync::Arc::default(),
             named_faults: std::sync::Arc::default(),
             chosen_faults: None,

@@ -40,11 +40,6 @@ pub enum RenderError {
         /// Bytes that fit.
         limit: u64,
     },
-    /// Only the executor on the CPU can do it.
-    #[error(
-        "a GPU cannot do {0} yet; choose the CPU (`--adapter cpu`), or take that out of the scene"
-    )]
-    CpuOnly(&'static str),
     /// A dispatch is larger than the adapter allows.
     #[error(
         "the shader {shader} would need {groups:?} workgroups and the adapter takes {limit} along an axis; make the image smaller"

@@ -24,7 +24,7 @@ pub use cpu::CpuExecutor;
 pub use error::RenderError;
 pub use job::Job;
 pub use line_of_sight::{LineOfSight, SurfacePoint};
-pub use stats::{DeviceBytes, Frame, FrameStats, LightTimes};
+pub use stats::{DeviceBytes, Frame, FrameStats, LightTimes, StorageError};
 
 use crate::model::{Grid, Ijk};
 use crate::view::View;

@@ -5,13 +5,15 @@
 //! A light volume is made anew with the extinction, and where its own emitter has changed; what is compiled, where
 //! its constants have.
 
+use crate::scene::Storage;
 use crate::view::View;
 
 /// Numbers that count up with each change of what a view shows of one grid, and never fall: what a canceled update
 /// has dropped is stale for good.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Revisions {
-    /// The cells that rays can meet: inactive ones, or none of them. The grid and its acceleration.
+    /// The cells that rays can meet: inactive ones, or none of them; and how they are held. The grid and its
+    /// acceleration.
     pub grid: u64,
     /// The drawn cells. Their bits, and lists of boundary faces.
     pub drawn: u64,
@@ -42,9 +44,9 @@ impl RevisionCounter {
         let changes = |differs: fn(&View, &View) -> bool| {
             self.last.as_ref().is_none_or(|last| differs(last, view))
         };
-        // Without ghosts the grid is there before the first view.
-        let had_ghosts = self.last.as_ref().is_some_and(has_ghosts);
-        let grid = had_ghosts != has_ghosts(view);
+        // The exact grid without ghosts is there before the first view.
+        let held = self.last.as_ref().map(held).unwrap_or_default();
+        let grid = held != self::held(view);
         let drawn = grid || changes(|a, b| a.shown.cells.drawn != b.shown.cells.drawn);
         let values = drawn || changes(|a, b| !a.shown.cells.is_same(&b.shown.cells));
         let transfer = changes(|a, b| colors(a) != colors(b));
@@ -71,8 +73,9 @@ impl RevisionCounter {
     }
 }
 
-fn has_ghosts(view: &View) -> bool {
-    view.shown.cells.ghosts.is_some()
+/// Whether a grid has ghosts, and how it is held.
+fn held(view: &View) -> (bool, Storage) {
+    (view.shown.cells.ghosts.is_some(), view.sampling.storage)
 }
 
 fn colors(view: &View) -> impl PartialEq {

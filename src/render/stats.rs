@@ -3,6 +3,8 @@
 use std::time::Duration;
 
 use crate::image::Image;
+use crate::scene::{Interpolation, StrategyKind};
+use crate::view::View;
 
 /// An image and what it cost.
 pub struct Frame {
@@ -16,6 +18,8 @@ pub struct Frame {
     pub light: LightTimes,
     /// Bytes on the device by purpose.
     pub bytes: DeviceBytes,
+    /// What holding the grid in fewer bits has changed.
+    pub storage_error: StorageError,
 }
 
 impl Frame {
@@ -25,6 +29,15 @@ impl Frame {
         let middle = frames.len() / 2;
         (middle < frames.len()).then(|| frames.swap_remove(middle))
     }
+}
+
+/// The largest changes that came of holding numbers in 16 bits; none where these are exact.
+#[derive(Debug, Clone, Copy, Default, PartialEq, serde::Serialize)]
+pub struct StorageError {
+    /// Of a depth, in the grid's length unit.
+    pub depth: f64,
+    /// Of a value, in the scale of the colors.
+    pub value: f64,
 }
 
 /// What a frame cost.
@@ -87,6 +100,30 @@ pub struct FrameStats {
     pub submissions: u32,
     /// Bytes of the image on the device.
     pub target_bytes: u64,
+}
+
+/// Bytes of a cell: four pillars, and depths of its corners.
+const CELL_BYTES: u64 = 4 * 24 + 8 * 4;
+/// Bytes of the values of a cell, by vertices and as one.
+const VALUE_BYTES: [u64; 2] = [8 * 4, 4];
+/// Bytes of the voxels around a sample of the resampled grid.
+const SAMPLE_BYTES: u64 = 8 * 4;
+
+impl FrameStats {
+    /// Bytes of geometry and values that the rays read at least: all of a cell each time that one is crossed or
+    /// looked up, and by SRG the voxels around each sample. Lists of faces, the acceleration grid, light and what
+    /// Newton's method reads again are not among them.
+    pub fn bytes_read(&self, view: &View) -> u64 {
+        let values = match view.shown.cells.interpolation {
+            Interpolation::Vertex => VALUE_BYTES[0],
+            Interpolation::Cell => VALUE_BYTES[1],
+        };
+        let of_cells = (self.cell_crossings + self.point_locations) * (CELL_BYTES + values);
+        match view.sampling.strategy {
+            StrategyKind::Srg => of_cells + SAMPLE_BYTES * self.samples,
+            StrategyKind::Plts | StrategyKind::Libc => of_cells,
+        }
+    }
 }
 
 /// Times that bringing the light up to date took, by stage; zero where nothing was to be done.

@@ -16,7 +16,9 @@ use serde::{Deserialize, Serialize};
 pub use camera::{AutomaticCamera, CameraSpec, ExplicitCamera, FramingCamera, Projection};
 pub use filter::{Filter, Indices, PropertyFilter};
 pub use lighting::{LightMode, LightingSpec};
-pub use settings::{ClipSpec, CutFace, Integration, LibcSettings, PltsSettings, SrgSettings};
+pub use settings::{
+    ClipSpec, CutFace, Integration, LibcSettings, PltsSettings, SrgSettings, Storage,
+};
 pub use strategy::StrategyKind;
 pub use surfaces::{Hull, ShownFaults};
 pub use transfer::{
@@ -66,6 +68,8 @@ pub struct Scene {
     pub libc: LibcSettings,
     /// Settings of PLTS.
     pub plts: PltsSettings,
+    /// How depths and values are held.
+    pub storage: Storage,
     /// Occlusion and lights.
     pub lighting: LightingSpec,
     /// Which cells are drawn.
@@ -97,20 +101,12 @@ impl Default for Scene {
             srg: SrgSettings::default(),
             libc: LibcSettings::default(),
             plts: PltsSettings::default(),
+            storage: Storage::default(),
             lighting: LightingSpec::default(),
             filter: Filter::default(),
             clip: Vec::new(),
             show: Show::default(),
         }
-    }
-}
-
-impl Scene {
-    /// One sentence where the scene asks for something that is not drawn yet.
-    pub fn not_drawn(&self) -> Option<&'static str> {
-        let sentence =
-            "the scene asks for wells (\"show\": {\"wells\": true}), which are not drawn yet";
-        self.show.wells.then_some(sentence)
     }
 }
 
@@ -182,7 +178,7 @@ pub struct Show {
     pub faults: ShownFaults,
     /// Lines between the cells of non-neighbor connections.
     pub nnc: bool,
-    /// Wells; not drawn yet, see [`Scene::not_drawn`].
+    /// Wells, with their names.
     pub wells: bool,
     /// Edges of the cells on hull, faults and opaque sections; where absent they are drawn in the mode `cells`.
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -49,7 +49,7 @@ impl Default for LibcSettings {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct PltsSettings {
-    /// What is integrated; segments on the CPU alone.
+    /// What is integrated.
     pub integration: Integration,
 }
 
@@ -69,6 +69,17 @@ pub enum Integration {
     Samples,
     /// The part of a ray in each cell as a whole, with integrals of the transfer function.
     Segments,
+}
+
+/// How depths and values are held where they are many.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Storage {
+    /// As f32.
+    #[default]
+    Exact,
+    /// In 16 bits, rounded; on a GPU that halves the memory they take.
+    Compact,
 }
 
 /// Settings of the strategy SRG. A switch that is a number is off at 0.

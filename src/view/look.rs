@@ -102,6 +102,13 @@ pub fn varies(case: &Case, property: &str) -> bool {
     }
 }
 
+/// True where wells of the last step are connected to cells.
+fn has_wells(case: &Case) -> bool {
+    let last = case.steps.len().saturating_sub(1);
+    let wells = case.wells(last).ok();
+    wells.is_some_and(|wells| wells.iter().any(|well| !well.connections.is_empty()))
+}
+
 /// The property shown where a scene names none: what the case is about.
 pub fn default_property(case: &Case) -> String {
     let has = |name: &&&str| case.properties.iter().any(|p| p.name == **name);
@@ -255,6 +262,7 @@ pub fn opening(case: &Case, written: &Value) -> Result<Scene, SceneError> {
         background: GROUND.into(),
         show: Show {
             hull: Hull::Faint,
+            wells: has_wells(case),
             ..Show::default()
         },
         mode: match written.get("mode") {

@@ -17,6 +17,7 @@ mod sequence;
 pub mod step;
 pub mod surfaces;
 pub mod voxels;
+pub mod wells;
 
 use std::sync::Arc;
 
@@ -35,11 +36,12 @@ pub use look::default_property;
 pub use resolve::resolve;
 pub use sequence::{Sequence, Turn};
 pub use surfaces::Surfaces;
+pub use wells::Wells;
 
 use crate::image::Blending;
 use crate::model::{CellField, FaultFaces, Grid, Spaces};
 use crate::scene::{
-    CameraSpec, Interpolation, LibcSettings, PltsSettings, SrgSettings, StrategyKind,
+    CameraSpec, Interpolation, LibcSettings, PltsSettings, SrgSettings, Storage, StrategyKind,
 };
 use crate::transfer::TransferFunction;
 use bounds::box_corners;
@@ -95,6 +97,8 @@ pub struct Shown {
     pub clip: Vec<ClipPlane>,
     /// Ends in world space of the connections that are marked: those of drawn cells.
     pub connections: Arc<Vec<[DVec3; 2]>>,
+    /// Wells of the step.
+    pub wells: Arc<Wells>,
     /// Which faces lie on faults that have a name.
     pub named_faults: Arc<FaultFaces>,
     /// By number of the named faults: true where the fault is drawn, of which those without a name are none;
@@ -134,6 +138,8 @@ pub struct Sampling {
     pub plts: PltsSettings,
     /// Settings of the resampled-grid strategy.
     pub srg: SrgSettings,
+    /// How depths and values are held.
+    pub storage: Storage,
 }
 
 /// What is written beside and over an image.

@@ -12,11 +12,11 @@ use super::framing::{self, Direction, Subject};
 use super::ghosts::Ghosts;
 use super::lighting::{self, Lighting};
 use super::look::default_property;
-use super::step::step_of;
+use super::step::{step_of, well_step};
 use super::voxels::Shape;
 use super::{
     Camera, ClipPlane, Notes, Sampling, Shown, ShownCells, Style, Surfaces, View, World, clip,
-    filter, surfaces,
+    filter, surfaces, wells,
 };
 use crate::case::Case;
 use crate::model::{CellField, Dims, Grid, Ijk, Spaces};
@@ -69,6 +69,17 @@ pub(super) fn resolve_over(
         box_corners,
     } = cells(&asked, [&field, &in_scale], &spaces, &clip)?;
     let world_bounds = bounds_of(&box_corners);
+    let wells = match scene.show.wells {
+        true => {
+            let measures = wells::Measures {
+                spaces: &spaces,
+                corners: &box_corners,
+                lateral: 0.5 * (edges.x + edges.y),
+            };
+            wells::shown(case, well_step(case, &scene.step), &measures)?
+        }
+        false => Arc::default(),
+    };
     let size = checked_size(scene.size)?;
     Ok(View {
         size,
@@ -85,7 +96,10 @@ pub(super) fn resolve_over(
             transfer,
             beyond,
             blending: scene.blending,
-            surfaces: Surfaces::of(scene),
+            surfaces: Surfaces {
+                wells: !wells.capsules.is_empty(),
+                ..Surfaces::of(scene)
+            },
             lighting: lighting(scene, case, &box_corners)?,
         },
         shown: Shown {
@@ -100,6 +114,7 @@ pub(super) fn resolve_over(
             },
             clip,
             connections,
+            wells,
             named_faults: case.fault_faces.clone(),
             chosen_faults: surfaces::chosen(&scene.show.faults, case)?,
         },
@@ -131,6 +146,7 @@ fn sampling(
         libc: scene.libc,
         plts: scene.plts,
         srg: srg(scene, dims)?,
+        storage: scene.storage,
     })
 }
 

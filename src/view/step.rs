@@ -15,6 +15,12 @@ pub(super) fn step_of(case: &Case, spec: &StepSpec, dynamic: bool) -> Result<usi
     })
 }
 
+/// The step of which wells are shown: the one that a scene names, whether or not its property changes with time.
+pub(super) fn well_step(case: &Case, spec: &StepSpec) -> usize {
+    let last = case.steps.len().saturating_sub(1);
+    step_of(case, spec, true).unwrap_or(last)
+}
+
 /// The steps that `chosen` names: `A..B` with both ends, each a number, a date, `first` or `last`;
 /// all where absent. Of these the first and each `every`th after it.
 ///

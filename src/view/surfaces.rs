@@ -71,6 +71,8 @@ pub struct Surfaces {
     pub hull: Hull,
     /// Faults are shown.
     pub faults: bool,
+    /// Wells are shown, and there are some.
+    pub wells: bool,
     /// Edges of cells are drawn on surfaces and opaque sections.
     pub cell_edges: bool,
     /// Cells with a value are solid: their faces and sections are all that is seen of them.
@@ -84,6 +86,7 @@ impl Surfaces {
         Self {
             hull: if solid { Hull::Opaque } else { scene.show.hull },
             faults: scene.show.faults.are_shown(),
+            wells: scene.show.wells,
             cell_edges: scene.show.cell_edges.unwrap_or(solid),
             solid,
         }
@@ -91,7 +94,7 @@ impl Surfaces {
 
     /// True where there are any: edges alone have nothing to be on but sections.
     pub fn are_shown(self) -> bool {
-        self.has_hull() || self.faults
+        self.has_hull() || self.faults || self.wells
     }
 
     /// True where the hull is shown.

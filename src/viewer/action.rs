@@ -6,7 +6,7 @@ use super::slices::Slicing;
 use super::state::{Comparison, CurvePlots, Playback, State};
 use crate::scene::{
     CameraSpec, ClipSpec, Filter, Interpolation, LibcSettings, LightingSpec, Mode, PltsSettings,
-    RangeSpec, Scene, Show, SrgSettings, StepSpec, StrategyKind, TransferSpec,
+    RangeSpec, Scene, Show, SrgSettings, StepSpec, Storage, StrategyKind, TransferSpec,
 };
 
 /// A change of a tab's state.
@@ -32,6 +32,8 @@ pub enum Action {
     Libc(LibcSettings),
     /// Settings of PLTS.
     Plts(PltsSettings),
+    /// How depths and values are held.
+    Storage(Storage),
     /// Distance of samples; `None` for the default.
     SamplingStep(Option<f64>),
     /// Occlusion and lights.
@@ -87,6 +89,7 @@ impl Action {
             Self::Transfer(_) => "transfer function",
             Self::Strategy(_) => "strategy",
             Self::Srg(_) | Self::Libc(_) | Self::Plts(_) => "strategy settings",
+            Self::Storage(_) => "storage",
             Self::SamplingStep(_) => "sampling step",
             Self::Lighting(_) => "lighting",
             Self::Filter(_) => "filter",
@@ -118,6 +121,7 @@ impl Action {
             Self::Srg(v) => scene.srg = v,
             Self::Libc(v) => scene.libc = v,
             Self::Plts(v) => scene.plts = v,
+            Self::Storage(v) => scene.storage = v,
             Self::SamplingStep(v) => scene.sampling_step = v,
             Self::Lighting(v) => scene.lighting = v,
             Self::Filter(v) => scene.filter = v,

@@ -4,7 +4,9 @@ use eframe::egui::{self, Align2, Color32, FontId, Painter, Pos2, Rect, Stroke, v
 use glam::DVec2;
 
 use super::job::Picture;
-use crate::picture::{Annotations, Arrow, CONNECTION, Orientation, Paper, Text, on_screen};
+use crate::picture::{
+    Annotations, Arrow, CONNECTION, Orientation, Paper, Text, on_screen, well_names,
+};
 use crate::view::View;
 
 /// Height of letters in and beside pictures, in points.
@@ -26,9 +28,28 @@ pub fn draw(
             painter.line_segment(line.map(|at| place(rect, at)), stroke);
         }
     }
+    let width = |text: &str| width(painter, text);
+    let mut paper = Paper {
+        size: size(rect),
+        unit: f64::from(TEXT),
+        width: &width,
+        is_dark: ink.r() > 128,
+        taken: Vec::new(),
+    };
+    let names = well_names(view, &paper);
+    let areas = names.iter().map(|name| name.area(width(&name.text)));
+    paper.taken.extend(areas);
     if annotations.show_box {
         model_box(painter, rect, picture, view, ink);
-        orientation(painter, rect, view, annotations, ink);
+        let made = Orientation::of(view, &annotations.length_unit, paper);
+        orientation(painter, rect, &made, ink);
+    }
+    for name in &names {
+        let [low, high] = name.area(width(&name.text)).map(|at| place(rect, at));
+        let [r, g, b] = view.style.background.map(|v| (255.0 * v) as u8);
+        let plate = Color32::from_rgba_unmultiplied(r, g, b, 200);
+        painter.rect_filled(Rect::from_min_max(low, high), 2.0, plate);
+        write(painter, rect, name, ink);
     }
 }
 
@@ -85,24 +106,7 @@ pub fn size(rect: Rect) -> DVec2 {
 }
 
 /// Coordinates, scale bar and directions.
-fn orientation(
-    painter: &Painter,
-    rect: Rect,
-    view: &View,
-    annotations: &Annotations,
-    ink: Color32,
-) {
-    let made = Orientation::of(
-        view,
-        &annotations.length_unit,
-        Paper {
-            size: size(rect),
-            unit: f64::from(TEXT),
-            width: &|text| width(painter, text),
-            is_dark: ink.r() > 128,
-            taken: Vec::new(),
-        },
-    );
+fn orientation(painter: &Painter, rect: Rect, made: &Orientation, ink: Color32) {
     for line in &made.strokes {
         let line = line.map(|at| place(rect, at));
         painter.line_segment(line, Stroke::new(1.2, ink));

@@ -48,5 +48,7 @@ mod reported;
 mod shadows;
 mod srg;
 mod statistics;
+mod storage;
 mod surfaces;
 mod synthetic;
+mod wells;

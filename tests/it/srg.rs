@@ -231,7 +231,7 @@ impl<'a> Bench<'a> {
             case,
             grid: GpuGrid::new(gpu, &case.grid).unwrap(),
             revisions: RevisionCounter::default(),
-            srg: Srg::new(gpu).unwrap(),
+            srg: Srg::new(gpu),
         }
     }
 

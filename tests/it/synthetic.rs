@@ -9,6 +9,7 @@ use strataray::model::synthetic::{Fields, RECIPES, Recipe, Synthetic};
 use strataray::model::topology::COINCIDENT;
 use strataray::model::{CellIndex, Dims, Grid, GridInput, Ijk, ModelError};
 use strataray::render::plan::{CompactGrid, drawn_words};
+use strataray::scene::Storage;
 
 const STEPS: usize = 10;
 
@@ -174,7 +175,7 @@ fn ok_geometry_and_acceleration_take_a_quarter_of_the_published_bytes() {
         ("r5", 35.5),
     ] {
         let grid = grid(name, Recipe::named(name).unwrap().dims, 1);
-        let compact = CompactGrid::new(&grid).unwrap();
+        let compact = CompactGrid::new(&grid, Storage::Exact).unwrap();
         let drawn = drawn_words(&grid, &[]);
         let bytes = size_of_val(&*compact.pillars)
             + size_of_val(&*compact.column_lists)

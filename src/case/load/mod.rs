@@ -5,6 +5,7 @@ mod pore_volume;
 mod properties;
 mod slots;
 mod source;
+mod wells;
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -19,7 +20,7 @@ use self::grids::Loaded;
 use self::properties::Setting;
 use self::slots::{CellSlots, ResultCells};
 use self::source::FileSource;
-use crate::case::{About, Case, FieldCache, OverSteps, Step};
+use crate::case::{About, Case, FieldCache, OverSteps, Step, WellsOfSteps};
 
 /// Opens the case that `path` names: any of its files, or its base name.
 ///
@@ -198,6 +199,7 @@ fn build(
         source: Box::new(source),
         cache: FieldCache::default(),
         over_steps: OverSteps::default(),
+        wells: WellsOfSteps::default(),
         minus: None,
     }
 }
@@ -243,10 +245,11 @@ fn leave_unfinished(steps: &mut Vec<FileStep>, notes: &mut Vec<String>) {
 
 fn read_wells(source: &FileSource, about: &mut About) {
     if let Some(last) = source.steps.last() {
-        match last.wells() {
-            Ok(wells) => about.wells = wells,
-            Err(error) => about.notes.push(format!("wells were not loaded: {error}")),
+        let (names, wells) = (last.wells(), wells::of(last));
+        if let Some(error) = names.as_ref().err().or(wells.as_ref().err()) {
+            about.notes.push(format!("wells were not loaded: {error}"));
         }
+        about.wells = names.unwrap_or_default();
     }
 }
 

@@ -10,7 +10,8 @@ use strataray_parsers::restart::Step as FileStep;
 use strataray_parsers::{At, ErrorKind, ParseError};
 
 use super::slots::CellSlots;
-use crate::case::{About, CaseError, Source};
+use super::wells;
+use crate::case::{About, CaseError, Source, Well};
 
 /// Arrays that are no properties, though there may be as many values as cells: heads, wells, groups, connections.
 const NOT_PROPERTIES: &[&str] = &[
@@ -214,5 +215,10 @@ impl Source for FileSource {
             return Ok(None);
         };
         Ok(Some(self.cells.pick(&arrays.values(entry)?)))
+    }
+
+    fn wells(&self, step: usize) -> Result<Vec<Well>, CaseError> {
+        let step = self.steps.get(step);
+        Ok(step.map(wells::of).transpose()?.unwrap_or_default())
     }
 }

@@ -79,6 +79,8 @@ pub struct StrategyTimes {
     pub entries: u64,
     pub point_locations: u64,
     pub cell_crossings: u64,
+    /// Of geometry and values, at least.
+    pub bytes_read: u64,
     pub lost_samples: u64,
     pub gpu_bytes: DeviceBytes,
 }
@@ -238,6 +240,7 @@ fn strategy(
         entries: stats.entries,
         point_locations: stats.point_locations,
         cell_crossings: stats.cell_crossings,
+        bytes_read: stats.bytes_read(view),
         lost_samples: stats.lost_samples,
         gpu_bytes: median.bytes,
     };

@@ -84,6 +84,7 @@ fn frames(bench: &Bench) -> Vec<Row> {
         "locations/pixel",
         "cells/pixel",
         "Newton/cell",
+        "B read/pixel",
         "lost rays",
         "lost samples",
         "geometry B/cell",
@@ -117,6 +118,7 @@ fn frames(bench: &Bench) -> Vec<Row> {
             cells.push(ratio(s.point_locations, s.covered_pixels));
             cells.push(ratio(s.cell_crossings, s.covered_pixels));
             cells.push(ratio(s.newton_iterations, s.cell_crossings));
+            cells.push((s.bytes_read / s.covered_pixels.max(1)).to_string());
             cells.push(s.lost_rays.to_string());
             cells.push(s.lost_samples.to_string());
             let bytes = &s.gpu_bytes;

@@ -5,10 +5,12 @@
 mod coordinates;
 mod edges;
 mod triad;
+mod wells;
 
 use glam::DVec2;
 
 pub use edges::on_screen;
+pub use wells::well_names;
 
 use super::ticks::shortened;
 use crate::view::View;

@@ -3,6 +3,7 @@
 mod cone;
 mod lighting;
 mod surfaces;
+mod tubes;
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -109,10 +110,13 @@ impl<'a> Integrator<'a> {
 
     /// Red, green, blue, as they are blended, each times alpha, and alpha of what a ray passes through.
     pub fn ray(&self, ray: Ray) -> [f64; 4] {
-        let Some([enter, leave]) = ray.within(self.view.world.bounds) else {
-            return [0.0; 4];
-        };
         let step = self.view.sampling.step;
+        // Beside the box there are the heads of wells.
+        let [enter, leave] = match ray.within(self.view.world.bounds) {
+            Some(span) => span,
+            None if self.view.style.surfaces.wells => [0.0, f64::NEG_INFINITY],
+            None => return [0.0; 4],
+        };
         if let Some(rgb) = self.section(ray, [enter, leave]) {
             return [rgb[0], rgb[1], rgb[2], 1.0];
         }

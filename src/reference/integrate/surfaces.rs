@@ -221,6 +221,7 @@ impl Integrator<'_> {
             Hull::Opaque => self.opaque_hull(ray),
         };
         layers.extend(self.sheets(ray));
+        layers.extend(self.tube(ray));
         // Of equal distances what is drawn first stays in front.
         layers.sort_by(|a, b| a.distance.total_cmp(&b.distance));
         layers

@@ -10,9 +10,9 @@ use crate::model::{Grid as Model, topology};
 use crate::render::plan::columns::COLUMN_MARGINS;
 use crate::render::plan::layout::{COLUMN_FLAG, LIST_GAPPED};
 use crate::render::plan::visible::HeldCells;
-use crate::render::plan::{CompactGrid, drawn_words, ghost_words, list_entry, values};
-use crate::render::{DeviceBytes, RenderError};
-use crate::scene::Interpolation;
+use crate::render::plan::{CompactGrid, Values, drawn_words, ghost_words, list_entry};
+use crate::render::{DeviceBytes, RenderError, StorageError};
+use crate::scene::{Interpolation, Storage};
 use crate::view::{ShownCells, View};
 
 /// Corners closer than this along their pillar coincide.
@@ -25,7 +25,7 @@ pub struct Grid {
     /// How values vary inside a cell.
     pub interpolation: Interpolation,
     drawn_cells: Vec<[u32; 2]>,
-    values: Vec<f32>,
+    values: Values,
     /// Bits of the cells that are ghosts, where they are shown.
     ghost_cells: Option<Vec<u32>>,
 }
@@ -46,12 +46,12 @@ impl Grid {
     ///
     /// # Errors
     /// When it cannot be numbered.
-    pub fn new(model: &Model) -> Result<Self, RenderError> {
+    pub fn new(model: &Model, storage: Storage) -> Result<Self, RenderError> {
         Ok(Self {
-            compact: CompactGrid::new(model)?,
+            compact: CompactGrid::new(model, storage)?,
             interpolation: Interpolation::Cell,
             drawn_cells: drawn_words(model, &[]),
-            values: Vec::new(),
+            values: Values::default(),
             ghost_cells: None,
         })
     }
@@ -61,11 +61,12 @@ impl Grid {
     ///
     /// # Errors
     /// As [`Self::new`].
-    pub fn of(model: &Model, cells: &ShownCells) -> Result<Self, RenderError> {
+    pub fn of(model: &Model, view: &View) -> Result<Self, RenderError> {
+        let cells = &view.shown.cells;
         let (grid, _) = cells.in_grid(model);
         Ok(Self {
             ghost_cells: ghost_words(model, cells),
-            ..Self::new(grid)?
+            ..Self::new(grid, view.sampling.storage)?
         })
     }
 
@@ -73,7 +74,7 @@ impl Grid {
     pub fn show(&mut self, model: &Model, cells: &ShownCells) {
         let (grid, drawn) = cells.in_grid(model);
         self.drawn_cells = drawn_words(grid, drawn);
-        self.values = values(model, cells);
+        self.values = Values::new(model, cells, self.compact.storage);
         self.interpolation = cells.interpolation;
     }
 
@@ -88,8 +89,16 @@ impl Grid {
                 + 2 * self.drawn_cells.len()
                 + self.ghost_cells.as_ref().map_or(0, Vec::len)),
             acceleration: of(2 * compact.bins.len() + compact.bin_columns.len()),
-            property: of(self.values.len()),
+            property: of(self.values.held.len()),
             ..DeviceBytes::default()
+        }
+    }
+
+    /// What rounding has changed.
+    pub fn storage_error(&self) -> StorageError {
+        StorageError {
+            depth: self.compact.depth_error,
+            value: self.values.error,
         }
     }
 
@@ -170,7 +179,7 @@ impl Grid {
             nk: self.nk(),
             interpolation: self.interpolation,
             lists: &self.compact.column_lists,
-            values: &self.values,
+            values: &self.values.held,
             drawn: &self.drawn_cells,
             ghosts: self.ghost_cells.as_deref(),
         };
@@ -191,7 +200,7 @@ impl Grid {
         let (word, bit) = self.bit_of(column, layer);
         let [bits, before] = self.drawn_cells[word];
         let rank = before + (bits & ((1 << bit) - 1)).count_ones();
-        self.values[rank as usize]
+        self.values.held[rank as usize]
     }
 
     /// Positions in the depth lists of the four corners of a layer's top (0) or bottom (1).
@@ -231,7 +240,7 @@ impl Grid {
     pub fn corner_values(&self, column: u32, layer: u32) -> [Vec4; 2] {
         match self.interpolation {
             Interpolation::Cell => [Vec4::splat(self.cell_value(column, layer)); 2],
-            Interpolation::Vertex => of_cell(&self.values, self.lists(column), layer),
+            Interpolation::Vertex => of_cell(&self.values.held, self.lists(column), layer),
         }
     }
 

@@ -321,7 +321,7 @@ impl Walk<'_> {
     }
 
     /// Adds what lies between the current place of the ray and its exit at distance `t`. Surfaces lie on faces, so those
-    /// that are nearer than the exit lie at the entry.
+    /// that are nearer than the exit lie at the entry, and what is opaque ends the ray.
     fn integrate(
         &mut self,
         t: f32,
@@ -331,7 +331,7 @@ impl Walk<'_> {
         tally: &mut Tally,
     ) {
         let (scene, ray) = (self.way.scene, self.way.ray);
-        layers.blend_until(sum, 0.5 * (self.t + t));
+        layers.blend_until(sum, 0.5 * (self.t + t.min(ray.leave)));
         let is_ghost = scene.grid.is_ghost(self.column, self.layer);
         if self.way.settings.integration == Integration::Segments {
             let from = self.t.max(self.done).max(ray.enter);

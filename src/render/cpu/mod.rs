@@ -1,6 +1,7 @@
 //! The executor on the CPU: rays in Rust, on all threads. It reads the same plan as the GPU's shaders, and its files
 //! have the names of those that they are the twins of.
 
+mod along;
 mod boundary;
 mod bricks;
 mod cell;

@@ -17,6 +17,7 @@ use super::transfer::Accumulated;
 use crate::image::Image;
 use crate::render::FrameStats;
 use crate::render::job::Progress;
+use crate::render::plan::tubes::TubePoint;
 use crate::view::View;
 
 /// What casts the rays.
@@ -180,6 +181,7 @@ impl Picture<'_> {
                 at: pixel,
                 met: of_boundary,
                 surfaces: [hull, faults],
+                tube: painter.tube(pixel),
             };
             self.pixel(painter, &pixel, ray, &mut tally)
         });
@@ -208,9 +210,10 @@ impl Picture<'_> {
         } = of_ray;
         let through = scene.frame.pixel_ray(pixel.at);
         let whole = scene.frame.ray_of(pixel.at);
-        painter.find(scene, &through, pixel.surfaces, layers, tally);
+        let surfaces = (pixel.surfaces, pixel.tube);
+        painter.find(scene, &through, surfaces, layers, tally);
         let mut sum = Accumulated::of(section_color(scene, &whole, tally));
-        let ray = layers.before_hull(scene, &whole);
+        let ray = layers.before_opaque(scene, &whole);
         match self.strategy {
             _ if !scene.transfer.is_open(&sum) => {}
             Strategy::Solid => {}
@@ -267,11 +270,13 @@ struct Pixel<'a> {
     met: &'a [Met],
     /// Of hull and faults.
     surfaces: [&'a [Met]; 2],
+    /// Of wells.
+    tube: Option<TubePoint>,
 }
 
 impl Pixel<'_> {
     /// True where its ray meets nothing; no cell either, for it would leave that through its boundary.
     fn is_empty(&self) -> bool {
-        self.met.is_empty() && self.surfaces.iter().all(|met| met.is_empty())
+        self.met.is_empty() && self.surfaces.iter().all(|met| met.is_empty()) && self.tube.is_none()
     }
 }

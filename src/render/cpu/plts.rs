@@ -100,7 +100,7 @@ impl Way<'_> {
     }
 
     /// Adds what lies on a way, up to a place. Surfaces lie on faces, so those that are nearer than its end lie at its
-    /// beginning.
+    /// beginning, and what is opaque ends the ray.
     fn integrate(
         &self,
         track: &mut Track<'_>,

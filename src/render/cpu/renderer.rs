@@ -25,7 +25,7 @@ use crate::render::plan::frame::{frame_uniform, ghost};
 use crate::render::plan::visible::{can_be_passed, visible_faces};
 use crate::render::revisions::{RevisionCounter, Revisions};
 use crate::render::{DeviceBytes, Frame, Located, RenderError, Renderer, SetupTimes};
-use crate::scene::StrategyKind;
+use crate::scene::{Storage, StrategyKind};
 use crate::view::View;
 
 /// Newton steps below this end a location that was asked for.
@@ -67,7 +67,7 @@ impl CpuRenderer {
     /// When it cannot be numbered.
     pub fn new(model: &Arc<Model>) -> Result<Self, RenderError> {
         let start = Instant::now();
-        let grid = Grid::new(model)?;
+        let grid = Grid::new(model, Storage::Exact)?;
         let acceleration = grid.compact.acceleration_time;
         Ok(Self {
             model: model.clone(),
@@ -151,6 +151,7 @@ impl CpuRenderer {
             stats,
             prepare,
             light: self.light.times,
+            storage_error: self.grid.storage_error(),
             bytes: self.grid.bytes()
                 + DeviceBytes {
                     geometry: 4 * lists as u64,
@@ -189,7 +190,7 @@ impl Renderer for CpuRenderer {
         let cells = &view.shown.cells;
         let wanted = self.counter.of(view);
         if self.revisions.grid != wanted.grid {
-            self.grid = Grid::of(&self.model, cells)?;
+            self.grid = Grid::of(&self.model, view)?;
         }
         if self.revisions.values != wanted.values {
             self.grid.show(&self.model, cells);

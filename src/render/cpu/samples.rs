@@ -90,11 +90,14 @@ impl Samples<'_> {
                 if done >= self.count || !scene.transfer.is_open(sum) {
                     return done;
                 }
-                layers.blend_until(sum, self.distance(done));
+                let distance = self.distance(done);
+                layers.blend_until(sum, distance);
                 if entry.w > 0.0 {
-                    let place = ray.sample(self.first + done);
                     let color = Vec3A::from_vec4(entry);
-                    sum.pass(scene.shading.shade(color, place, is_ghost), passed);
+                    let at = [distance, scene.frame.numbers.step];
+                    let light = &mut sum.light;
+                    let color = scene.shading.shade_along(color, light, ray, at, is_ghost);
+                    sum.pass(color, passed);
                 }
                 done += 1.0;
             }

@@ -1,11 +1,11 @@
-//! Parts of a ray in one cell, each integrated as a whole.
+//! Parts of a ray in one cell, each integrated as a whole. The twin of `shaders/shared/segments.wgsl`.
 
 use glam::{Vec3A, Vec4};
 
 use super::each::Each;
 use super::frame::Ray;
 use super::scene::Scene;
-use super::transfer::Accumulated;
+use super::transfer::{Accumulated, passed};
 
 /// Optical depth and part of the value range that one piece of a segment may have.
 const PIECE_DEPTH: f32 = 0.5;
@@ -70,12 +70,14 @@ impl Span<'_> {
                 false => last,
             };
             let mean = transfer.mean(before, value);
-            let color = Vec3A::from_vec4(mean) / mean.w.max(1e-30);
-            let middle = ray.at(from + length * (done - 0.5) / pieces);
-            let entry = scene
-                .shading
-                .shade_entry(color.extend(mean.w), middle, false);
-            sum.absorb(entry, mean.w * length / pieces);
+            if mean.w > 0.0 {
+                let color = Vec3A::from_vec4(mean) / mean.w;
+                let piece = length / pieces;
+                let at = [from + (done - 0.5) * piece, piece];
+                let light = &mut sum.light;
+                let color = scene.shading.shade_along(color, light, ray, at, false);
+                sum.pass(color, passed(mean.w * piece));
+            }
             before = value;
         }
         done as u64

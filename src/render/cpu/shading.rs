@@ -3,10 +3,11 @@
 
 use glam::{Vec3A, Vec4};
 
-use super::frame::Frame;
+use super::along::{LightAlong, SPACING};
+use super::frame::{Frame, Ray};
 use super::lamps::smoothstep;
 use super::light::Light;
-use crate::render::plan::layout::LIGHT_OFF;
+use crate::render::plan::layout::{LIGHT_OFF, LIGHT_RAYS};
 use crate::view::lighting::{GRADIENT_FADE, Lighting, SHININESS, SPECULAR};
 use crate::view::surfaces::HEADLIGHT_AMBIENT;
 
@@ -16,14 +17,55 @@ pub struct Shading<'a> {
     exact_colors: bool,
     /// `None` where nothing is shaded.
     light: Option<Light<'a>>,
+    /// Distance along a ray between places where its light is found; 0 where each sample has its own.
+    spacing: f32,
+}
+
+/// What light makes of a color: its factor, and what is added.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Shade {
+    factor: Vec3A,
+    highlight: Vec3A,
+}
+
+impl Shade {
+    /// Leaves colors as they are.
+    pub const NONE: Self = Self {
+        factor: Vec3A::ONE,
+        highlight: Vec3A::ZERO,
+    };
+
+    /// The shaded color.
+    #[inline]
+    pub fn of(self, color: Vec3A) -> Vec3A {
+        color * self.factor + self.highlight
+    }
+
+    /// A part of the way to another one.
+    #[inline]
+    pub fn lerp(self, other: Self, part: f32) -> Self {
+        Self {
+            factor: self.factor.lerp(other.factor, part),
+            highlight: self.highlight.lerp(other.highlight, part),
+        }
+    }
 }
 
 impl<'a> Shading<'a> {
     /// That of a view, whose light is there where something is shaded.
+    /// Rays over cones are random at each sample, so that their means need all of them.
     pub fn new(lighting: &Lighting, light: Option<Light<'a>>) -> Self {
+        let is_random = |light: &Light<'_>| {
+            [light.shading.occlusion, light.shading.shadows].contains(&LIGHT_RAYS)
+        };
+        let spacing = match &light {
+            Some(light) if !is_random(light) => (SPACING * lighting.sigma()) as f32,
+            _ => 0.0,
+        };
         Self {
             exact_colors: lighting.exact_colors,
             light,
+            spacing,
         }
     }
 
@@ -38,9 +80,36 @@ impl<'a> Shading<'a> {
     /// Color of a sample at a point of grid space relative to the origin.
     #[inline]
     pub fn shade(&self, color: Vec3A, point: Vec3A, is_ghost: bool) -> Vec3A {
+        self.find(point, is_ghost).of(color)
+    }
+
+    /// What light makes of colors at a point of grid space relative to the origin.
+    #[inline]
+    pub fn find(&self, point: Vec3A, is_ghost: bool) -> Shade {
         match &self.light {
-            Some(light) if is_ghost || !self.exact_colors => shaded(light, color, point, is_ghost),
-            _ => color,
+            Some(light) if is_ghost || !self.exact_colors => found(light, point, is_ghost),
+            _ => Shade::NONE,
+        }
+    }
+
+    /// Color at a distance along a ray of a sample that stands for so much of it.
+    #[inline]
+    pub fn shade_along(
+        &self,
+        color: Vec3A,
+        along: &mut LightAlong,
+        ray: &Ray,
+        [distance, length]: [f32; 2],
+        is_ghost: bool,
+    ) -> Vec3A {
+        match &self.light {
+            None => color,
+            // Inactive cells have light of their own, and long pieces need no more of it than one place has.
+            Some(_) if is_ghost || length >= self.spacing => {
+                self.shade(color, ray.at(distance), is_ghost)
+            }
+            Some(_) if self.exact_colors => color,
+            Some(_) => along.at(self, ray, self.spacing, distance).of(color),
         }
     }
 
@@ -72,11 +141,11 @@ impl<'a> Shading<'a> {
     }
 }
 
-fn shaded(light: &Light<'_>, color: Vec3A, point: Vec3A, is_ghost: bool) -> Vec3A {
+fn found(light: &Light<'_>, point: Vec3A, is_ghost: bool) -> Shade {
     let (info, modes) = (&light.info, light.shading);
     let p = light.place(point);
     let [viewer, lamps @ ..] = light.lamps else {
-        return color;
+        return Shade::NONE;
     };
     let mut sum = Vec3A::splat(info.ambient);
     if modes.occlusion != LIGHT_OFF {
@@ -103,7 +172,10 @@ fn shaded(light: &Light<'_>, color: Vec3A, point: Vec3A, is_ghost: bool) -> Vec3
         let shine = normal.dot(half_way).abs().powf(SHININESS as f32);
         highlight += SPECULAR as f32 * counts * shine * arriving;
     }
-    color * sum + highlight
+    Shade {
+        factor: sum,
+        highlight,
+    }
 }
 
 /// Unit gradient of the field, and how much it counts.

@@ -254,14 +254,16 @@ pub fn cast(way: &Way<'_>, layers: &mut Layers, sum: &mut Accumulated, tally: &m
         let places = middles.to_array().each(|n| base + n * advance);
         let four = volume.four(scene, places, &stretch, taken);
         for (lane, middle) in middles.to_array().into_iter().enumerate().take(count) {
-            layers.blend_until(sum, ray.distance(scene.frame.numbers.step, middle));
+            let distance = ray.distance(scene.frame.numbers.step, middle);
+            layers.blend_until(sum, distance);
             let sample = four.sample(lane);
             let met = u64::from(sample.is_met);
             tally.samples += met;
             tally.skips += 1 - met;
             sees_nothing = sample.opacity == 0.0 && sample.ghost == 0.0;
             if !sees_nothing {
-                sample.add(scene, ray.sample(middle), sum);
+                let length = taken * scene.frame.numbers.step;
+                sample.add(scene, ray, [distance, length], sum);
             }
             n += taken;
             if sum.transmittance < roulette {
@@ -305,12 +307,17 @@ impl Four {
 }
 
 impl Sample {
-    /// Adds it to what is there; it lies at a point of grid space relative to the origin.
-    fn add(&self, scene: &Scene<'_>, place: Vec3A, sum: &mut Accumulated) {
-        let shade = |color, is_ghost| scene.shading.shade(color, place, is_ghost);
+    /// Adds it to what is there; it lies at a distance along the ray and stands for so much of it.
+    fn add(&self, scene: &Scene<'_>, ray: &Ray, at: [f32; 2], sum: &mut Accumulated) {
+        let light = &mut sum.light;
+        let mut shade = |color, is_ghost| {
+            let shading = &scene.shading;
+            shading.shade_along(color, light, ray, at, is_ghost)
+        };
         let (opacity, ghost) = (self.opacity, self.ghost);
         if ghost == 0.0 {
-            return sum.blend(shade(self.color, false), opacity);
+            let color = shade(self.color, false);
+            return sum.blend(color, opacity);
         }
         let gray = shade(Vec3A::from_vec4(scene.ghost), true);
         let color = match opacity > 0.0 {

@@ -22,6 +22,7 @@ use crate::render::plan::faces::face_numbers;
 use crate::render::plan::layout::FAULT_COLORS;
 use crate::render::plan::list_entry;
 use crate::render::plan::surfaces::{Layer as Kind, faults, layers, palette};
+use crate::render::plan::tubes::{TubePoint, TubePoints};
 use crate::scene::{Hull, Interpolation};
 use crate::view::View;
 use crate::view::surfaces::{FAINT_BEHIND, FAINT_FRONT, SHEET_OPACITY, faint_color};
@@ -70,6 +71,8 @@ pub struct Painter<'a> {
     palette: [[f32; 4]; FAULT_COLORS],
     /// Color of a faint hull.
     faint: Vec3A,
+    /// Where rays meet wells.
+    tubes: Option<TubePoints>,
 }
 
 /// A point of a surface.
@@ -88,7 +91,25 @@ pub struct Layers {
     passed: usize,
 }
 
+/// A point of a well, which carries no number, as ghosts do.
+fn tube_layer(scene: &Scene<'_>, ray: &PixelRay, tube: TubePoint) -> Layer {
+    let here = ray.origin + tube.distance * ray.direction;
+    Layer {
+        distance: tube.distance,
+        color: scene.shading.shade(tube.color.into(), here, true),
+        opacity: 1.0,
+    }
+}
+
 impl Layers {
+    /// Puts a layer among the others, behind all that are not farther.
+    fn insert(&mut self, layer: Layer) {
+        let at = self
+            .layers
+            .partition_point(|l| l.distance <= layer.distance);
+        self.layers.insert(at, layer);
+    }
+
     /// Distance of the next one.
     pub fn next(&self) -> Option<f32> {
         self.layers.get(self.passed).map(|layer| layer.distance)
@@ -110,16 +131,18 @@ impl Layers {
         self.blend_until(sum, f32::MAX);
     }
 
-    /// A ray up to an opaque hull, which ends it; nothing of it where nothing can be in front: only ghosts are outside.
-    pub fn before_hull(&self, scene: &Scene<'_>, ray: &Ray) -> Ray {
-        let hull = self.next().filter(|_| scene.surfaces.hull == Hull::Opaque);
-        let Some(distance) = hull else {
+    /// A ray up to the first opaque layer, which ends it. Nothing of it is left where that is the hull and nothing can be
+    /// in front: only ghosts are outside.
+    pub fn before_opaque(&self, scene: &Scene<'_>, ray: &Ray) -> Ray {
+        let mut left = self.layers.iter().skip(self.passed);
+        let Some(Layer { distance, .. }) = left.find(|layer| layer.opacity >= 1.0) else {
             return *ray;
         };
-        let has_more = ray.starts_inside || scene.grid.has_ghosts();
+        let has_hull = scene.surfaces.hull == Hull::Opaque;
+        let has_more = !has_hull || ray.starts_inside || scene.grid.has_ghosts();
         let samples = (distance / scene.frame.numbers.step - 0.5).ceil() - ray.first;
         let (count, leave) = match has_more {
-            true => (samples.clamp(0.0, ray.count), ray.leave.min(distance)),
+            true => (samples.clamp(0.0, ray.count), ray.leave.min(*distance)),
             false => (0.0, ray.enter),
         };
         Ray {
@@ -159,15 +182,21 @@ impl<'a> Painter<'a> {
             gap: view.fault_gap() as f32,
             palette: palette(blending),
             faint: Vec3A::from(faint.map(|v| v as f32)),
+            tubes: TubePoints::of(view),
         }
     }
 
-    /// Finds the layers of a pixel's ray among the faces of hull and sheets that it meets.
+    /// Where the ray of a pixel meets a well.
+    pub fn tube(&self, pixel: [u32; 2]) -> Option<TubePoint> {
+        self.tubes.as_ref()?.at(pixel)
+    }
+
+    /// Finds the layers of a pixel's ray among the faces of hull and sheets and the point of a tube that it meets.
     pub fn find(
         &self,
         scene: &Scene<'_>,
         ray: &PixelRay,
-        [hull, sheets]: [&[Met]; 2],
+        ([hull, sheets], tube): ([&[Met]; 2], Option<TubePoint>),
         found: &mut Layers,
         tally: &mut Tally,
     ) {
@@ -182,6 +211,13 @@ impl<'a> Painter<'a> {
                     let counts_as = |p: &Point| p.counts_as(self.gap);
                     counts_as(a).total_cmp(&counts_as(b))
                 }),
+                Kind::Tube => {
+                    if let Some(tube) = tube {
+                        found.insert(tube_layer(scene, ray, tube));
+                        tally.painted += 1;
+                    }
+                    continue;
+                }
                 Kind::Sheet(0) => nearest(points_of(scene, ray, sheets), 0.0),
                 Kind::Sheet(_) => before.and_then(|before| {
                     let is_other = |p: &Point| {
@@ -194,11 +230,7 @@ impl<'a> Painter<'a> {
             };
             before = point;
             if let Some(point) = point {
-                let layer = self.layer_at(scene, *kind, point, ray);
-                let at = found
-                    .layers
-                    .partition_point(|l| l.distance <= layer.distance);
-                found.layers.insert(at, layer);
+                found.insert(self.layer_at(scene, *kind, point, ray));
                 tally.painted += 1;
             }
         }

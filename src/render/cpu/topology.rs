@@ -1,7 +1,7 @@
 //! Samples of a ray, each from the one before it: in the same cell, then in the neighbor across the face that the
 //! result overshoots most, then in the cell of a boundary face that the ray has passed, and through the acceleration
-//! grid where all that does not help (campagnolo-2021, 4.1.3). The twin of `shaders/shared/topology.wgsl` and
-//! `boundary.wgsl` there.
+//! grid where all that does not help (campagnolo-2021, 4.1.3). The twin of `shaders/shared/topology.wgsl`,
+//! and of `boundary.wgsl` and `ways.wgsl` there.
 
 use glam::{Vec3A, Vec4};
 

@@ -3,6 +3,7 @@
 
 use glam::{Vec3A, Vec4, Vec4Swizzles};
 
+use super::along::LightAlong;
 use super::each::Each;
 use crate::render::plan::layout::{LUT_SIZE, per_unit};
 use crate::render::plan::transfer::{transfer_integrals, transfer_table};
@@ -54,6 +55,8 @@ pub struct Accumulated {
     pub color: Vec3A,
     /// What is left of what lies behind.
     pub transmittance: f32,
+    /// Light that was found on the way.
+    pub light: LightAlong,
 }
 
 impl Accumulated {
@@ -63,6 +66,7 @@ impl Accumulated {
         Self {
             color: Vec3A::from_vec4(color),
             transmittance: 1.0 - color.w,
+            light: LightAlong::default(),
         }
     }
 

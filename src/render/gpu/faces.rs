@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::device::Gpu;
-use super::grid_upload::GpuGrid;
+use super::grid_upload::{Constants, GpuGrid};
 use super::pipeline::RasterPipeline;
 use super::round::{Place, Round};
 use crate::model::Grid;
@@ -152,8 +152,10 @@ impl BoundaryFaces {
 }
 
 /// Draws boundary faces.
+#[derive(Default)]
 pub struct FaceRaster {
-    pipeline: RasterPipeline,
+    /// Compiled when it is first asked for.
+    pipeline: Option<Arc<RasterPipeline>>,
     bound: Option<Bound>,
 }
 
@@ -162,6 +164,21 @@ struct Bound {
     margin: f32,
     /// By [`FaceMode`].
     groups: Vec<wgpu::BindGroup>,
+}
+
+impl Bound {
+    fn new(gpu: &Gpu, pipeline: &RasterPipeline, faces: &FaceList, margin: f32) -> Self {
+        let group = |mode: u32| {
+            let info = gpu.uniform("faces info", &[mode, margin.to_bits()]);
+            let resources = [info.as_entire_binding(), faces.numbers.as_entire_binding()];
+            gpu.bind(&pipeline.own, &resources)
+        };
+        Self {
+            list: faces.clone(),
+            margin,
+            groups: (0..MODES).map(group).collect(),
+        }
+    }
 }
 
 /// What a tile's faces are drawn into.
@@ -173,41 +190,29 @@ pub struct FaceTarget {
 }
 
 impl FaceRaster {
-    /// Compiles the shader.
-    ///
-    /// # Errors
-    /// When the driver refuses it.
-    pub fn new(gpu: &Gpu) -> Result<Self, RenderError> {
-        Ok(Self {
-            pipeline: RasterPipeline::new(gpu, "faces", &[FORMAT])?,
-            bound: None,
-        })
-    }
-
-    /// Takes the faces to draw.
+    /// Takes the faces to draw of a grid with these constants.
     ///
     /// `margin` is how far, in world space, the next entry of a peel may lie before the end of the
     /// last one.
-    pub fn update(&mut self, gpu: &Gpu, faces: Option<&FaceList>, margin: f32) {
+    ///
+    /// # Errors
+    /// When the driver refuses the shader.
+    pub fn update(
+        &mut self,
+        gpu: &Gpu,
+        grid: Constants,
+        faces: Option<&FaceList>,
+        margin: f32,
+    ) -> Result<(), RenderError> {
+        let pipeline = RasterPipeline::variant(gpu, "faces", &[FORMAT], &[grid.storage()])?;
         let is_of = |b: &Bound, f: &FaceList| b.list.revision == f.revision && b.margin == margin;
         let known = self.bound.take();
         self.bound = faces.map(|faces| match known.filter(|b| is_of(b, faces)) {
             Some(known) => known,
-            None => self.bind(gpu, faces, margin),
+            None => Bound::new(gpu, &pipeline, faces, margin),
         });
-    }
-
-    fn bind(&self, gpu: &Gpu, faces: &FaceList, margin: f32) -> Bound {
-        let group = |mode: u32| {
-            let info = gpu.uniform("faces info", &[mode, margin.to_bits()]);
-            let resources = [info.as_entire_binding(), faces.numbers.as_entire_binding()];
-            gpu.bind(&self.pipeline.own, &resources)
-        };
-        Bound {
-            list: faces.clone(),
-            margin,
-            groups: (0..MODES).map(group).collect(),
-        }
+        self.pipeline = Some(pipeline);
+        Ok(())
     }
 
     /// Records a pass that draws the faces of a tile; nothing is met before [`Self::update`].
@@ -220,8 +225,8 @@ impl FaceRaster {
         place: Place,
     ) {
         let mut pass = round.raster(encoder, &target.met, &target.depth, place);
-        if let Some(bound) = &self.bound {
-            pass.set_pipeline(&self.pipeline.pipeline);
+        if let (Some(pipeline), Some(bound)) = (&self.pipeline, &self.bound) {
+            pass.set_pipeline(&pipeline.pipeline);
             pass.set_bind_group(3, &bound.groups[mode as usize], &[]);
             pass.draw(0..6 * bound.list.count, 0..1);
         }

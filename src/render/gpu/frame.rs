@@ -225,7 +225,11 @@ impl Bound<'_> {
     ) -> Result<(), RenderError> {
         let uniform = part.tile(part.rect);
         let round = self.round(&uniform, 0);
-        self.submit(&uniform, |encoder| surfaces.peel(&round, encoder), stats)?;
+        self.submit(
+            &uniform,
+            |encoder| surfaces.peel(&round, part.rect.origin, encoder),
+            stats,
+        )?;
         let [width, height] = part.rect.size;
         let row = u64::from(width) * surfaces.work();
         for layer in 0..surfaces.layers() {

@@ -4,11 +4,12 @@ use super::device::Gpu;
 use super::pipeline::flag;
 use crate::model::Grid;
 use crate::render::plan::layout::GridInfo;
+use crate::render::plan::packing::packed;
 use crate::render::plan::visible::HeldCells;
-use crate::render::plan::{CompactGrid, GridFacts, cell_bits, drawn_words, ghost_words, values};
+use crate::render::plan::{CompactGrid, GridFacts, Values, cell_bits, drawn_words, ghost_words};
 use crate::render::revisions::Revisions;
-use crate::render::{DeviceBytes, RenderError};
-use crate::scene::Interpolation;
+use crate::render::{DeviceBytes, RenderError, StorageError};
+use crate::scene::{Interpolation, Storage};
 use crate::view::{ShownCells, View};
 
 /// What is constant in shaders that locate points in a grid.
@@ -18,15 +19,23 @@ pub struct Constants {
     pub vertical: bool,
     /// Inactive cells are shown.
     pub ghosts: bool,
+    /// How depths and values are held.
+    pub storage: Storage,
 }
 
 impl Constants {
     /// Names and values of the shaders' `override` constants.
-    pub fn pairs(self) -> [(&'static str, f64); 2] {
+    pub fn pairs(self) -> [(&'static str, f64); 3] {
         [
             ("VERTICAL", flag(self.vertical)),
             ("GHOSTS", flag(self.ghosts)),
+            self.storage(),
         ]
+    }
+
+    /// Of these the one of shaders that read depths or values.
+    pub fn storage(self) -> (&'static str, f64) {
+        ("PACKED_GRID", flag(self.storage == Storage::Compact))
     }
 }
 
@@ -54,7 +63,9 @@ pub struct GpuGrid {
     values: wgpu::Buffer,
     /// Depth lists of the columns, values and how they vary in a cell, as they are on the device.
     column_lists: Vec<[u32; 4]>,
-    held_values: Vec<f32>,
+    held_values: Values,
+    storage: Storage,
+    depth_error: f64,
     interpolation: Interpolation,
     /// Bits of the cells that are ghosts, where they are shown.
     ghost_words: Option<Vec<u32>>,
@@ -66,7 +77,15 @@ impl GpuGrid {
     /// # Errors
     /// When an array exceeds what the adapter holds.
     pub fn new(gpu: &Gpu, grid: &Grid) -> Result<Self, RenderError> {
-        let compact = CompactGrid::new(grid)?;
+        Self::stored(gpu, grid, Storage::Exact)
+    }
+
+    /// As [`Self::new`], held in one way or the other.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn stored(gpu: &Gpu, grid: &Grid, storage: Storage) -> Result<Self, RenderError> {
+        let compact = CompactGrid::new(grid, storage)?;
         let words = compact.words();
         Ok(Self {
             facts: compact.facts,
@@ -77,12 +96,14 @@ impl GpuGrid {
             info: gpu.uniform("grid info", &compact.info),
             words: gpu.storage("pillars, columns and bins", &words)?,
             bin_bytes: size_of_val(&words[compact.info.bins as usize..]) as u64,
-            depths: gpu.storage("depth lists", &compact.depths)?,
+            depths: numbers(gpu, "depth lists", &compact.depths, storage)?,
             cell_bits: gpu.storage("drawn cells", &drawn_words(grid, &[]))?,
             visible: 0,
             values: gpu.storage::<f32>("values", &[])?,
             column_lists: compact.column_lists,
-            held_values: Vec::new(),
+            held_values: Values::default(),
+            storage,
+            depth_error: compact.depth_error,
             interpolation: Interpolation::Cell,
             ghost_words: None,
         })
@@ -93,11 +114,12 @@ impl GpuGrid {
     ///
     /// # Errors
     /// As [`Self::new`].
-    pub fn of(gpu: &Gpu, model: &Grid, cells: &ShownCells) -> Result<Self, RenderError> {
+    pub fn of(gpu: &Gpu, model: &Grid, view: &View) -> Result<Self, RenderError> {
+        let cells = &view.shown.cells;
         let (grid, _) = cells.in_grid(model);
         Ok(Self {
             ghost_words: ghost_words(model, cells),
-            ..Self::new(gpu, grid)?
+            ..Self::stored(gpu, grid, view.sampling.storage)?
         })
     }
 
@@ -112,8 +134,8 @@ impl GpuGrid {
             self.drawn_words = words;
             self.meet(gpu, None)?;
         }
-        self.held_values = values(model, cells);
-        self.values = gpu.storage("values", &self.held_values)?;
+        self.held_values = Values::new(model, cells, self.storage);
+        self.values = numbers(gpu, "values", &self.held_values.held, self.storage)?;
         self.interpolation = cells.interpolation;
         Ok(())
     }
@@ -144,7 +166,7 @@ impl GpuGrid {
             nk: self.sizes.nk,
             interpolation: self.interpolation,
             lists: &self.column_lists,
-            values: &self.held_values,
+            values: &self.held_values.held,
             drawn: &self.drawn_words,
             ghosts: self.ghost_words.as_deref(),
         };
@@ -169,13 +191,22 @@ impl GpuGrid {
         Constants {
             vertical: self.facts.vertical,
             ghosts: self.ghost_words.is_some(),
+            storage: self.storage,
+        }
+    }
+
+    /// What rounding has changed.
+    pub fn storage_error(&self) -> StorageError {
+        StorageError {
+            depth: self.depth_error,
+            value: self.held_values.error,
         }
     }
 
     /// Empties the bins of the lower half of x, so that tests have a grid in which points are lost.
     #[cfg(test)]
     pub(crate) fn lose_half(&mut self, gpu: &Gpu, grid: &Grid) -> Result<(), RenderError> {
-        let mut compact = CompactGrid::new(grid)?;
+        let mut compact = CompactGrid::new(grid, self.storage)?;
         compact.lose_half();
         self.words = gpu.storage("pillars, columns and bins", &compact.words())?;
         Ok(())
@@ -191,5 +222,18 @@ impl GpuGrid {
             property: sum(&[&self.values]),
             ..DeviceBytes::default()
         }
+    }
+}
+
+/// A buffer of depths or values.
+fn numbers(
+    gpu: &Gpu,
+    what: &'static str,
+    content: &[f32],
+    storage: Storage,
+) -> Result<wgpu::Buffer, RenderError> {
+    match storage {
+        Storage::Exact => gpu.storage(what, content),
+        Storage::Compact => gpu.storage(what, &packed(content)),
     }
 }

@@ -219,15 +219,32 @@ pub struct RasterPipeline {
 }
 
 impl RasterPipeline {
-    /// Compiles shader `name` for color targets of these formats and a 32-bit depth buffer.
+    /// Shader `name` for color targets of these formats and a 32-bit depth buffer, with values for its `override`
+    /// constants, compiled where it is not there yet.
     ///
     /// # Errors
     /// When it is not valid, with the compiler's words.
-    pub fn new(
+    pub fn variant(
         gpu: &Gpu,
         name: &str,
         targets: &[wgpu::TextureFormat],
+        constants: &[(&str, f64)],
+    ) -> Result<Arc<Self>, RenderError> {
+        let key = format!("{name} {targets:?} {constants:?}");
+        let compile = || Self::compile(gpu, name, targets, constants);
+        gpu.compiled.get_or_make(key, compile)
+    }
+
+    fn compile(
+        gpu: &Gpu,
+        name: &str,
+        targets: &[wgpu::TextureFormat],
+        constants: &[(&str, f64)],
     ) -> Result<Self, RenderError> {
+        let options = || wgpu::PipelineCompilationOptions {
+            constants,
+            ..Default::default()
+        };
         checked(gpu, name, || {
             let compiled = compiled(gpu, name)?;
             let targets: Vec<_> = targets
@@ -248,7 +265,7 @@ impl RasterPipeline {
                     vertex: wgpu::VertexState {
                         module: &compiled.module,
                         entry_point: Some("vertex"),
-                        compilation_options: wgpu::PipelineCompilationOptions::default(),
+                        compilation_options: options(),
                         buffers: &[],
                     },
                     primitive: wgpu::PrimitiveState::default(),
@@ -263,7 +280,7 @@ impl RasterPipeline {
                     fragment: Some(wgpu::FragmentState {
                         module: &compiled.module,
                         entry_point: Some("fragment"),
-                        compilation_options: wgpu::PipelineCompilationOptions::default(),
+                        compilation_options: options(),
                         targets: &targets,
                     }),
                     multiview_mask: None,

@@ -111,10 +111,12 @@ impl GpuRenderer {
             .update(gpu, on_device, view, tables, &progress)
             .await?;
         let strategy = match view.casts_rays() {
-            true => strategy(gpu, &mut self.strategies, view.sampling.strategy)?,
+            true => strategy(gpu, &mut self.strategies, view.sampling.strategy),
             false => &mut self.solid,
         };
-        let mut surfaces = surfaces_of(gpu, surfaces, view)?;
+        let shows_surfaces = view.style.surfaces.are_shown();
+        let mut surfaces =
+            shows_surfaces.then(|| surfaces.get_or_insert_with(|| SurfacePainter::new(gpu)));
         if let Some(surfaces) = &mut surfaces {
             let boundary = match SurfacePainter::shares_faces(view) {
                 true => Some(faces.of_drawn(gpu, grid, on_device, drawn)?),
@@ -151,6 +153,7 @@ impl GpuRenderer {
             stats,
             prepare,
             light: light.times,
+            storage_error: on_device.storage_error(),
             bytes: on_device.bytes()
                 + strategy.bytes()
                 + DeviceBytes {
@@ -176,7 +179,7 @@ impl Renderer for GpuRenderer {
         let (gpu, model, cells) = (&self.gpu, &self.model, &view.shown.cells);
         let (held, wanted) = (self.grid.revisions, self.revisions.of(view));
         if held.grid != wanted.grid {
-            self.grid = GpuGrid::of(gpu, model, cells)?;
+            self.grid = GpuGrid::of(gpu, model, view)?;
         }
         if held.values != wanted.values {
             self.grid.show(gpu, model, cells)?;
@@ -216,36 +219,18 @@ impl Renderer for GpuRenderer {
     }
 }
 
-/// What finds the surfaces of a view, compiled when it is first asked for; `None` where it shows none.
-fn surfaces_of<'a>(
-    gpu: &Gpu,
-    compiled: &'a mut Option<SurfacePainter>,
-    view: &View,
-) -> Result<Option<&'a mut SurfacePainter>, RenderError> {
-    if !view.style.surfaces.are_shown() {
-        return Ok(None);
-    }
-    let painter = match compiled.take() {
-        Some(known) => known,
-        None => SurfacePainter::new(gpu)?,
-    };
-    Ok(Some(compiled.insert(painter)))
-}
-
-/// The strategy of a kind, compiled when it is first asked for.
+/// The strategy of a kind, made when it is first asked for.
 fn strategy<'a>(
     gpu: &Gpu,
-    compiled: &'a mut Vec<(StrategyKind, Box<dyn RenderStrategy>)>,
+    made: &'a mut Vec<(StrategyKind, Box<dyn RenderStrategy>)>,
     kind: StrategyKind,
-) -> Result<&'a mut dyn RenderStrategy, RenderError> {
-    let at = match compiled.iter().position(|(k, _)| *k == kind) {
-        Some(at) => at,
-        None => {
-            compiled.push((kind, strategies::create(kind, gpu)?));
-            compiled.len() - 1
-        }
-    };
-    Ok(compiled[at].1.as_mut())
+) -> &'a mut dyn RenderStrategy {
+    let known = made.iter().position(|(k, _)| *k == kind);
+    let at = known.unwrap_or_else(|| {
+        made.push((kind, strategies::create(kind, gpu)));
+        made.len() - 1
+    });
+    made[at].1.as_mut()
 }
 
 #[cfg(test)]

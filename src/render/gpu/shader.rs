@@ -27,6 +27,8 @@ sources! {
         "transfer"
         "topology"
         "boundary"
+        "ways"
+        "segments"
         "section"
         "facing"
         "raster"

@@ -20,15 +20,17 @@ use crate::render::plan::faces::face_numbers;
 use crate::render::plan::layout::{self, PaintInfo};
 use crate::render::plan::light::Shading;
 use crate::render::plan::surfaces::{Layer, faults, layers, palette};
+use crate::render::plan::tubes::{TubePoint, TubePoints};
 use crate::scene::Hull;
 use crate::view::surfaces::{FAINT_BEHIND, FAINT_FRONT, faint_color};
 use crate::view::{Surfaces, View};
 
 /// Names and values of the `override` constants of shaders that blend surfaces.
-pub fn constants(surfaces: Surfaces) -> [(&'static str, f64); 5] {
+pub fn constants(surfaces: Surfaces) -> [(&'static str, f64); 6] {
     [
         ("SURFACES", flag(surfaces.are_shown())),
         ("HULL", flag(surfaces.hull == Hull::Opaque)),
+        ("TUBES", flag(surfaces.wells)),
         ("LAYERS", f64::from(layers(surfaces).len().max(1) as u32)),
         ("CELL_EDGES", flag(surfaces.cell_edges)),
         ("SOLID", flag(surfaces.solid)),
@@ -37,8 +39,8 @@ pub fn constants(surfaces: Surfaces) -> [(&'static str, f64); 5] {
 
 /// Finds surface points and gives them colors.
 pub struct SurfacePainter {
-    peel: RasterPipeline,
-    /// Compiled when it is first asked for.
+    /// Compiled when they are first asked for.
+    peel: Option<Arc<RasterPipeline>>,
     paint: Option<Arc<Pipeline>>,
     surfaces: Surfaces,
     shown: Option<ShownSurfaces>,
@@ -48,6 +50,9 @@ pub struct SurfacePainter {
     faint: [f32; 4],
     work: u64,
     targets: Vec<Option<FaceTarget>>,
+    /// Where rays meet wells, and the points of a part of the image.
+    tubes: Option<TubePoints>,
+    tube_target: Option<wgpu::TextureView>,
     /// What is bound in place of a layer before the first one.
     nothing: wgpu::TextureView,
 }
@@ -64,13 +69,10 @@ struct ShownSurfaces {
 }
 
 impl SurfacePainter {
-    /// Compiles the shader that finds points.
-    ///
-    /// # Errors
-    /// When the driver refuses it.
-    pub fn new(gpu: &Gpu) -> Result<Self, RenderError> {
-        Ok(Self {
-            peel: RasterPipeline::new(gpu, "peel", &[FORMAT])?,
+    /// With nothing to find.
+    pub fn new(gpu: &Gpu) -> Self {
+        Self {
+            peel: None,
             paint: None,
             surfaces: Surfaces::default(),
             shown: None,
@@ -79,8 +81,10 @@ impl SurfacePainter {
             faint: [0.0; 4],
             work: 0,
             targets: Vec::new(),
+            tubes: None,
+            tube_target: None,
             nothing: faces::texture(gpu, [1; 2], FORMAT),
-        })
+        }
     }
 
     /// True where the boundary faces of all drawn cells are the hull.
@@ -105,7 +109,9 @@ impl SurfacePainter {
     ) -> Result<(), RenderError> {
         self.surfaces = view.style.surfaces;
         let shading = Shading::of(&view.style.lighting);
-        let constants = [&constants(self.surfaces)[..], &shading.pairs()].concat();
+        let of_grid = [grid.constants().storage()];
+        self.peel = Some(RasterPipeline::variant(gpu, "peel", &[FORMAT], &of_grid)?);
+        let constants = [&of_grid[..], &constants(self.surfaces), &shading.pairs()].concat();
         self.paint = Some(Pipeline::variant(gpu, "paint", "main", &constants)?);
         let is_known = |s: &ShownSurfaces| s.revision == grid.revisions.surfaces;
         let shown = match self.shown.take().filter(is_known) {
@@ -121,6 +127,7 @@ impl SurfacePainter {
             .of_srgb(faint_color(view.style.background));
         self.faint = [r, g, b, 1.0].map(|v| v as f32);
         self.work = u64::from(layout::PAINT_WORK + work);
+        self.tubes = TubePoints::of(view);
         Ok(())
     }
 
@@ -134,14 +141,24 @@ impl SurfacePainter {
         self.work
     }
 
-    /// Records the passes that find the points of all layers.
-    pub fn peel(&mut self, round: &Round<'_>, encoder: &mut wgpu::CommandEncoder) {
-        let Some(shown) = &self.shown else {
+    /// Records the passes that find the points of all layers in a part of the image, whose upper left pixel this is.
+    pub fn peel(
+        &mut self,
+        round: &Round<'_>,
+        origin: [u32; 2],
+        encoder: &mut wgpu::CommandEncoder,
+    ) {
+        let tubes = self.tubes.as_ref();
+        self.tube_target = tubes.map(|points| tube_target(round.gpu, points, origin, round.size));
+        let (Some(shown), Some(peel)) = (&self.shown, &self.peel) else {
             return;
         };
         let layers = layers(self.surfaces);
         self.targets.resize_with(layers.len(), || None);
         let mut before = self.nothing.clone();
+        let passes = layers.iter().filter(|layer| **layer != Layer::Tube).count();
+        // Tubes come last, and are not rasterized.
+        let layers = &layers[..passes];
         for (n, (layer, slot)) in layers.iter().zip(&mut self.targets).enumerate() {
             let target = FaceTarget::fitting(slot.take(), round.gpu, round.size);
             // Only of the hull both sides of a fault are there to choose from.
@@ -152,7 +169,7 @@ impl SurfacePainter {
             let is_last = u32::from(*layer == Layer::Ground);
             let info = [number, self.gap.to_bits(), behind.to_bits(), is_last];
             let info = round.gpu.uniform("peel info", &info);
-            let place = Place::of(n, layers.len());
+            let place = Place::of(n, passes);
             let mut pass = round.raster(encoder, &target.met, &target.depth, place);
             if let Some(faces) = faces {
                 let own = [
@@ -160,8 +177,8 @@ impl SurfacePainter {
                     faces.numbers.as_entire_binding(),
                     wgpu::BindingResource::TextureView(&before),
                 ];
-                let own = round.gpu.bind(&self.peel.own, &own);
-                pass.set_pipeline(&self.peel.pipeline);
+                let own = round.gpu.bind(&peel.own, &own);
+                pass.set_pipeline(&peel.pipeline);
                 pass.set_bind_group(3, &own, &[]);
                 pass.draw(0..6 * faces.count, 0..1);
             }
@@ -179,14 +196,21 @@ impl SurfacePainter {
         round: &Round<'_>,
         encoder: &mut wgpu::CommandEncoder,
     ) {
-        let target = self.targets.get(layer as usize).and_then(Option::as_ref);
-        let (Some(shown), Some(target), Some(paint)) = (&self.shown, target, &self.paint) else {
+        let kinds = layers(self.surfaces);
+        let points = match kinds.get(layer as usize) {
+            Some(Layer::Tube) => self.tube_target.as_ref(),
+            _ => {
+                let target = self.targets.get(layer as usize).and_then(Option::as_ref);
+                target.map(|target| &target.met)
+            }
+        };
+        let (Some(shown), Some(points), Some(paint)) = (&self.shown, points, &self.paint) else {
             return;
         };
-        let kinds = layers(self.surfaces);
         let (look, [facing, edge_on]) = match kinds.get(layer as usize) {
             Some(Layer::Front) => (layout::LOOK_FAINT, FAINT_FRONT),
             Some(Layer::Ground) => (layout::LOOK_FAINT, FAINT_BEHIND),
+            Some(Layer::Tube) => (layout::LOOK_TUBE, [1.0; 2]),
             _ => (layout::LOOK_COLORED, [1.0; 2]),
         };
         let info = PaintInfo {
@@ -204,7 +228,7 @@ impl SurfacePainter {
         let info = round.gpu.uniform("paint info", &info);
         let own = [
             info.as_entire_binding(),
-            wgpu::BindingResource::TextureView(&target.met),
+            wgpu::BindingResource::TextureView(points),
             shown.fault_faces.as_entire_binding(),
         ];
         let own = round.gpu.bind(&paint.own, &own);
@@ -220,6 +244,37 @@ impl SurfacePainter {
             faults + hull.chain(&shown.sheets).map(FaceList::bytes).sum::<u64>()
         })
     }
+}
+
+/// The points of tubes in a part of the image, as `shaders/paint.wgsl` reads them.
+fn tube_target(
+    gpu: &Gpu,
+    points: &TubePoints,
+    origin: [u32; 2],
+    size: [u32; 2],
+) -> wgpu::TextureView {
+    let [width, height] = size;
+    let texel = |point: TubePoint| {
+        let [r, g, b] = point
+            .color
+            .map(|v| (v.clamp(0.0, 1.0) * 1023.0).round() as u32);
+        [1 << 30 | r << 20 | g << 10 | b, point.distance.to_bits()]
+    };
+    let pixels = (0..height).flat_map(|y| (0..width).map(move |x| [origin[0] + x, origin[1] + y]));
+    let texels: Vec<[u32; 2]> = pixels
+        .map(|pixel| points.at(pixel).map_or([0; 2], texel))
+        .collect();
+    let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
+    let texture = gpu.flat_texture("tubes", size, FORMAT, usage);
+    let layout = wgpu::TexelCopyBufferLayout {
+        offset: 0,
+        bytes_per_row: Some(8 * width),
+        rows_per_image: None,
+    };
+    let bytes = bytemuck::cast_slice(&texels);
+    gpu.queue
+        .write_texture(texture.as_image_copy(), bytes, layout, texture.size());
+    texture.create_view(&wgpu::TextureViewDescriptor::default())
 }
 
 impl ShownSurfaces {

@@ -6,11 +6,17 @@ use rayon::prelude::*;
 use super::columns::ColumnShape;
 use super::layout::BIN_IS_ODD;
 use crate::model::Grid;
+use crate::scene::Storage;
 
-/// Bytes of acceleration that an active cell may cost; the number of bins follows from it.
-const BYTES_PER_ACTIVE_CELL: f64 = 3.0;
-/// The paper's refinement of the grid: bins a column and direction, at most.
-const MAX_REFINEMENT: f64 = 1.75;
+/// Bins a column and direction, at most, and bytes of acceleration that an active cell may cost: the paper's refinement,
+/// or half as fine in half as much memory.
+fn fineness(storage: Storage) -> (f64, f64) {
+    match storage {
+        Storage::Exact => (1.75, 3.0),
+        Storage::Compact => (1.0, 1.5),
+    }
+}
+
 /// Columns are widened by this part of their extent against rounding to f32.
 const WIDENING: f64 = 1e-5;
 
@@ -80,7 +86,7 @@ impl Footprint {
 
 impl AccelGrid {
     /// Builds the bins over the active columns of a grid, relative to `origin`.
-    pub fn new(grid: &Grid, shapes: &[ColumnShape], origin: DVec3) -> Self {
+    pub fn new(grid: &Grid, shapes: &[ColumnShape], origin: DVec3, storage: Storage) -> Self {
         let footprints = footprints(grid, shapes, origin);
         let bounds = footprints.iter().map(Footprint::bounds);
         let start = [DVec3::INFINITY, DVec3::NEG_INFINITY];
@@ -93,8 +99,9 @@ impl AccelGrid {
         let extent = (high - low).max(DVec3::splat(1e-6));
         // Bins about as wide as columns, fewer where the budget does not allow that; an entry takes
         // 4 bytes and a bin 8, and a bin about as wide as a column touches about four of them.
-        let budget = BYTES_PER_ACTIVE_CELL * grid.active_cells().len() as f64;
-        let mut wanted = MAX_REFINEMENT.powi(2) * grid.dims().columns() as f64;
+        let (refinement, bytes_a_cell) = fineness(storage);
+        let budget = bytes_a_cell * grid.active_cells().len() as f64;
+        let mut wanted = refinement.powi(2) * grid.dims().columns() as f64;
         loop {
             let built = Self::build(&footprints, low, extent, wanted);
             let bytes = 8 * built.bins.len() + 4 * built.columns.len();

@@ -3,8 +3,10 @@
 use rayon::prelude::*;
 
 use super::compact_grid::pairs;
+use super::lists::HeldLists;
+use super::packing::round_values;
 use crate::model::{ColumnBits, Dims, Grid, Ijk, VertexField};
-use crate::scene::Interpolation;
+use crate::scene::{Interpolation, Storage};
 use crate::view::ShownCells;
 
 /// Slots column by column, layers fastest: bits of the drawn cells (by active index) and the count before each
@@ -57,23 +59,42 @@ pub fn cell_bits(
     drawn.iter().copied().chain(ghosts).chain(visible).collect()
 }
 
-/// The values of what is shown of the case's grid `model`: one for each cell that rays meet, in the order of slots,
-/// or one for each entry of the depth lists that are used. None is NaN.
-pub fn values(model: &Grid, cells: &ShownCells) -> Vec<f32> {
-    match cells.interpolation {
-        Interpolation::Cell => column_major(model, cells),
-        Interpolation::Vertex => at_vertices(model, cells),
+/// The values of what is shown of a grid.
+#[derive(Default)]
+pub struct Values {
+    /// One for each cell that rays meet, in the order of slots, or one for each entry of the depth lists that are used.
+    /// None is NaN.
+    pub held: Vec<f32>,
+    /// The largest change that rounding has made.
+    pub error: f64,
+}
+
+impl Values {
+    /// Of the case's grid `model`.
+    pub fn new(model: &Grid, cells: &ShownCells, storage: Storage) -> Self {
+        let mut held = match cells.interpolation {
+            Interpolation::Cell => column_major(model, cells),
+            Interpolation::Vertex => at_vertices(model, cells, storage),
+        };
+        let error = match storage {
+            Storage::Exact => 0.0,
+            Storage::Compact => round_values(&mut held),
+        };
+        Self { held, error }
     }
 }
 
-/// Values at the entries of the depth lists that are used; those that no drawn cell touches are never read.
-fn at_vertices(model: &Grid, cells: &ShownCells) -> Vec<f32> {
+/// Values at the entries of the depth lists that are used. Those that no drawn cell touches are never read: 0, or NaN
+/// where they are to be rounded with others.
+fn at_vertices(model: &Grid, cells: &ShownCells, storage: Storage) -> Vec<f32> {
+    let unknown = match storage {
+        Storage::Exact => 0.0,
+        Storage::Compact => f32::NAN,
+    };
     let values = VertexField::of(model, &cells.field, cells.valued());
     let (grid, _) = cells.in_grid(model);
-    let used: Vec<&[f32]> = grid.used_depths().of(values.values()).collect();
-    let used = used.par_iter().flat_map(|values| values.par_iter());
-    used.map(|value| if value.is_nan() { 0.0 } else { *value })
-        .collect()
+    let known = |value: f32| if value.is_nan() { unknown } else { value };
+    HeldLists::new(grid, storage).of(values.values(), known)
 }
 
 /// Values in the order of slots; ghosts have none.

@@ -10,8 +10,11 @@ use super::columns::{self, ColumnShape};
 #[cfg(test)]
 use super::layout::BIN_IS_ODD;
 use super::layout::{COLUMN_FLAG, GridInfo, LIST_GAPPED, LIST_OFFSET};
+use super::lists::HeldLists;
+use super::packing::round_depths;
 use crate::model::{DepthList, Grid};
 use crate::render::RenderError;
+use crate::scene::Storage;
 
 /// What is true of a grid as a whole.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -43,6 +46,10 @@ pub struct CompactGrid {
     pub column_lists: Vec<[u32; 4]>,
     /// The pool of depth lists.
     pub depths: Vec<f32>,
+    /// How depths and values are held; compact ones are rounded to what can be packed.
+    pub storage: Storage,
+    /// The largest change that rounding has made of a depth.
+    pub depth_error: f64,
     /// First entry in `bin_columns` and depth range of each bin; one more than there are bins.
     pub bins: Vec<[u32; 2]>,
     /// Columns of the bins.
@@ -54,7 +61,7 @@ impl CompactGrid {
     ///
     /// # Errors
     /// When its depth lists have more entries than can be numbered.
-    pub fn new(grid: &Grid) -> Result<Self, RenderError> {
+    pub fn new(grid: &Grid, storage: Storage) -> Result<Self, RenderError> {
         let used = grid.used_depths();
         if used.count() > LIST_OFFSET as usize {
             return Err(RenderError::TooLarge {
@@ -67,11 +74,19 @@ impl CompactGrid {
         let origin = round_origin(bounds);
         let start = Instant::now();
         let shapes = columns::shapes(grid);
-        let accel = AccelGrid::new(grid, &shapes, origin);
+        let accel = AccelGrid::new(grid, &shapes, origin, storage);
         let acceleration_time = start.elapsed();
         let dims = grid.dims();
         let lists = 3 * grid.pillars().len();
         let bins = lists + 2 * dims.columns();
+        let held = HeldLists::new(grid, storage);
+        let mut depths = held.of(grid.depths(), |depth| (depth - origin.z) as f32);
+        let depth_error = match storage {
+            Storage::Exact => 0.0,
+            Storage::Compact => round_depths(&mut depths, &held.pillars()),
+        };
+        // At least those of one list, which columns without active cells have.
+        depths.resize(depths.len().max(dims.nk + 1), 0.0);
         Ok(Self {
             facts: GridFacts {
                 origin,
@@ -102,8 +117,10 @@ impl CompactGrid {
                 visible: 0,
             },
             pillars: pillars(grid, origin),
-            column_lists: column_lists(grid, &shapes),
-            depths: depths(grid, origin.z),
+            column_lists: column_lists(grid, &held, &shapes),
+            depths,
+            storage,
+            depth_error,
             bins: accel.bins,
             bin_columns: accel.columns,
         })
@@ -162,19 +179,9 @@ fn pillars(grid: &Grid, origin: DVec3) -> Vec<[[f32; 2]; 3]> {
     compact.collect()
 }
 
-/// The depths of columns with active cells relative to an origin, and at least those of one list.
-fn depths(grid: &Grid, origin: f64) -> Vec<f32> {
-    let used: Vec<&[f64]> = grid.used_depths().of(grid.depths()).collect();
-    let used = used.par_iter().flat_map(|depths| depths.par_iter());
-    let mut depths: Vec<f32> = used.map(|depth| (depth - origin) as f32).collect();
-    depths.resize(depths.len().max(grid.dims().nk + 1), 0.0);
-    depths
-}
-
 /// The lists of columns; those of a column without active cells are another one's, of which no cell is asked.
-fn column_lists(grid: &Grid, shapes: &[ColumnShape]) -> Vec<[u32; 4]> {
-    let used = grid.used_depths();
-    let reference = |list: DepthList| match used.offset(list) {
+fn column_lists(grid: &Grid, held: &HeldLists<'_>, shapes: &[ColumnShape]) -> Vec<[u32; 4]> {
+    let reference = |list: DepthList| match held.offset(list) {
         Some(offset) => offset as u32 | if list.gapped() { LIST_GAPPED } else { 0 },
         None => 0,
     };
@@ -215,7 +222,7 @@ mod tests {
             map_axes: None,
         });
         let grid = grid.unwrap();
-        let compact = CompactGrid::new(&grid).unwrap();
+        let compact = CompactGrid::new(&grid, Storage::Exact).unwrap();
         assert!(compact.depths.len() < grid.depths().len() * 3 / 4);
         for cell in grid.active_cells() {
             let ijk = grid.dims().ijk(*cell);
@@ -229,7 +236,7 @@ mod tests {
             }
         }
         // With ghosts all are there.
-        let all = CompactGrid::new(&grid.with_inactive()).unwrap();
+        let all = CompactGrid::new(&grid.with_inactive(), Storage::Exact).unwrap();
         assert_eq!(all.depths.len(), grid.depths().len());
     }
 }

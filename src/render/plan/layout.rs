@@ -256,6 +256,10 @@ pub const COLUMN_FLAG: u32 = 0x4000_0000;
 pub const LIST_OFFSET: u32 = 0x3fff_ffff;
 /// Flag of a bin where points are found only by a search of all cells.
 pub const BIN_IS_ODD: u32 = 0x8000_0000;
+/// Numbers of a block of those that take 16 bits.
+pub const BLOCK: u32 = 32;
+/// Words of a block.
+pub const BLOCK_WORDS: u32 = 1 + BLOCK / 2;
 /// Voxels along one side of a brick.
 pub const BRICK: u32 = 8;
 /// Voxels that a thread fills one after the other, downward.
@@ -286,6 +290,8 @@ pub const PACKED_GHOST: u32 = 2047;
 pub const LOOK_COLORED: u32 = 0;
 /// A layer of a faint hull.
 pub const LOOK_FAINT: u32 = 1;
+/// Points of wells, which have their colors.
+pub const LOOK_TUBE: u32 = 2;
 pub use crate::view::surfaces::SHEET_LAYERS;
 /// Loop iterations that a point of a surface costs beside its light, about.
 pub const PAINT_WORK: u32 = 2;

@@ -13,13 +13,16 @@ pub mod faces;
 pub mod frame;
 pub mod layout;
 pub mod light;
+mod lists;
 pub mod majorants;
+pub mod packing;
 pub mod srg;
 pub mod surfaces;
 pub mod transfer;
+pub mod tubes;
 pub mod visible;
 pub mod volume;
 
-pub use cells::{cell_bits, drawn_words, ghost_words, values};
+pub use cells::{Values, cell_bits, drawn_words, ghost_words};
 pub use compact_grid::{CompactGrid, GridFacts, list_entry};
 pub use face_bins::face_bins;

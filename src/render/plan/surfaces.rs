@@ -20,6 +20,8 @@ pub enum Layer {
     Ground,
     /// Those of a sheet that lies behind so many others.
     Sheet(u32),
+    /// The nearest of a well.
+    Tube,
 }
 
 /// The layers that a ray can have.
@@ -31,12 +33,15 @@ pub fn layers(surfaces: Surfaces) -> Vec<Layer> {
     let hull: &[Layer] = match surfaces.hull {
         Hull::Hidden => &[],
         Hull::Faint => &[Layer::Front, Layer::Ground],
-        Hull::Opaque => return vec![Layer::Hull],
+        Hull::Opaque => &[Layer::Hull],
     };
-    hull.iter()
-        .copied()
-        .chain(sheets.map(Layer::Sheet))
-        .collect()
+    let hull = hull.iter().copied();
+    let tubes = surfaces.wells.then_some(Layer::Tube);
+    match surfaces.hull {
+        // It has the colors of faults itself.
+        Hull::Opaque => hull.chain(tubes).collect(),
+        Hull::Hidden | Hull::Faint => hull.chain(sheets.map(Layer::Sheet)).chain(tubes).collect(),
+    }
 }
 
 /// Numbers of the fault faces in rising order, and of their colors.

@@ -34,7 +34,7 @@ pub struct HeldCells<'a> {
     pub interpolation: Interpolation,
     /// Depth lists of the columns.
     pub lists: &'a [[u32; 4]],
-    /// See [`super::values`].
+    /// See [`super::Values`].
     pub values: &'a [f32],
     /// See [`super::drawn_words`].
     pub drawn: &'a [[u32; 2]],

@@ -41,6 +41,12 @@ pub fn show(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action>) {
         ui.end_row();
         ui.checkbox(&mut show.legend, "Legend")
             .on_hover_text("Legend and title");
+        let has_wells = !about.case.about.wells.is_empty();
+        let wells = egui::Checkbox::new(&mut show.wells, "Wells");
+        ui.add_enabled(has_wells, wells)
+            .on_hover_text("Tubes through the cells that wells are connected to: green for producers, blue for water injectors, orange for gas injectors, gray where nothing flows")
+            .on_disabled_hover_text("The files name no wells");
+        ui.end_row();
         background(ui, about, actions);
         ui.end_row();
     });

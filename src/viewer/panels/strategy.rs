@@ -4,7 +4,7 @@ use eframe::egui::{self, Ui};
 
 use super::PanelContext;
 use super::controls::slider;
-use crate::scene::{Integration, StrategyKind};
+use crate::scene::{Integration, Storage, StrategyKind};
 use crate::viewer::action::Action;
 
 pub fn show(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action>) {
@@ -27,6 +27,7 @@ pub fn show(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action>) {
                 StrategyKind::Plts => plts(ui, about, actions),
             }
             sampling_step(ui, about, actions);
+            storage(ui, about, actions);
         })
         .header_response
         .on_hover_text("How rays are sampled; the defaults suit most models");
@@ -52,6 +53,18 @@ fn sampling_step(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action
                 actions.push(Action::SamplingStep(None));
             }
         });
+    }
+}
+
+fn storage(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action>) {
+    let mut is_compact = about.scene.storage == Storage::Compact;
+    let choice = ui.checkbox(&mut is_compact, "Depths and values in 16 bits");
+    let what = "Half the memory on the GPU; depths are off by some millimeters";
+    if choice.on_hover_text(what).changed() {
+        actions.push(Action::Storage(match is_compact {
+            true => Storage::Compact,
+            false => Storage::Exact,
+        }));
     }
 }
 

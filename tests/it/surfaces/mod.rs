@@ -29,6 +29,7 @@ use strataray::view::{self, Surfaces, View};
 const NONE: Surfaces = Surfaces {
     hull: Hull::Hidden,
     faults: false,
+    wells: false,
     cell_edges: false,
     solid: false,
 };

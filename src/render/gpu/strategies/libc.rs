@@ -70,18 +70,15 @@ impl Variant {
 }
 
 impl Libc {
-    /// Compiles the shader of the faces.
-    ///
-    /// # Errors
-    /// When the driver refuses one.
-    pub fn new(gpu: &Gpu) -> Result<Self, RenderError> {
-        Ok(Self {
+    /// Without rays yet.
+    pub fn new(gpu: &Gpu) -> Self {
+        Self {
             pipelines: None,
-            faces: FaceRaster::new(gpu)?,
+            faces: FaceRaster::default(),
             target: None,
             rays: gpu.scratch("rays left", COUNT_BYTES + 2 * 4 * tiles::MAX_AREA),
             list: 0,
-        })
+        }
     }
 }
 
@@ -121,8 +118,8 @@ impl RenderStrategy for Libc {
                 true => f32::MAX,
                 false => what.view.fault_gap() as f32,
             };
-            self.faces.update(what.gpu, what.faces, margin);
-            Ok(())
+            let constants = what.grid.constants();
+            self.faces.update(what.gpu, constants, what.faces, margin)
         })
     }
 

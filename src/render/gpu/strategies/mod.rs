@@ -7,17 +7,13 @@ pub mod srg;
 
 use super::Gpu;
 use super::strategy::RenderStrategy;
-use crate::render::RenderError;
 use crate::scene::StrategyKind;
 
-/// Compiles a strategy for a device.
-///
-/// # Errors
-/// When the driver refuses its shader.
-pub fn create(kind: StrategyKind, gpu: &Gpu) -> Result<Box<dyn RenderStrategy>, RenderError> {
-    Ok(match kind {
-        StrategyKind::Libc => Box::new(libc::Libc::new(gpu)?),
+/// A strategy on a device; what it needs is compiled when it is first asked for.
+pub fn create(kind: StrategyKind, gpu: &Gpu) -> Box<dyn RenderStrategy> {
+    match kind {
+        StrategyKind::Libc => Box::new(libc::Libc::new(gpu)),
         StrategyKind::Plts => Box::new(plts::Plts::default()),
-        StrategyKind::Srg => Box::new(srg::Srg::new(gpu)?),
-    })
+        StrategyKind::Srg => Box::new(srg::Srg::new(gpu)),
+    }
 }

@@ -64,11 +64,6 @@ impl RenderStrategy for Plts {
 
     fn prepare<'a>(&'a mut self, what: &'a Preparation<'a>) -> Work<'a, ()> {
         Box::pin(async move {
-            if what.view.sampling.plts.integration == Integration::Segments {
-                return Err(RenderError::CpuOnly(
-                    "\"plts\": {\"integration\": \"segments\"}",
-                ));
-            }
             let known = self.faces.take();
             self.faces = match (known, what.faces) {
                 (Some(known), Some(list)) if known.revision == list.revision => Some(known),
@@ -76,8 +71,17 @@ impl RenderStrategy for Plts {
                 _ => None,
             };
             let by_faces = self.faces.as_ref().is_some_and(|f| !f.are_missing);
-            let own = [("BY_FACES", flag(by_faces))];
-            let constants: Vec<_> = own.into_iter().chain(Common::of(what).pairs()).collect();
+            let common = Common::of(what);
+            // Where layers cross, a point of several cells belongs to the first of them: each sample is located. Many rays
+            // a sample are more than a segment can wait for.
+            let by_segment = what.view.sampling.plts.integration == Integration::Segments
+                && !what.grid.facts.layers_cross
+                && !common.casts_rays();
+            let own = [
+                ("BY_FACES", flag(by_faces)),
+                ("BY_SEGMENT", flag(by_segment)),
+            ];
+            let constants: Vec<_> = own.into_iter().chain(common.pairs()).collect();
             self.pipeline = Some(Pipeline::variant(what.gpu, "plts", "main", &constants)?);
             Ok(())
         })

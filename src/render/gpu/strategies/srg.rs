@@ -89,20 +89,17 @@ impl Variant {
 }
 
 impl Srg {
-    /// Compiles the shader of the faces.
-    ///
-    /// # Errors
-    /// When the driver refuses one.
-    pub fn new(gpu: &Gpu) -> Result<Self, RenderError> {
-        Ok(Self {
+    /// Without a volume yet.
+    pub fn new(gpu: &Gpu) -> Self {
+        Self {
             pipelines: None,
             sampler: gpu.linear_sampler(),
-            faces: FaceRaster::new(gpu)?,
+            faces: FaceRaster::default(),
             targets: [None, None],
             pace: Pace::default(),
             fills: 0,
             filled: None,
-        })
+        }
     }
 
     /// Number of times that the volume was filled.
@@ -199,7 +196,8 @@ impl RenderStrategy for Srg {
             let sections = view.shown.clip.iter().any(|plane| plane.opaque);
             let variant = Variant::of(&settings, sections, Common::of(what));
             self.pipelines = Some(variant.compile(what.gpu)?);
-            self.faces.update(what.gpu, what.faces, 0.0);
+            let constants = what.grid.constants();
+            self.faces.update(what.gpu, constants, what.faces, 0.0)?;
             let budget = settings.budget_bytes();
             let limit = what.gpu.device.limits().max_texture_dimension_3d;
             let ghosts = view.shown.cells.ghosts.is_some();

@@ -1,0 +1,178 @@
+//! Wells as tubes in world space: through the cells that they are connected to, and up to a head above the model.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+
+use super::error::SceneError;
+use crate::case::{Case, Connection, ConnectionAxis, Well, WellKind};
+use crate::model::{Grid, Ijk, Spaces};
+
+/// The wells that a view shows.
+///
+/// A well is a chain of capsules, each of them all points within a radius of a straight line. They are opaque, cut by
+/// clip planes, and lit by the lamp of the hull (see [`super::Surfaces`]) and by all light there is; exact colors turn
+/// the lamp off. Where they lie nearer to the viewer than samples they cover these, whatever cells are drawn.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Wells {
+    /// The capsules of all of them.
+    pub capsules: Vec<Capsule>,
+    /// Where each begins.
+    pub heads: Vec<Head>,
+}
+
+/// All points within a radius of a straight line.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Capsule {
+    /// Ends of the line in world space.
+    pub ends: [DVec3; 2],
+    /// The radius.
+    pub radius: f64,
+    /// Color in sRGB, 0..1.
+    pub color: [f64; 3],
+    /// Number of its well, as in [`Wells::heads`].
+    pub well: usize,
+}
+
+/// Where a well begins.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Head {
+    /// Name of the well.
+    pub name: String,
+    /// Its place in world space.
+    pub at: DVec3,
+    /// Radius of the tube there.
+    pub radius: f64,
+    /// Color of the well in sRGB, 0..1.
+    pub color: [f64; 3],
+}
+
+/// Radius of a tube as a part of the diagonal of the model's box, at most and at least.
+const RADIUS: [f64; 2] = [0.0035, 0.0015];
+/// Radius of a tube as a part of the mean edge of cells, at most: else wells hide the cells beside them.
+const PART_OF_CELL: f64 = 0.25;
+/// How much thicker tubes are in cells that they are open to, and at the head.
+const OPEN: f64 = 1.7;
+const HEAD: f64 = 2.4;
+/// Height of heads above the model's box, as a part of its diagonal.
+const ABOVE: f64 = 0.035;
+
+/// Color of a well (sRGB, 0..1): of those that color-blind people tell apart (Okabe and Ito 2008), gray where it is
+/// shut.
+pub fn well_color(kind: WellKind, is_open: bool) -> [f64; 3] {
+    match kind {
+        _ if !is_open => [0.45, 0.45, 0.45],
+        WellKind::Producer => [0.0, 0.620, 0.451],
+        WellKind::OilInjector => [0.902, 0.624, 0.0],
+        WellKind::WaterInjector => [0.0, 0.447, 0.698],
+        WellKind::GasInjector => [0.835, 0.369, 0.0],
+        WellKind::Unknown => [0.6, 0.6, 0.6],
+    }
+}
+
+/// What tubes are drawn by.
+pub(super) struct Measures<'a> {
+    /// Grid to world.
+    pub spaces: &'a Spaces,
+    /// Corners of the model's box in world space.
+    pub corners: &'a [DVec3; 8],
+    /// Mean edge of the cells across the depth.
+    pub lateral: f64,
+}
+
+/// The wells of a case at a step; none of those that have no connection in the global grid.
+pub(super) fn shown(
+    case: &Case,
+    step: usize,
+    measures: &Measures<'_>,
+) -> Result<Arc<Wells>, SceneError> {
+    let mut wells = Wells::default();
+    for well in case.wells(step)?.iter() {
+        wells.add(&case.grid, well, measures);
+    }
+    Ok(Arc::new(wells))
+}
+
+impl Wells {
+    fn add(&mut self, grid: &Grid, well: &Well, measures: &Measures<'_>) {
+        let pieces = pieces(grid, well, measures.spaces);
+        let Some((first, _)) = pieces.first() else {
+            return;
+        };
+        let diagonal = measures.corners[0].distance(measures.corners[7]);
+        let [most, least] = RADIUS.map(|part| part * diagonal);
+        let radius = (PART_OF_CELL * measures.lateral).clamp(least, most);
+        let tops = measures.corners.iter().map(|corner| corner.z);
+        let top = tops.fold(f64::MIN, f64::max) + ABOVE * diagonal;
+        let color = well_color(well.kind, well.is_open);
+        let closed = well_color(well.kind, false);
+        let number = self.heads.len();
+        let mut add = |ends, radius, color| {
+            self.capsules.push(Capsule {
+                ends,
+                radius,
+                color,
+                well: number,
+            });
+        };
+        let head = first[0].with_z(top);
+        add([head; 2], HEAD * radius, color);
+        let mut before = head;
+        for ([from, to], is_open) in &pieces {
+            if before.distance(*from) > 1e-9 * diagonal {
+                add([before, *from], radius, color);
+            }
+            match *is_open && well.is_open {
+                true => add([*from, *to], OPEN * radius, color),
+                false => add([*from, *to], radius, closed),
+            }
+            before = *to;
+        }
+        self.heads.push(Head {
+            name: well.name.clone(),
+            at: head,
+            radius: HEAD * radius,
+            color,
+        });
+    }
+}
+
+/// The parts of a well in its cells, from the head on, in world space; true where something can flow.
+fn pieces(grid: &Grid, well: &Well, spaces: &Spaces) -> Vec<([DVec3; 2], bool)> {
+    let mut pieces: Vec<([DVec3; 2], bool)> = Vec::new();
+    for connection in &well.connections {
+        let Some(ends) = ends(grid, connection) else {
+            continue;
+        };
+        let [a, b] = ends.map(|p| spaces.world_from_grid.transform_point3(p));
+        let before = pieces.last().map(|([_, before], _)| *before);
+        // The nearer end comes first; of the first cell the upper one.
+        let is_turned = match before {
+            Some(before) => before.distance(b) < before.distance(a),
+            None => b.z > a.z,
+        };
+        let ends = if is_turned { [b, a] } else { [a, b] };
+        pieces.push((ends, connection.is_open));
+    }
+    pieces
+}
+
+/// Middles of the two faces through which a well passes a cell, in grid space; `None` where that lies in a local grid
+/// or in none.
+fn ends(grid: &Grid, connection: &Connection) -> Option<[DVec3; 2]> {
+    let (dims, Ijk { i, j, k }) = (grid.dims(), connection.cell);
+    if connection.grid.is_some() || i >= dims.ni || j >= dims.nj || k >= dims.nk {
+        return None;
+    }
+    let corners = grid.hexahedron(connection.cell).0;
+    let bit = match connection.axis {
+        ConnectionAxis::I => 0,
+        ConnectionAxis::J => 1,
+        ConnectionAxis::K => 2,
+    };
+    let middle = |end: usize| {
+        let of_face = (0..8).filter(|n| n >> bit & 1 == end);
+        0.25 * of_face.map(|n| corners[n]).sum::<DVec3>()
+    };
+    Some([middle(0), middle(1)])
+}
