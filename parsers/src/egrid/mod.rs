@@ -70,7 +70,7 @@ pub struct Egrid {
 }
 
 impl Egrid {
-    /// Reads the grids of an EGRID, FEGRID, GRID or FGRID file; which one it is its content says.
+    /// Reads the grids of an EGRID, FEGRID, GRID or FGRID file, or of binary GRDECL; which one it is its content says.
     ///
     /// A local grid that is damaged is left out with a warning.
     ///
@@ -97,14 +97,14 @@ impl Egrid {
             file: &file,
             entries: &entries[..first_local.unwrap_or(entries.len())],
         };
-        let is_legacy = global.find("GRIDHEAD").is_none() && global.find("COORDS").is_some();
+        let is_legacy = global.find("COORD").is_none() && global.find("COORDS").is_some();
         if is_legacy {
             return legacy::read(&global, warnings);
         }
         let head = global.head()?;
         if head.is_radial {
             let message = "the grid is radial; only Cartesian corner-point grids are read";
-            return Err(file.error(ErrorKind::Unsupported, global.need("GRIDHEAD")?, message));
+            return Err(file.error(ErrorKind::Unsupported, global.head_entry()?, message));
         }
         let geometry = global.geometry(head.dims)?;
         let mut coord = geometry.coord;

@@ -2,7 +2,7 @@
 
 use crate::error::{At, ErrorKind, ParseError};
 use crate::geometry::{Lengths, MOST_CELLS, first_not, unaddressable};
-use crate::records::{Entry, RecordFile};
+use crate::records::{Entry, Kind, RecordFile};
 
 /// The arrays of a file that belong to one grid.
 #[derive(Clone, Copy)]
@@ -50,9 +50,28 @@ impl<'a> Section<'a> {
         Ok(strings.and_then(|s| s.into_iter().next()))
     }
 
+    /// GRIDHEAD, or the SPECGRID that binary GRDECL has in its place.
+    pub(super) fn head_entry(&self) -> Result<&'a Entry, ParseError> {
+        let spec = self.find("SPECGRID").filter(|e| e.kind == Kind::Inte);
+        match (self.find("GRIDHEAD"), spec) {
+            (None, Some(spec)) => Ok(spec),
+            _ => self.need("GRIDHEAD"),
+        }
+    }
+
     pub(super) fn head(&self) -> Result<Head, ParseError> {
-        let (file, head) = (self.file, self.need("GRIDHEAD")?);
+        let (file, head) = (self.file, self.head_entry()?);
         let values = file.i32s(head)?;
+        if head.name() == "SPECGRID" {
+            // Cells along i, j, k, coordinate systems, and 1 where these are radial.
+            let item = |n: usize| values.get(n).copied().unwrap_or(0);
+            return Ok(Head {
+                dims: dimensions(file, head, [item(0), item(1), item(2)])?,
+                number: 0,
+                is_radial: item(4) > 0,
+                host_box: None,
+            });
+        }
         let [kind, ni, nj, nk, ..] = values[..] else {
             return Err(file.error(
                 ErrorKind::WrongCount,
@@ -80,7 +99,7 @@ impl<'a> Section<'a> {
     /// COORD, ZCORN and ACTNUM.
     pub(super) fn geometry(&self, dims: [usize; 3]) -> Result<Geometry, ParseError> {
         let Some(lengths) = Lengths::of(dims) else {
-            let head = self.need("GRIDHEAD")?;
+            let head = self.head_entry()?;
             let message = unaddressable(dims);
             return Err(self.file.error(ErrorKind::TooLarge, head, message));
         };

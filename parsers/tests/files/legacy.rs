@@ -205,6 +205,30 @@ fn err_what_is_no_pillar_grid() {
 }
 
 #[test]
+fn ok_binary_grdecl() {
+    let grid = small();
+    let write = |kind: i32| {
+        let mut out = RecordWriter::new(Vec::new());
+        out.inte("SPECGRID", &[3, 2, 4, 1, kind]).unwrap();
+        out.real("COORD", &grid.coord).unwrap();
+        out.real("ZCORN", &grid.zcorn).unwrap();
+        out.inte("ACTNUM", grid.actnum.as_ref().unwrap()).unwrap();
+        out.finish().unwrap()
+    };
+    let mut warnings = Warnings::default();
+    let twin = read(&write(0), &mut warnings).unwrap();
+    assert!(warnings.is_empty());
+    assert_eq!((twin.dims, &twin.coord), (grid.dims, &grid.coord));
+    assert_eq!((&twin.zcorn, &twin.actnum), (&grid.zcorn, &grid.actnum));
+    let error = read(&write(1), &mut warnings).unwrap_err();
+    assert_eq!(error.kind, ErrorKind::Unsupported);
+    assert!(
+        error.to_string().contains("SPECGRID: the grid is radial"),
+        "{error}"
+    );
+}
+
+#[test]
 fn ok_a_case_prefers_egrid() {
     let folder = tempfile::tempdir().unwrap();
     let bytes = write(&small(), RecordWriter::new(Vec::new()), |_| true);
