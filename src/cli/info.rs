@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use rayon::prelude::*;
 use serde_json::{Value, json};
-use strataray::case::{Case, Kind, NamedFault, Property};
+use strataray::case::{Case, Connection, Kind, NamedFault, Property};
 use strataray::model::{MapAxes, Spaces};
 
 use super::Verbosity;
@@ -24,6 +24,9 @@ pub struct Arguments {
     /// Statistics of a property, of dynamic ones at a step (default last).
     #[arg(long, value_name = "NAME[@STEP]")]
     stats: Vec<String>,
+    /// Wells at each step: type, open or shut, connected cells.
+    #[arg(long)]
+    wells: bool,
     #[command(flatten)]
     added: AddedFiles,
     #[command(flatten)]
@@ -33,11 +36,66 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let reporter = Reporter::new(arguments.verbosity);
     let case = arguments.added.open_case(&arguments.case, &reporter)?;
-    let facts = facts(&case, &arguments.stats)?;
+    let mut facts = facts(&case, &arguments.stats)?;
+    if arguments.wells {
+        facts["wells"] = wells(&case)?;
+    }
     if arguments.json {
         say_line!("{}", serde_json::to_string_pretty(&facts)?);
     } else {
         print_text(&case, &facts);
+        if arguments.wells {
+            print_wells(&case)?;
+        }
+    }
+    Ok(())
+}
+
+/// Each well with its steps; cells count from 1.
+fn wells(case: &Case) -> anyhow::Result<Value> {
+    let mut wells: Vec<(String, Vec<Value>)> = Vec::new();
+    for index in 0..case.steps.len() {
+        for well in case.wells(index)?.iter() {
+            let step = json!({
+                "index": index,
+                "type": well.kind.name(),
+                "open": well.is_open,
+                "connections": well.connections.iter().map(connection).collect::<Vec<_>>(),
+            });
+            match wells.iter_mut().find(|(name, _)| *name == well.name) {
+                Some((_, steps)) => steps.push(step),
+                None => wells.push((well.name.clone(), vec![step])),
+            }
+        }
+    }
+    let entries = wells.iter();
+    Ok(entries
+        .map(|(name, steps)| json!({"name": name, "steps": steps}))
+        .collect())
+}
+
+fn connection(connection: &Connection) -> Value {
+    let cell = connection.cell;
+    json!({
+        "grid": connection.grid.as_deref().unwrap_or_default(),
+        "i": cell.i + 1,
+        "j": cell.j + 1,
+        "k": cell.k + 1,
+        "open": connection.is_open,
+    })
+}
+
+/// A line for each well of the last step.
+fn print_wells(case: &Case) -> anyhow::Result<()> {
+    for well in case.wells(case.steps.len().saturating_sub(1))?.iter() {
+        let open = well.connections.iter().filter(|c| c.is_open).count();
+        say_line!(
+            "  well {}: {}, {}, {open} of {} connections open",
+            well.name,
+            well.kind.name(),
+            if well.is_open { "open" } else { "shut" },
+            well.connections.len()
+        );
     }
     Ok(())
 }

@@ -184,3 +184,31 @@ fn wells_of_restart_steps_are_shown_with_their_names() {
     let hidden = opened(&case, &json!({"size": [64, 64], "show": {"wells": false}}));
     assert!(hidden.shown.wells.capsules.is_empty() && !hidden.style.surfaces.wells);
 }
+
+#[test]
+fn the_command_tells_wells_at_each_step() {
+    let Some(file) = common::data("reek/REEK.EGRID") else {
+        return;
+    };
+    let output = std::process::Command::new(env!("CARGO_BIN_EXE_strataray"))
+        .args(["info", "--json", "--wells", "--quiet"])
+        .arg(&file)
+        .output()
+        .unwrap();
+    assert!(output.status.success());
+    let facts: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let wells = facts["wells"].as_array().unwrap();
+    assert_eq!(wells.len(), 8);
+    let case = load::open(&file).unwrap();
+    let last = case.steps.len() - 1;
+    for (well, told) in case.wells(last).unwrap().iter().zip(wells) {
+        let step = told["steps"].as_array().unwrap().last().unwrap();
+        assert_eq!(told["name"], json!(well.name));
+        assert_eq!(step["index"], json!(last));
+        assert_eq!(step["type"], json!(well.kind.name()));
+        let first = &step["connections"][0];
+        let cell = well.connections[0].cell;
+        let at = ["i", "j", "k"].map(|axis| first[axis].as_u64().unwrap() as usize);
+        assert_eq!(at, [cell.i + 1, cell.j + 1, cell.k + 1]);
+    }
+}
