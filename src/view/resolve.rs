@@ -14,9 +14,10 @@ use super::lighting::{self, Lighting};
 use super::look::default_property;
 use super::step::{step_of, well_step};
 use super::voxels::Shape;
+use super::wells::Measures;
 use super::{
-    Camera, ClipPlane, Notes, Sampling, Shown, ShownCells, Style, Surfaces, View, World, clip,
-    filter, surfaces, wells,
+    Camera, ClipPlane, Notes, Sampling, Shown, ShownCells, Style, Surfaces, View, Wells, World,
+    clip, filter, surfaces, wells,
 };
 use crate::case::Case;
 use crate::model::{CellField, Dims, Grid, Ijk, Spaces};
@@ -69,17 +70,7 @@ pub(super) fn resolve_over(
         box_corners,
     } = cells(&asked, [&field, &in_scale], &spaces, &clip)?;
     let world_bounds = bounds_of(&box_corners);
-    let wells = match scene.show.wells {
-        true => {
-            let measures = wells::Measures {
-                spaces: &spaces,
-                corners: &box_corners,
-                lateral: 0.5 * (edges.x + edges.y),
-            };
-            wells::shown(case, well_step(case, &scene.step), &measures)?
-        }
-        false => Arc::default(),
-    };
+    let wells = shown_wells(scene, case, &Measures::of(&spaces, &box_corners, edges))?;
     let size = checked_size(scene.size)?;
     Ok(View {
         size,
@@ -91,15 +82,11 @@ pub(super) fn resolve_over(
         )?,
         sampling: sampling(scene, case.grid.dims(), edges, world_bounds)?,
         style: Style {
-            background: presets::parse_color(&scene.background)
-                .ok_or_else(|| wrong("background", "must be a color like #ffffff"))?,
+            background: background(scene)?,
             transfer,
             beyond,
             blending: scene.blending,
-            surfaces: Surfaces {
-                wells: !wells.capsules.is_empty(),
-                ..Surfaces::of(scene)
-            },
+            surfaces: wells.among(Surfaces::of(scene)),
             lighting: lighting(scene, case, &box_corners)?,
         },
         shown: Shown {
@@ -125,12 +112,33 @@ pub(super) fn resolve_over(
             corners: box_corners,
             subject: Arc::new(subject),
         },
-        notes: Notes {
-            has_box: scene.show.r#box,
-            has_legend: scene.show.legend,
-            facts,
-        },
+        notes: notes(scene, facts),
     })
+}
+
+/// The wells that a scene shows, of the step that it names whether or not its property changes with time.
+fn shown_wells(
+    scene: &Scene,
+    case: &Case,
+    measures: &Measures<'_>,
+) -> Result<Arc<Wells>, SceneError> {
+    match scene.show.wells {
+        true => wells::shown(case, well_step(case, &scene.step), measures),
+        false => Ok(Arc::default()),
+    }
+}
+
+fn notes(scene: &Scene, facts: Option<Arc<Facts>>) -> Notes {
+    Notes {
+        has_box: scene.show.r#box,
+        has_legend: scene.show.legend,
+        facts,
+    }
+}
+
+fn background(scene: &Scene) -> Result<[f64; 3], SceneError> {
+    let color = presets::parse_color(&scene.background);
+    color.ok_or_else(|| wrong("background", "must be a color like #ffffff"))
 }
 
 fn sampling(

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::error::SceneError;
+use super::surfaces::Surfaces;
 use crate::case::{Case, Connection, ConnectionAxis, Well, WellKind};
 use crate::model::{Grid, Ijk, Spaces};
 
@@ -80,6 +81,17 @@ pub(super) struct Measures<'a> {
     pub lateral: f64,
 }
 
+impl<'a> Measures<'a> {
+    /// Those of a model of cells with such mean edges.
+    pub fn of(spaces: &'a Spaces, corners: &'a [DVec3; 8], edges: DVec3) -> Self {
+        Self {
+            spaces,
+            corners,
+            lateral: 0.5 * (edges.x + edges.y),
+        }
+    }
+}
+
 /// The wells of a case at a step; none of those that have no connection in the global grid.
 pub(super) fn shown(
     case: &Case,
@@ -94,6 +106,14 @@ pub(super) fn shown(
 }
 
 impl Wells {
+    /// Surfaces with these wells among them, where there are some.
+    pub(super) fn among(&self, surfaces: Surfaces) -> Surfaces {
+        Surfaces {
+            wells: !self.capsules.is_empty(),
+            ..surfaces
+        }
+    }
+
     fn add(&mut self, grid: &Grid, well: &Well, measures: &Measures<'_>) {
         let pieces = pieces(grid, well, measures.spaces);
         let Some((first, _)) = pieces.first() else {
