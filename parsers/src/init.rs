@@ -45,10 +45,10 @@ pub fn write<W: Write, N: AsRef<str>>(
     out.finish()
 }
 
-/// As [`write`], into a file of any form.
+/// As [`write()`], into a file of any form.
 ///
 /// # Errors
-/// As [`write`].
+/// As [`write()`].
 pub fn write_to<W: Write, N: AsRef<str>>(
     out: &mut RecordWriter<W>,
     head: &Head,

@@ -3,7 +3,7 @@
 
 use glam::{Vec3A, Vec4};
 
-use super::along::{LightAlong, SPACING};
+use super::along::{LightAlong, SPACING, Shade};
 use super::frame::{Frame, Ray};
 use super::lamps::smoothstep;
 use super::light::Light;
@@ -19,36 +19,6 @@ pub struct Shading<'a> {
     light: Option<Light<'a>>,
     /// Distance along a ray between places where its light is found; 0 where each sample has its own.
     spacing: f32,
-}
-
-/// What light makes of a color: its factor, and what is added.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Shade {
-    factor: Vec3A,
-    highlight: Vec3A,
-}
-
-impl Shade {
-    /// Leaves colors as they are.
-    pub const NONE: Self = Self {
-        factor: Vec3A::ONE,
-        highlight: Vec3A::ZERO,
-    };
-
-    /// The shaded color.
-    #[inline]
-    pub fn of(self, color: Vec3A) -> Vec3A {
-        color * self.factor + self.highlight
-    }
-
-    /// A part of the way to another one.
-    #[inline]
-    pub fn lerp(self, other: Self, part: f32) -> Self {
-        Self {
-            factor: self.factor.lerp(other.factor, part),
-            highlight: self.highlight.lerp(other.highlight, part),
-        }
-    }
 }
 
 impl<'a> Shading<'a> {
@@ -109,7 +79,10 @@ impl<'a> Shading<'a> {
                 self.shade(color, ray.at(distance), is_ghost)
             }
             Some(_) if self.exact_colors => color,
-            Some(_) => along.at(self, ray, self.spacing, distance).of(color),
+            Some(_) => {
+                let find = |distance| self.find(ray.at(distance), false);
+                along.at(self.spacing, distance, find).of(color)
+            }
         }
     }
 
