@@ -110,7 +110,7 @@ const VALUE_BYTES: [u64; 2] = [8 * 4, 4];
 const SAMPLE_BYTES: u64 = 8 * 4;
 
 impl FrameStats {
-    /// Bytes of geometry and values that the rays read at least: all of a cell each time that one is crossed or
+    /// Bytes of geometry and values in exact storage that the rays read at least: all of a cell each time that one is crossed or
     /// looked up, and by SRG the voxels around each sample. Lists of faces, the acceleration grid, light and what
     /// Newton's method reads again are not among them.
     pub fn bytes_read(&self, view: &View) -> u64 {
