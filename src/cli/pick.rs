@@ -99,6 +99,9 @@ fn facts(case: &Case, pixel: [i64; 2], pick: &Pick) -> Value {
         "step": is_dynamic.then_some(pick.step),
         "unit": case.unit(&pick.property),
         "hit": pick.hit.as_ref().map(fact_of_hit),
+        "well": pick.well.as_ref().map(|well| {
+            json!({"name": well.name, "type": well.kind.name(), "open": well.is_open})
+        }),
         "ray": pick.cells.iter().map(fact_of_cell).collect::<Vec<_>>(),
         "before": before,
         "behind": behind,
@@ -157,6 +160,9 @@ fn single(value: f64) -> f64 {
 }
 
 fn text(case: &Case, [x, y]: [i64; 2], pick: &Pick) -> String {
+    if let Some(well) = &pick.well {
+        return well.in_words() + "\n";
+    }
     let Some(hit) = &pick.hit else {
         return match pick.cells.len() {
             0 => format!("No cell at pixel {x},{y}.\n"),

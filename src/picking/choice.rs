@@ -13,12 +13,14 @@ const OWN_LIKE: f64 = 20.0;
 /// How much colors count at least: where none is like the pixel's, contributions decide.
 const UNLIKE: f64 = 1e-4;
 
-/// What is seen: a cell or a sheet.
+/// What is seen: a cell, a sheet or a well.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 enum Thing {
     Cell(Ijk),
     /// The piece that it is.
     Sheet(usize),
+    /// The piece that it is.
+    Well(usize),
 }
 
 /// How much a thing adds to the color that is seen.
@@ -45,6 +47,7 @@ pub(super) fn seen(
         let (thing, own) = match &piece.of {
             PieceSource::Cell { ijk, .. } => (Thing::Cell(*ijk), own_color(*ijk)),
             PieceSource::Sheet(_) => (Thing::Sheet(n), None),
+            PieceSource::Well(_) => (Thing::Well(n), None),
             PieceSource::Ghost => continue,
         };
         if *contribution <= 0.0 {

@@ -32,6 +32,8 @@ pub(super) enum PieceSource {
     Sheet(FaceHit),
     /// An inactive cell, which has no value.
     Ghost,
+    /// A well, by its number in the view.
+    Well(usize),
 }
 
 /// What a ray has passed, and the color of its pixel without light and background.
@@ -95,7 +97,7 @@ impl Gathered {
                 PieceSource::Cell { ijk, .. } => (*ijk, *contribution),
                 // It has its own color, but lies on a face of that cell.
                 PieceSource::Sheet(hit) => (hit.cell, 0.0),
-                PieceSource::Ghost => continue,
+                PieceSource::Ghost | PieceSource::Well(_) => continue,
             };
             let place = *places.entry(ijk).or_insert(cells.len());
             match cells.get_mut(place) {

@@ -11,7 +11,7 @@
 //! `max(exp(-(d / 8)^2 - (e / 20)^2), 0.0001)`, `d` being the CIEDE2000 difference between the color of the sample
 //! and that of the pixel, and `e` the one between the color of the cell's own value and the pixel's. Taken is the
 //! cell that adds most, at the sample that adds most of it. An opaque face or section adds everything, so that it
-//! is taken wherever nothing is before it. A fault's sheet is taken where it adds more than every cell.
+//! is taken wherever nothing is before it. A fault's sheet or a well is taken where it adds more than every cell.
 //!
 //! The cell that contributes most is not always the one that is seen: a pixel of orange has faint blue before
 //! thin orange layers, of which each one adds less than the blue does. Nor is it enough that a color is near:
@@ -28,10 +28,11 @@ use glam::{DVec2, DVec3};
 use crate::case::{Case, CaseError};
 use crate::model::topology::{Behind, Face};
 use crate::model::{FaceHit, Grid, Ijk};
-use crate::render::{RenderError, Renderer};
+use crate::render::{RenderError, Renderer, tube_at};
 use crate::view::View;
+use crate::view::wells::Head;
 
-use gather::{Gathered, Passed, PieceSource};
+use gather::{Gathered, Passed, Piece, PieceSource};
 use sight::Sight;
 
 /// Opacity below which a pixel shows nothing but background.
@@ -52,6 +53,8 @@ pub struct Pick {
     pub hit: Option<Hit>,
     /// The nearest fault that is seen there, by itself or through the cells.
     pub fault: Option<Fault>,
+    /// The well that is seen there; then no cell is.
+    pub well: Option<Head>,
 }
 
 /// A drawn cell on a ray.
@@ -173,13 +176,27 @@ pub fn pick(
         step: view.shown.step,
         ..Pick::default()
     };
+    let tube = tube_at(view, at);
+    let head = |number: usize| view.shown.wells.heads.get(number).cloned();
     let Some(line) = renderer.look(view, at)? else {
-        return Ok(nothing);
+        // Beside the model there are the heads of wells.
+        return Ok(Pick {
+            well: tube.and_then(|tube| head(tube.well as usize)),
+            ..nothing
+        });
     };
-    let sight = Sight::new(case, view, &line);
+    let sight = Sight::new(case, view, &line, tube);
     let gathered = Gathered::of(sight.pieces(), view);
     let cells = cells(case, view, &gathered)?;
-    let hit = hit(case, view, &sight, &gathered, &cells);
+    let seen = match gathered.opacity < LEAST_OPACITY {
+        true => None,
+        false => choice::seen(&gathered, |ijk| sight.own_color(ijk)),
+    };
+    let well = seen.and_then(|seen| match gathered.pieces[seen].0.of {
+        PieceSource::Well(number) => head(number),
+        _ => None,
+    });
+    let hit = seen.and_then(|seen| hit(case, view, &sight, &gathered.pieces[seen], &cells));
     let fault = match hit.as_ref().map(|h| &h.part) {
         Some(Part::Fault(fault)) => Some(fault.clone()),
         _ => sheet(&gathered).and_then(|hit| fault_of(case, hit)),
@@ -188,6 +205,7 @@ pub fn pick(
         cells,
         hit,
         fault,
+        well,
         ..nothing
     })
 }
@@ -209,19 +227,14 @@ fn cells(case: &Case, view: &View, gathered: &Gathered) -> Result<Vec<CellOnRay>
     Ok(gathered.cells().into_iter().map(valued).collect())
 }
 
-/// What is seen of all that was gathered.
+/// The cell that is seen, given the piece that is and what that contributes.
 fn hit(
     case: &Case,
     view: &View,
     sight: &Sight<'_>,
-    gathered: &Gathered,
+    (piece, of_piece): &(Piece, f64),
     cells: &[CellOnRay],
 ) -> Option<Hit> {
-    if gathered.opacity < LEAST_OPACITY {
-        return None;
-    }
-    let seen = choice::seen(gathered, |ijk| sight.own_color(ijk))?;
-    let (piece, of_piece) = &gathered.pieces[seen];
     let on_ray = |ijk: Ijk| cells.iter().find(|c| c.ijk == ijk);
     let (cell, part, shown, contribution) = match &piece.of {
         PieceSource::Cell { ijk, value, part } => {
@@ -232,7 +245,7 @@ fn hit(
             let part = Part::Fault(fault_of(case, *hit)?);
             (on_ray(hit.cell)?, part, None, *of_piece)
         }
-        PieceSource::Ghost => return None,
+        PieceSource::Ghost | PieceSource::Well(_) => return None,
     };
     let world = sight.at(piece.at);
     Some(Hit {

@@ -6,7 +6,7 @@ use super::gather::{Piece, PieceSource};
 use super::{Part, fault_of};
 use crate::case::Case;
 use crate::model::Ijk;
-use crate::render::{LineOfSight, Located, SurfacePoint};
+use crate::render::{LineOfSight, Located, SurfacePoint, TubePoint};
 use crate::view::surfaces::{SHEET_OPACITY, fault_color};
 use crate::view::{View, ghosts};
 
@@ -18,11 +18,22 @@ pub(super) struct Sight<'a> {
     case: &'a Case,
     view: &'a View,
     line: &'a LineOfSight,
+    tube: Option<TubePoint>,
 }
 
 impl<'a> Sight<'a> {
-    pub fn new(case: &'a Case, view: &'a View, line: &'a LineOfSight) -> Self {
-        Self { case, view, line }
+    pub fn new(
+        case: &'a Case,
+        view: &'a View,
+        line: &'a LineOfSight,
+        tube: Option<TubePoint>,
+    ) -> Self {
+        Self {
+            case,
+            view,
+            line,
+            tube,
+        }
     }
 
     /// All that contributes to the pixel and all cells besides, nearest first.
@@ -31,7 +42,7 @@ impl<'a> Sight<'a> {
         let surfaces = surfaces.filter_map(|(point, located)| self.surface(*point, *located));
         let samples = self.line.samples.iter();
         let samples = samples.filter_map(|(at, located)| self.sample(*at, *located));
-        let mut pieces: Vec<Piece> = surfaces.chain(samples).collect();
+        let mut pieces: Vec<Piece> = surfaces.chain(samples).chain(self.well()).collect();
         pieces.sort_by(|a, b| a.at.total_cmp(&b.at));
         pieces
     }
@@ -58,6 +69,19 @@ impl<'a> Sight<'a> {
     fn color(&self, value: f64) -> [f64; 3] {
         let transfer = &self.view.style.transfer;
         transfer.srgb(transfer.position(value))
+    }
+
+    /// The well that the ray meets, which hides all behind it.
+    fn well(&self) -> Option<Piece> {
+        let tube = self.tube?;
+        let number = tube.well as usize;
+        Some(Piece {
+            at: f64::from(tube.distance),
+            reach: 0.0,
+            opacity: 1.0,
+            color: self.view.shown.wells.heads.get(number)?.color,
+            of: PieceSource::Well(number),
+        })
     }
 
     fn sample(&self, at: f64, located: Located) -> Option<Piece> {

@@ -23,7 +23,7 @@ pub use adapters::AdapterFacts;
 pub use cpu::CpuExecutor;
 pub use error::RenderError;
 pub use job::Job;
-pub use line_of_sight::{LineOfSight, SurfacePoint};
+pub use line_of_sight::{LineOfSight, SurfacePoint, TubePoint, tube_at};
 pub use stats::{DeviceBytes, Frame, FrameStats, LightTimes, StorageError};
 
 use crate::model::{Grid, Ijk};

@@ -40,12 +40,24 @@ pub struct Capsule {
 pub struct Head {
     /// Name of the well.
     pub name: String,
+    /// What it does.
+    pub kind: WellKind,
+    /// It flows.
+    pub is_open: bool,
     /// Its place in world space.
     pub at: DVec3,
     /// Radius of the tube there.
     pub radius: f64,
     /// Color of the well in sRGB, 0..1.
     pub color: [f64; 3],
+}
+
+impl Head {
+    /// The well in words, such as `Well P1: producer, open`.
+    pub fn in_words(&self) -> String {
+        let state = if self.is_open { "open" } else { "shut" };
+        format!("Well {}: {}, {state}", self.name, self.kind.name())
+    }
 }
 
 /// Radius of a tube as a part of the diagonal of the model's box, at most and at least.
@@ -150,6 +162,8 @@ impl Wells {
         }
         self.heads.push(Head {
             name: well.name.clone(),
+            kind: well.kind,
+            is_open: well.is_open,
             at: head,
             radius: HEAD * radius,
             color,

@@ -9,6 +9,7 @@ use crate::common;
 use strataray::case::{Case, WellKind, load};
 use strataray::image::Image;
 use strataray::image::metrics::psnr_8bit;
+use strataray::picking::{self, Pick};
 use strataray::reference;
 use strataray::render::Executor;
 use strataray::render::cpu::CpuExecutor;
@@ -211,4 +212,40 @@ fn the_command_tells_wells_at_each_step() {
         let at = ["i", "j", "k"].map(|axis| first[axis].as_u64().unwrap() as usize);
         assert_eq!(at, [cell.i + 1, cell.j + 1, cell.k + 1]);
     }
+}
+
+#[test]
+fn a_click_on_a_well_takes_the_well_and_no_cell_behind_it() {
+    let Some(file) = common::data("reek/REEK.EGRID") else {
+        return;
+    };
+    let case = load::open(&file).unwrap();
+    let mut renderer = CpuExecutor::default().renderer(&case.grid).unwrap();
+    let seen = |shows: bool| {
+        opened(
+            &case,
+            &json!({"size": [300, 240], "show": {"wells": shows}}),
+        )
+    };
+    let (with, without) = (seen(true), seen(false));
+    for head in &with.shown.wells.heads {
+        // A place on the head that no other well covers.
+        let at = with.camera.project(head.at, with.aspect()).unwrap();
+        let name = |pick: &Pick| pick.well.as_ref().map(|well| well.name.clone());
+        let pick = picking::pick(&mut *renderer, &case, &with, at).unwrap();
+        assert_eq!(name(&pick).as_deref(), Some(head.name.as_str()));
+        assert!(pick.hit.is_none(), "{:?}", pick.hit);
+        let pick = picking::pick(&mut *renderer, &case, &without, at).unwrap();
+        assert_eq!(name(&pick), None);
+    }
+    // Beside wells cells are taken as ever.
+    let at = glam::DVec2::new(0.6, 0.62);
+    let [a, b] = [&with, &without].map(|view| {
+        picking::pick(&mut *renderer, &case, view, at)
+            .unwrap()
+            .hit
+            .unwrap()
+            .ijk
+    });
+    assert_eq!(a, b);
 }

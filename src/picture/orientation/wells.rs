@@ -63,6 +63,8 @@ mod tests {
     fn head(name: &str, at: DVec3) -> Head {
         Head {
             name: name.into(),
+            kind: crate::case::WellKind::Producer,
+            is_open: true,
             at,
             radius: 0.1,
             color: [0.0; 3],

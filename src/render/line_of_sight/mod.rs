@@ -12,6 +12,8 @@ use glam::{DVec2, DVec3};
 pub use ray::{Ray, Span};
 pub use surfaces::SurfaceTree;
 
+pub use super::plan::tubes::{TubePoint, tube_at};
+
 use super::Located;
 use crate::model::{FaceHit, Grid};
 use crate::scene::Hull;

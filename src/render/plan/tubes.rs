@@ -42,13 +42,15 @@ impl TubePoints {
             .iter()
             .map(|c| Tube::new(c, view))
             .collect();
+        let size = DVec2::from(view.size.map(f64::from));
         let rows = points.par_chunks_mut(width.max(1) as usize).zip(0..height);
         rows.for_each(|(row, y)| {
             for tube in tubes.iter().filter(|t| t.low[1] <= y && y <= t.high[1]) {
                 let pixels = row.iter_mut().zip(0..width);
                 let pixels = pixels.skip(tube.low[0] as usize);
                 for (point, x) in pixels.take_while(|(_, x)| *x <= tube.high[0]) {
-                    let found = tube.point(view, [x, y]);
+                    let pixel = DVec2::new(f64::from(x), f64::from(y)) + 0.5;
+                    let found = tube.point(view, pixel / size);
                     *point = match (*point, found) {
                         (Some(known), Some(found)) if known.distance <= found.distance => {
                             Some(known)
@@ -71,6 +73,15 @@ impl TubePoints {
     }
 }
 
+/// The nearest point of a tube on the ray through a place in the image, 0 to 1, right and down; `None` where there is
+/// none.
+pub fn tube_at(view: &View, at: DVec2) -> Option<TubePoint> {
+    let shown = view.style.surfaces.wells.then_some(&view.shown.wells)?;
+    let capsules = shown.capsules.iter();
+    let points = capsules.filter_map(|capsule| Tube::new(capsule, view).point(view, at));
+    points.min_by(|a, b| a.distance.total_cmp(&b.distance))
+}
+
 /// A capsule, its color as it is blended, and the pixels that it may be seen in.
 struct Tube<'a> {
     capsule: &'a Capsule,
@@ -90,9 +101,8 @@ impl<'a> Tube<'a> {
         }
     }
 
-    fn point(&self, view: &View, [x, y]: [u32; 2]) -> Option<TubePoint> {
-        let size = view.size.map(f64::from);
-        let at = DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5) / DVec2::from(size);
+    /// The point on the ray through a place in the image, 0 to 1, right and down.
+    fn point(&self, view: &View, at: DVec2) -> Option<TubePoint> {
         let (origin, direction) = view.camera.ray(at, view.aspect());
         let is_kept = |distance: f64| {
             let p = origin + distance * direction;

@@ -11,6 +11,7 @@ use crate::model::Ijk;
 use crate::picking::{Fault, Hit, Part, Pick};
 use crate::picture::short_unit;
 use crate::scene::{Filter, PropertyFilter, ScaleSpec};
+use crate::view::wells::Head;
 use crate::viewer::action::{Action, Beside};
 use crate::viewer::reader::Table;
 use crate::viewer::state::CurvePlots;
@@ -95,6 +96,7 @@ fn of_fault(fault: &Fault, case: &Case) -> String {
 /// What is seen where the pointer rests, in words; `None` where nothing is.
 pub fn hover_text(pick: &Pick, case: &Case) -> Option<String> {
     let mut lines = Vec::new();
+    lines.extend(pick.well.as_ref().map(Head::in_words));
     if let Some(hit) = &pick.hit {
         let cell = named(hit.ijk.one_based());
         let value = value(&pick.property, hit.value, case);

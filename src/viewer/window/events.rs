@@ -126,12 +126,13 @@ impl Window {
 
     fn picked(&mut self, why: PickPurpose, pick: Pick) {
         if why == PickPurpose::Hover {
-            let is_seen = pick.hit.is_some() || pick.fault.is_some();
+            let is_seen = pick.hit.is_some() || pick.fault.is_some() || pick.well.is_some();
             self.sides.hover = is_seen.then_some(pick);
             return;
         }
         let Some(hit) = &pick.hit else {
-            self.tell("no cell under the pointer");
+            let well = pick.well.map(|well| well.in_words());
+            self.tell(well.unwrap_or_else(|| "no cell under the pointer".into()));
             return;
         };
         let cell = hit.ijk.one_based();
