@@ -95,9 +95,9 @@ mod tests {
         let view = test_view([400, 300], 1.0);
         let at = view.camera.project(middle, view.aspect()).unwrap() * DVec2::new(400.0, 300.0);
         assert!((one[0].middle.x - at.x).abs() < 1e-9 && one[0].middle.y < at.y);
-        // Ten wells at one place: four names around it, the others are left out.
+        // Ten wells at one place: names above and below it, the others are left out.
         let all = names((0..10).map(|n| head(&format!("P{n}"), middle)).collect());
-        assert_eq!(all.len(), 4);
+        assert_eq!(all.len(), 2);
         for (n, a) in all.iter().enumerate() {
             let width = 8.0 * a.text.len() as f64;
             for b in &all[..n] {
