@@ -26,8 +26,8 @@ const ALIKE: f64 = 15.0;
 
 /// The first picture of a case, without light: a shaded color is darker than its value's.
 fn opening(case: &Case) -> Scene {
-    // The faint hull is there for orientation, and adds gray to each color.
-    let without_hull = serde_json::json!({"show": {"hull": "hidden"}});
+    // The faint hull is there for orientation, and adds gray to each color; wells have colors of their own.
+    let without_hull = serde_json::json!({"show": {"hull": "hidden", "wells": false}});
     Scene {
         size: [480, 360],
         lighting: LightingSpec::default(),
@@ -154,7 +154,7 @@ fn a_click_on_the_first_picture_takes_the_value_that_is_seen() {
         // As it opens: the hull and occlusion make the color of the value lighter or darker.
         let scene = Scene {
             size: [480, 360],
-            ..look::opening(&case, &serde_json::json!({})).unwrap()
+            ..look::opening(&case, &serde_json::json!({"show": {"wells": false}})).unwrap()
         };
         let view = view::resolve(&scene, &case).unwrap();
         let mut renderer = GpuRenderer::new(gpu.clone(), &case.grid).unwrap();
