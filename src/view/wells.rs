@@ -133,7 +133,7 @@ impl Wells {
         };
         let diagonal = measures.corners[0].distance(measures.corners[7]);
         let [most, least] = RADIUS.map(|part| part * diagonal);
-        let radius = (PART_OF_CELL * measures.lateral).clamp(least, most);
+        let radius = (PART_OF_CELL * measures.lateral).min(most).max(least);
         let tops = measures.corners.iter().map(|corner| corner.z);
         let top = tops.fold(f64::MIN, f64::max) + ABOVE * diagonal;
         let color = well_color(well.kind, well.is_open);
