@@ -1,7 +1,7 @@
 //! Dates as simulators write them, and the days between them.
 
-/// Days since 1970-01-01 of a date of the Gregorian calendar.
-fn days([year, month, day]: [i64; 3]) -> i64 {
+/// Days since 1970-01-01 of a date of the Gregorian calendar: year, month and day.
+pub fn days_from([year, month, day]: [i64; 3]) -> i64 {
     // A year that begins in March has the odd day at its end.
     let (year, month) = if month > 2 {
         (year, month - 3)
@@ -28,7 +28,20 @@ pub fn moment(text: &str) -> Option<f64> {
     let most = [24, 60, 60];
     let is_clock = clock.len() <= 3 && clock.iter().zip(most).all(|(n, most)| *n < most);
     let seconds = clock.iter().zip([3600, 60, 1]).map(|(n, each)| n * each);
-    (is_date && is_clock).then(|| days(date) as f64 + seconds.sum::<i64>() as f64 / 86_400.0)
+    (is_date && is_clock).then(|| days_from(date) as f64 + seconds.sum::<i64>() as f64 / 86_400.0)
+}
+
+/// The date so many days after 1970-01-01: year, month and day.
+pub fn date_of(days: i64) -> [i64; 3] {
+    // Back from the number of a day as `days_from` counts it, with years that begin in March.
+    let days = days + 719_468;
+    let (era, of_era) = (days.div_euclid(146_097), days.rem_euclid(146_097));
+    let year = (of_era - of_era / 1460 + of_era / 36_524 - of_era / 146_096) / 365;
+    let of_year = of_era - (365 * year + year / 4 - year / 100);
+    let month = (5 * of_year + 2) / 153;
+    let day = of_year - (153 * month + 2) / 5 + 1;
+    let month = if month < 10 { month + 3 } else { month - 9 };
+    [400 * era + year + i64::from(month <= 2), month, day]
 }
 
 /// The time so many days after 1970-01-01, to the minute: `YYYY-MM-DD`, or `YYYY-MM-DD hh:mm` where it is not midnight.
@@ -41,19 +54,7 @@ pub fn text(moment: f64) -> String {
     }
     let minutes = minutes as i64;
     let (day, minute) = (minutes.div_euclid(1440), minutes.rem_euclid(1440));
-    // Back from the number of a day as `days` counts it, with years that begin in March.
-    let day = day + 719_468;
-    let (era, of_era) = (day.div_euclid(146_097), day.rem_euclid(146_097));
-    let of_era_year = (of_era - of_era / 1460 + of_era / 36_524 - of_era / 146_096) / 365;
-    let of_year = of_era - (365 * of_era_year + of_era_year / 4 - of_era_year / 100);
-    let from_march = (5 * of_year + 2) / 153;
-    let day = of_year - (153 * from_march + 2) / 5 + 1;
-    let month = if from_march < 10 {
-        from_march + 3
-    } else {
-        from_march - 9
-    };
-    let year = 400 * era + of_era_year + i64::from(month <= 2);
+    let [year, month, day] = date_of(day);
     match minute {
         _ if !(0..10_000).contains(&year) => String::new(),
         0 => format!("{year:04}-{month:02}-{day:02}"),

@@ -12,6 +12,7 @@ use std::sync::Arc;
 
 pub use cache::FieldCache;
 use strataray_parsers::calendar;
+pub use strataray_parsers::calendar::{date_of, days_from};
 
 use crate::model::derived::Derived;
 use crate::model::{CellField, FaultFaces, Grid, Ijk};

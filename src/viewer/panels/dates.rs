@@ -1,6 +1,6 @@
 //! Dates on the axis of curves, whose positions are days since the start of the run.
 
-use crate::case::Step;
+use crate::case::{Step, date_of, days_from};
 
 /// The calendar of a run: which date is how many days after the start.
 #[derive(Debug, Clone, Copy)]
@@ -50,27 +50,6 @@ fn days_of(date: &str) -> Option<f64> {
     let date = [next()?, next()?, next()?];
     let is_date = (1..=12).contains(&date[1]) && (1..=31).contains(&date[2]);
     is_date.then(|| days_from(date) as f64)
-}
-
-/// Days from 1970-01-01 to a date of the Gregorian calendar. Years begin in March, so that the leap day is
-/// their last one; 400 of them have 146,097 days.
-fn days_from([year, month, day]: [i64; 3]) -> i64 {
-    let year = if month <= 2 { year - 1 } else { year };
-    let (era, year) = (year.div_euclid(400), year.rem_euclid(400));
-    let of_year = (153 * ((month + 9) % 12) + 2) / 5 + day - 1;
-    era * 146_097 + 365 * year + year / 4 - year / 100 + of_year - 719_468
-}
-
-/// The date so many days after 1970-01-01.
-fn date_of(days: i64) -> [i64; 3] {
-    let days = days + 719_468;
-    let (era, of_era) = (days.div_euclid(146_097), days.rem_euclid(146_097));
-    let year = (of_era - of_era / 1_460 + of_era / 36_524 - of_era / 146_096) / 365;
-    let of_year = of_era - (365 * year + year / 4 - year / 100);
-    let month = (5 * of_year + 2) / 153;
-    let day = of_year - (153 * month + 2) / 5 + 1;
-    let month = if month < 10 { month + 3 } else { month - 9 };
-    [era * 400 + year + i64::from(month <= 2), month, day]
 }
 
 #[cfg(test)]
