@@ -64,6 +64,8 @@ impl Head {
 const RADIUS: [f64; 2] = [0.0035, 0.0015];
 /// Radius of a tube as a part of the mean edge of cells, at most: else wells hide the cells beside them.
 const PART_OF_CELL: f64 = 0.25;
+/// How much thinner shut wells are: of several at one place the one that flows is seen.
+const SHUT: f64 = 0.6;
 /// How much thicker tubes are in cells that they are open to, and at the head.
 const OPEN: f64 = 1.7;
 const HEAD: f64 = 2.4;
@@ -134,6 +136,7 @@ impl Wells {
         let diagonal = measures.corners[0].distance(measures.corners[7]);
         let [most, least] = RADIUS.map(|part| part * diagonal);
         let radius = (PART_OF_CELL * measures.lateral).min(most).max(least);
+        let radius = if well.is_open { radius } else { SHUT * radius };
         let tops = measures.corners.iter().map(|corner| corner.z);
         let top = tops.fold(f64::MIN, f64::max) + ABOVE * diagonal;
         let color = well_color(well.kind, well.is_open);

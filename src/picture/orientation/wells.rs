@@ -6,11 +6,13 @@ use super::{Area, Paper, Text, overlap};
 use crate::view::View;
 use crate::view::wells::Head;
 
-/// Names of the wells that a view shows, above their heads or beside them. What is nearest to the viewer is named
-/// first; a name that would lie on another one or leave the picture is left out.
+/// Names of the wells that a view shows, above their heads or beside them. Wells that flow are named before those that
+/// are shut, and of each the nearest to the viewer first; a name that would lie on another one or leave the picture is left out.
 pub fn well_names(view: &View, paper: &Paper<'_>) -> Vec<Text> {
     let mut heads: Vec<&Head> = view.shown.wells.heads.iter().collect();
-    heads.sort_by(|a, b| view.camera.depth(a.at).total_cmp(&view.camera.depth(b.at)));
+    let depth = |head: &Head| view.camera.depth(head.at);
+    heads.sort_by(|a, b| depth(a).total_cmp(&depth(b)));
+    heads.sort_by_key(|head| !head.is_open);
     let mut taken = paper.taken.clone();
     let mut names = Vec::new();
     for head in heads {
@@ -104,6 +106,26 @@ mod tests {
                 assert!(!overlap(&a.area(width), &b.area(width)));
             }
         }
+    }
+
+    #[test]
+    fn what_flows_is_named_before_what_is_shut() {
+        let middle = DVec3::new(5.0, 4.5, -2.0);
+        let view = test_view([400, 300], 1.0);
+        let mut wells: Vec<Head> = (0..9)
+            .map(|n| head(&format!("S{n}"), middle - 1e-3 * view.camera.forward))
+            .collect();
+        for shut in &mut wells {
+            shut.is_open = false;
+        }
+        wells.push(head("P1", middle));
+        // The twin has them all open, so that the nearer ones come first.
+        let mut twin = wells.clone();
+        for well in &mut twin {
+            well.is_open = true;
+        }
+        assert_eq!(names(wells)[0].text, "P1");
+        assert_eq!(names(twin)[0].text, "S0");
     }
 
     #[test]
