@@ -101,17 +101,6 @@ pub struct NamedFault {
     pub multiplier: Option<f64>,
 }
 
-/// A local grid refinement, which is known of but not shown.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct LocalGrid {
-    /// Name.
-    pub name: String,
-    /// Cells along i, j and k.
-    pub dims: [usize; 3],
-    /// Active cells.
-    pub active: usize,
-}
-
 /// What the files say of the case beside grid and values.
 #[derive(Debug, Clone, Default)]
 pub struct About {
@@ -129,8 +118,6 @@ pub struct About {
     pub porosity_model: String,
     /// Non-neighbor connections of the global grid, as the file counts them.
     pub nnc: usize,
-    /// Local grids.
-    pub local_grids: Vec<LocalGrid>,
     /// Faults that have a name.
     pub named_faults: Vec<NamedFault>,
     /// Wells by name.

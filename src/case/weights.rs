@@ -55,9 +55,11 @@ impl Case {
         };
         let kept = |v: f32| if v.is_finite() && v > 0.0 { v } else { 0.0 };
         if let Some(porv) = field("PORV") {
+            let mut values: Vec<f32> = porv.values().par_iter().map(|v| kept(*v)).collect();
+            self.grid.share_out(&mut values);
             return Weights {
                 weighting: Weighting::PoreVolume,
-                values: Arc::new(porv.values().par_iter().map(|v| kept(*v)).collect()),
+                values: Arc::new(values),
             };
         }
         let bulk = Derived::Volume.field(&self.grid);
@@ -113,7 +115,7 @@ impl Case {
     /// The thinnest extent of the whole model in world space, of its active cells alone: mean thickness of its
     /// columns, or cells along i or j times their mean edge.
     pub fn thinnest_extent(&self, exaggeration: f64) -> f64 {
-        let dims = self.grid.dims();
+        let dims = self.grid.main_dims();
         let extents = self.extents();
         let sum =
             |of: &dyn Fn(&Extent) -> f32| extents.iter().map(|e| f64::from(of(e))).sum::<f64>();

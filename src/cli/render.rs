@@ -176,7 +176,7 @@ fn statistics(
         "point_locations": stats.point_locations,
         "cell_crossings": stats.cell_crossings,
         "lost_samples": stats.lost_samples,
-        "cells": {"total": case.grid.dims().cells(), "active": case.grid.active_cells().len()},
+        "cells": {"total": cells(case), "active": case.grid.active_cells().len()},
         "gpu_bytes": frame.bytes,
         "storage_error": frame.storage_error,
         "stages_ms": {
@@ -191,4 +191,10 @@ fn statistics(
             "first_frame": ms(stages.first_frame),
         },
     })
+}
+
+/// Cells of all grids.
+fn cells(case: &Case) -> usize {
+    let patches = case.grid.patches().iter();
+    patches.map(|patch| patch.file_dims().cells()).sum()
 }

@@ -176,7 +176,7 @@ Speed is relative to the slowest strategy. GPU MB (1,000,000 bytes) is all that 
 /// What the figures hold for.
 fn conditions(setting: &Setting, rows: &[Row], reference_times: &[Duration]) -> String {
     let (case, plan) = (setting.case, setting.plan);
-    let dims = case.grid.dims();
+    let dims = case.grid.main_dims();
     let active = case.grid.active_cells().len();
     let (views, frames) = (plan.views.len(), plan.frames.max(1));
     let done = rows.last().map_or(0, |row| row.view + 1);

@@ -1,6 +1,7 @@
 //! The reservoir in f64: corner-point geometry, topology and fields. No files, no GPU.
 
 mod activity;
+mod borders;
 mod column;
 pub mod corner_point;
 mod depth_lists;
@@ -11,6 +12,7 @@ pub mod faults;
 pub mod fields;
 pub mod grid;
 pub mod ids;
+mod patches;
 pub mod spaces;
 pub mod summary;
 pub mod synthetic;
@@ -26,5 +28,6 @@ pub use faults::FaultFaces;
 pub use fields::{CellField, Statistics, VertexField};
 pub use grid::{Grid, GridInput, ModelError, Pillar};
 pub use ids::{ActiveIndex, CellIndex, Dims, Ijk};
+pub use patches::{GridCell, LocalGrid, Patch};
 pub use spaces::{MapAxes, MapUnit, Spaces};
 pub use summary::Summary;

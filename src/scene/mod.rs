@@ -72,6 +72,9 @@ pub struct Scene {
     pub storage: Storage,
     /// Occlusion and lights.
     pub lighting: LightingSpec,
+    /// Which local grids are drawn in place of the cells that they refine: all, but those that are named.
+    #[serde(skip_serializing_if = "Grids::is_default")]
+    pub grids: Grids,
     /// Which cells are drawn.
     pub filter: Filter,
     /// Clip planes; kept is what all of them keep.
@@ -103,10 +106,25 @@ impl Default for Scene {
             plts: PltsSettings::default(),
             storage: Storage::default(),
             lighting: LightingSpec::default(),
+            grids: Grids::default(),
             filter: Filter::default(),
             clip: Vec::new(),
             show: Show::default(),
         }
+    }
+}
+
+/// Which local grids are drawn.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Grids {
+    /// Names of those that are not: the cells that they refine are drawn in their place.
+    pub hidden: Vec<String>,
+}
+
+impl Grids {
+    fn is_default(&self) -> bool {
+        self.hidden.is_empty()
     }
 }
 

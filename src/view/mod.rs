@@ -9,6 +9,7 @@ pub mod facts;
 mod filter;
 pub mod framing;
 pub mod ghosts;
+mod grids;
 mod half_turns;
 pub mod lighting;
 pub mod look;
@@ -46,6 +47,7 @@ use crate::scene::{
 use crate::transfer::TransferFunction;
 use bounds::box_corners;
 use ghosts::Ghosts;
+pub use grids::ShownGrids;
 use resolve::{camera as placed, checked_size};
 
 /// All that a renderer needs beside the grid: what every strategy and the reference integrate.

@@ -106,7 +106,7 @@ impl<'a> Measures<'a> {
     }
 }
 
-/// The wells of a case at a step; none of those that have no connection in the global grid.
+/// The wells of a case at a step; none of those that have no connection in a grid shown.
 pub(super) fn shown(
     case: &Case,
     step: usize,
@@ -174,10 +174,19 @@ impl Wells {
     }
 }
 
+/// The cell of a connection; `None` where its grid is not there, or does not have the cell.
+pub(super) fn cell_of(grid: &Grid, connection: &Connection) -> Option<Ijk> {
+    let patch = match &connection.grid {
+        None => 0,
+        Some(name) => grid.patch_named(name)?,
+    };
+    grid.in_lattice(patch, connection.cell)
+}
+
 /// The parts of a well in its cells, from the head on, in world space; true where something can flow.
 fn pieces(grid: &Grid, well: &Well, spaces: &Spaces) -> Vec<([DVec3; 2], bool)> {
     let mut pieces: Vec<([DVec3; 2], bool)> = Vec::new();
-    for connection in &well.connections {
+    for connection in connections(grid, well) {
         let Some(ends) = ends(grid, connection) else {
             continue;
         };
@@ -194,14 +203,27 @@ fn pieces(grid: &Grid, well: &Well, spaces: &Spaces) -> Vec<([DVec3; 2], bool)> 
     pieces
 }
 
-/// Middles of the two faces through which a well passes a cell, in grid space; `None` where that lies in a local grid
-/// or in none.
+/// The connections of a well, in the finest grid where the file gives those of several.
+pub(super) fn connections<'a>(
+    grid: &'a Grid,
+    well: &'a Well,
+) -> impl Iterator<Item = &'a Connection> {
+    let is_in = |connection: &Connection, host: Ijk| {
+        let cell = cell_of(grid, connection);
+        cell.and_then(|cell| grid.host(cell)) == Some(host)
+    };
+    let is_finest = move |connection: &&Connection| {
+        let others = || well.connections.iter();
+        let has_finer = |cell| others().any(|other| is_in(other, cell));
+        let others_are_local = others().any(|other| other.grid.is_some());
+        !others_are_local || !cell_of(grid, connection).is_some_and(has_finer)
+    };
+    well.connections.iter().filter(is_finest)
+}
+
+/// Middles of the two faces through which a well passes a cell, in grid space; `None` where that lies in no grid.
 fn ends(grid: &Grid, connection: &Connection) -> Option<[DVec3; 2]> {
-    let (dims, Ijk { i, j, k }) = (grid.dims(), connection.cell);
-    if connection.grid.is_some() || i >= dims.ni || j >= dims.nj || k >= dims.nk {
-        return None;
-    }
-    let corners = grid.hexahedron(connection.cell).0;
+    let corners = grid.hexahedron(cell_of(grid, connection)?).0;
     let bit = match connection.axis {
         ConnectionAxis::I => 0,
         ConnectionAxis::J => 1,

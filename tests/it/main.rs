@@ -35,6 +35,7 @@ mod libc;
 mod light_updates;
 mod lighting;
 mod limits;
+mod local_grids;
 mod metrics;
 mod occlusion;
 mod odd_cells;

@@ -5,12 +5,12 @@ use std::time::Instant;
 
 use strataray_parsers::case::{CaseFiles, GridSource};
 use strataray_parsers::deck::{DeckCells, DeckProperty, FaultFaces as DeckFault, Grdecl};
-use strataray_parsers::egrid::{Egrid, PorosityModel};
+use strataray_parsers::egrid::{Egrid, GridConnections, LocalGrid, PorosityModel};
 use strataray_parsers::units::{LengthUnit, UnitSystem};
 use strataray_parsers::{At, ErrorKind, ParseError, Warnings};
 
 use super::slots::CellFlags;
-use crate::case::{About, LoadTimes, LocalGrid, NamedFault};
+use crate::case::{About, LoadTimes, NamedFault};
 use crate::model::topology::Face;
 use crate::model::{
     CellIndex, Dims, FaultFaces, Grid, GridInput, Ijk, MapAxes, MapUnit, ModelError,
@@ -32,6 +32,8 @@ pub struct Loaded {
     /// Arrays of decks and other text.
     pub texts: Vec<DeckProperty>,
     pub connections: Vec<[Ijk; 2]>,
+    pub local_grids: Vec<LocalGrid>,
+    pub local_connections: Vec<GridConnections>,
     pub fault_faces: FaultFaces,
     /// What a deck's RUNSPEC says.
     pub units: Option<UnitSystem>,
@@ -137,21 +139,6 @@ fn read_egrid(
             about.porosity_model
         ));
     }
-    for local in &egrid.local_grids {
-        about.notes.push(format!(
-            "local grid {} ({} x {} x {}) is not shown; its place shows the host cells",
-            local.name, local.dims[0], local.dims[1], local.dims[2]
-        ));
-    }
-    about.local_grids = egrid
-        .local_grids
-        .into_iter()
-        .map(|l| LocalGrid {
-            active: l.active(),
-            name: l.name,
-            dims: l.dims,
-        })
-        .collect();
     let connections = connections(&egrid.nnc, grid.dims());
     let unit = egrid.grid_unit;
     Ok(Loaded {
@@ -159,6 +146,8 @@ fn read_egrid(
         flags: CellFlags::new(egrid.actnum, egrid.coarse, egrid.porosity_model),
         texts: Vec::new(),
         connections,
+        local_grids: egrid.local_grids,
+        local_connections: egrid.local_nnc,
         fault_faces: FaultFaces::default(),
         units: None,
         phases: 0,
@@ -196,6 +185,8 @@ fn read_deck(path: &Path, deck: Grdecl, about: &mut About) -> Result<Loaded, Par
         flags: CellFlags::default(),
         texts: deck.properties,
         connections: Vec::new(),
+        local_grids: Vec::new(),
+        local_connections: Vec::new(),
         fault_faces,
         units: deck.unit_system,
         phases: deck.phases,

@@ -1,6 +1,7 @@
 //! From files to a [`Case`]: the one module that knows both the file formats and the model.
 
 mod grids;
+mod local;
 mod pore_volume;
 mod properties;
 mod slots;
@@ -171,8 +172,11 @@ fn build(
         init: init.as_ref(),
     };
     let cells = CellSlots::new(&mut loaded.grid, &loaded.flags, &results, &mut about.notes);
+    let local_grids = std::mem::take(&mut loaded.local_grids);
+    let locals = local::read(local_grids, &loaded.grid, init.as_ref(), &mut about.notes);
     let mut source = FileSource {
         cells,
+        local: None,
         init: None,
         steps: Vec::new(),
         texts: loaded.texts,
@@ -189,6 +193,23 @@ fn build(
     };
     let properties = properties::of(&source, &setting, &mut about);
     about.notes.extend(warnings.iter().map(ToString::to_string));
+    if !locals.is_empty() {
+        match local::join(
+            &loaded.grid,
+            &source.cells,
+            locals,
+            &loaded.local_connections,
+        ) {
+            Ok((grid, places, connections)) => {
+                loaded.grid = grid;
+                loaded.connections.extend(connections);
+                source.local = Some(places);
+            }
+            Err(why) => about
+                .notes
+                .push(format!("local grids are not shown: {why}")),
+        }
+    }
     Case {
         grid: Arc::new(loaded.grid),
         about,

@@ -103,6 +103,11 @@ impl CellSlots {
         }
     }
 
+    /// Rank of a cell of the grid among its active ones.
+    pub fn rank(&self, cell: CellIndex) -> Option<u32> {
+        self.cells.binary_search(&cell.0).ok().map(|at| at as u32)
+    }
+
     /// Values of an array of active cells.
     pub fn count(&self) -> usize {
         self.places.as_ref().map_or(self.cells.len(), |p| p.count)

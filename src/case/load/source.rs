@@ -9,6 +9,7 @@ use strataray_parsers::records::{Entry, Kind};
 use strataray_parsers::restart::Step as FileStep;
 use strataray_parsers::{At, ErrorKind, ParseError};
 
+use super::local::Places;
 use super::slots::CellSlots;
 use super::wells;
 use crate::case::{About, CaseError, Source, Well};
@@ -23,6 +24,8 @@ const NOT_PROPERTIES: &[&str] = &[
 /// Values from the case's files, decoded when asked for.
 pub struct FileSource {
     pub cells: CellSlots,
+    /// Where the cells of all grids have theirs, where there are local ones.
+    pub local: Option<Places>,
     pub init: Option<CellArrays>,
     pub steps: Vec<FileStep>,
     /// Arrays of decks and other text.
@@ -58,6 +61,19 @@ impl FileSource {
                 .notes
                 .push(format!("time steps were not loaded: {error}")),
         }
+    }
+
+    /// Values of the main grid, with those of local grids from the same arrays.
+    fn of_all_grids(
+        &self,
+        main: Vec<f32>,
+        arrays: Option<&CellArrays>,
+        name: &str,
+    ) -> Result<Option<Vec<f32>>, CaseError> {
+        Ok(Some(match &self.local {
+            Some(places) => places.values(&main, arrays, name)?,
+            None => main,
+        }))
     }
 
     /// Refuses results of another grid.
@@ -206,7 +222,7 @@ impl Source for FileSource {
         let text = self.texts.iter().find(|p| p.name == name);
         if let Some(property) = text.filter(|_| !self.changes(name)) {
             let values: Vec<f32> = property.values.iter().map(|v| *v as f32).collect();
-            return Ok(Some(self.cells.pick(&values)));
+            return self.of_all_grids(self.cells.pick(&values), None, name);
         }
         let Some((arrays, entry)) = self
             .arrays(name, step)
@@ -214,7 +230,8 @@ impl Source for FileSource {
         else {
             return Ok(None);
         };
-        Ok(Some(self.cells.pick(&arrays.values(entry)?)))
+        let values = self.cells.pick(&arrays.values(entry)?);
+        self.of_all_grids(values, Some(arrays), name)
     }
 
     fn wells(&self, step: usize) -> Result<Vec<Well>, CaseError> {

@@ -130,7 +130,7 @@ impl Timer<'_> {
             }
         }
         let setup = setup.unwrap_or_default();
-        let dims = case.grid.dims();
+        let dims = case.grid.main_dims();
         let times = CaseTimes {
             case: case.about.name.clone(),
             dims: [dims.ni, dims.nj, dims.nk],
