@@ -4,6 +4,7 @@ mod cache;
 mod difference;
 pub mod load;
 mod over_steps;
+mod pores;
 pub mod save;
 mod weights;
 mod wells;
@@ -114,7 +115,8 @@ pub struct About {
     pub map_axes: Option<[f64; 6]>,
     /// Length unit of map coordinates: METRES, FEET or CM.
     pub map_unit: String,
-    /// `single`, `dual porosity` or `dual permeability`.
+    /// `single`, `dual` or `dual_permeability`. With fractures, properties such as `SWAT` are of the matrix,
+    /// `SWAT.FRACTURE` of the fractures, and `SWAT.TOTAL` of both by pore volume.
     pub porosity_model: String,
     /// Non-neighbor connections of the global grid, as the file counts them.
     pub nnc: usize,

@@ -75,7 +75,9 @@ impl Facts {
         let values = range.map(|[min, max]| Values {
             min,
             max,
-            mean: has_mean.then(|| mean(case, &all, &seen)).flatten(),
+            mean: has_mean
+                .then(|| mean(case, property, &all, &seen))
+                .flatten(),
             are_all: drawn == valued,
         });
         Self {
@@ -160,8 +162,8 @@ impl Counted {
 }
 
 /// The mean by pore volume, or by what stands in for it.
-fn mean(case: &Case, values: &[f32], seen: &[bool]) -> Option<(f64, Weighting)> {
-    let weights = case.weights();
+fn mean(case: &Case, property: &str, values: &[f32], seen: &[bool]) -> Option<(f64, Weighting)> {
+    let weights = case.weights_of(property);
     let mean = weighted(values, seen, &weights.values)?;
     Some((mean, weights.weighting))
 }

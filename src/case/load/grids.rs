@@ -129,16 +129,10 @@ fn read_egrid(
     about.nnc = egrid.nnc.len();
     about.porosity_model = match egrid.porosity_model {
         PorosityModel::Single => "single",
-        PorosityModel::Dual => "dual porosity",
-        PorosityModel::DualPermeability => "dual permeability",
+        PorosityModel::Dual => "dual",
+        PorosityModel::DualPermeability => "dual_permeability",
     }
     .into();
-    if egrid.porosity_model != PorosityModel::Single {
-        about.notes.push(format!(
-            "the case is of {}: the values of the matrix are shown, those of the fractures are not",
-            about.porosity_model
-        ));
-    }
     let connections = connections(&egrid.nnc, grid.dims());
     let unit = egrid.grid_unit;
     Ok(Loaded {
