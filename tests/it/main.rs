@@ -51,4 +51,5 @@ mod statistics;
 mod storage;
 mod surfaces;
 mod synthetic;
+mod vectors;
 mod wells;
