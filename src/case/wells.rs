@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use super::CaseError;
-use crate::model::Ijk;
+use crate::model::{Dims, Ijk};
 
 /// What a well does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -69,6 +69,15 @@ pub struct Well {
     pub is_open: bool,
     /// Its connections, in the order of the file.
     pub connections: Vec<Connection>,
+}
+
+impl Well {
+    /// The cells of the global grid that it is connected to, in the order of the file.
+    pub fn global_cells(&self, dims: Dims) -> impl Iterator<Item = Ijk> {
+        let of_global = self.connections.iter().filter(|c| c.grid.is_none());
+        let cells = of_global.map(|c| c.cell);
+        cells.filter(move |c| c.i < dims.ni && c.j < dims.nj && c.k < dims.nk)
+    }
 }
 
 /// Wells by step, once read: few bytes beside the values of a step.
