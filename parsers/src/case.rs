@@ -62,6 +62,8 @@ pub struct CaseFiles {
     pub init: Option<PathBuf>,
     /// Time steps.
     pub restart: RestartSource,
+    /// Curves over time.
+    pub summary: Option<SummarySource>,
     /// Files that belong to the case and are not read, with the reason.
     pub not_read: Vec<(PathBuf, &'static str)>,
 }
@@ -220,6 +222,7 @@ pub fn find(path: &Path) -> Result<CaseFiles, ParseError> {
         added: Vec::new(),
         init: first(Role::Init),
         restart,
+        summary: summary_of(&files, named),
         not_read: files
             .iter()
             .filter_map(|(p, r)| Some((p.clone(), reason(r)?)))
@@ -227,7 +230,8 @@ pub fn find(path: &Path) -> Result<CaseFiles, ParseError> {
     })
 }
 
-/// As [`find`], with files added by hand to what is found: text beside the grid, an INIT or restart of another name.
+/// As [`find`], with files added by hand to what is found: text beside the grid, an INIT, restart or summary of another
+/// name.
 ///
 /// # Errors
 /// As [`find`]; and when an added file is not there or can be no part of a case.
@@ -250,7 +254,7 @@ pub fn find_with(path: &Path, with: &[PathBuf]) -> Result<CaseFiles, ParseError>
                     "is a grid of its own and cannot be added to another one",
                 ));
             }
-            Role::Summary(_) => return Err(refuse("holds curves over time, which are not read")),
+            Role::Summary(_) => files.summary = Some(find_summary(added)?),
             Role::NotRead(why) => return Err(refuse(why)),
         }
     }
@@ -273,12 +277,22 @@ pub fn find_summary(path: &Path) -> Result<SummarySource, ParseError> {
     let path = only.as_deref().unwrap_or(path);
     let named = path.is_file().then(|| role(path)).flatten();
     let (stem, files) = family(path, named)?;
+    summary_of(&files, named).ok_or_else(|| {
+        let message = format!(
+            "this case has no summary: looked for {stem}.SMSPEC with {stem}.UNSMRY or {stem}.S0001, and {stem}.ESMRY"
+        );
+        not_found(path, message)
+    })
+}
+
+/// The summary among the files of a case; `named` is what the user named of them.
+fn summary_of(files: &[(PathBuf, Role)], named: Option<Role>) -> Option<SummarySource> {
     let first = |wanted: SummaryPart| {
         let file = files.iter().find(|(_, r)| *r == Role::Summary(wanted));
         file.map(|(p, _)| p.clone())
     };
     let mut separate: Vec<(u32, PathBuf)> = Vec::new();
-    for (file, role) in &files {
+    for (file, role) in files {
         if let Role::Summary(SummaryPart::Separate(report)) = role
             && !separate.iter().any(|s| s.0 == *report)
         {
@@ -292,23 +306,17 @@ pub fn find_summary(path: &Path) -> Result<SummarySource, ParseError> {
     };
     let extended = first(SummaryPart::Extended);
     if let (Some(file), true) = (&extended, is_named(|p| p == SummaryPart::Extended)) {
-        return Ok(SummarySource::Extended(file.clone()));
+        return Some(SummarySource::Extended(file.clone()));
     }
     let wants_separate = is_named(|p| matches!(p, SummaryPart::Separate(_)));
     let unified = first(SummaryPart::Unified).filter(|_| !wants_separate);
     match (first(SummaryPart::Spec), unified, extended) {
-        (Some(spec), Some(data), _) => Ok(SummarySource::Unified { spec, data }),
-        (Some(spec), None, _) if !separate.is_empty() => Ok(SummarySource::Separate {
+        (Some(spec), Some(data), _) => Some(SummarySource::Unified { spec, data }),
+        (Some(spec), None, _) if !separate.is_empty() => Some(SummarySource::Separate {
             spec,
             data: separate,
         }),
-        (_, _, Some(file)) => Ok(SummarySource::Extended(file)),
-        _ => {
-            let message = format!(
-                "this case has no summary: looked for {stem}.SMSPEC with {stem}.UNSMRY or {stem}.S0001, and {stem}.ESMRY"
-            );
-            Err(not_found(path, message))
-        }
+        (_, _, extended) => extended.map(SummarySource::Extended),
     }
 }
 

@@ -3,7 +3,8 @@
 use std::sync::Arc;
 
 use super::{
-    About, Case, CaseError, FieldCache, Kind, OverSteps, Property, Source, Step, Well, WellsOfSteps,
+    About, Case, CaseError, FieldCache, Kind, OverSteps, Property, Source, Step, Vectors, Well,
+    WellsOfSteps,
 };
 use crate::model::CellField;
 
@@ -267,6 +268,10 @@ struct Subtracted {
 impl Source for Subtracted {
     fn wells(&self, step: usize) -> Result<Vec<Well>, CaseError> {
         Ok(self.of[0].wells(step)?.to_vec())
+    }
+
+    fn vectors(&self) -> Result<Option<Arc<Vectors>>, CaseError> {
+        self.of[0].vectors()
     }
 
     fn values(&self, name: &str, step: usize) -> Result<Option<Vec<f32>>, CaseError> {

@@ -6,6 +6,7 @@ pub mod load;
 mod over_steps;
 mod pores;
 pub mod save;
+mod vectors;
 mod weights;
 mod wells;
 
@@ -20,6 +21,7 @@ use crate::model::{CellField, FaultFaces, Grid, Ijk};
 
 pub use difference::{Difference, Minus, difference_name, minus, nearest};
 pub use over_steps::{Categories, MAX_CATEGORIES, OverSteps, ValueRange};
+pub use vectors::{Vector, VectorKind, VectorSource, Vectors};
 pub use weights::{Extent, Weighting, Weights};
 pub use wells::{Connection, ConnectionAxis, Well, WellKind, WellsOfSteps};
 
@@ -124,6 +126,8 @@ pub struct About {
     pub named_faults: Vec<NamedFault>,
     /// Wells by name.
     pub wells: Vec<String>,
+    /// Files with summary vectors, which are read once they are asked for.
+    pub summary: Vec<std::path::PathBuf>,
     /// What loading took.
     pub load_times: LoadTimes,
     /// What was not loaded or does not fit, one sentence each.
@@ -192,6 +196,14 @@ pub trait Source: Send + Sync {
     /// When the file cannot be read.
     fn wells(&self, _step: usize) -> Result<Vec<Well>, CaseError> {
         Ok(Vec::new())
+    }
+
+    /// The summary vectors, kept once they are read; `None` where there are none.
+    ///
+    /// # Errors
+    /// When their files cannot be read.
+    fn vectors(&self) -> Result<Option<Arc<Vectors>>, CaseError> {
+        Ok(None)
     }
 }
 
@@ -266,6 +278,14 @@ impl Case {
     /// When the file cannot be read.
     pub fn wells(&self, step: usize) -> Result<Arc<Vec<Well>>, CaseError> {
         self.wells.get(step, || self.source.wells(step))
+    }
+
+    /// The summary vectors, kept once they are read; `None` where the case has none.
+    ///
+    /// # Errors
+    /// When their files cannot be read.
+    pub fn vectors(&self) -> Result<Option<Arc<Vectors>>, CaseError> {
+        self.source.vectors()
     }
 
     fn computed(&self, name: &str, step: usize) -> Result<CellField, CaseError> {

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use rayon::prelude::*;
 use serde_json::{Value, json};
-use strataray::case::{Case, Connection, Kind, NamedFault, Property};
+use strataray::case::{Case, Connection, Kind, NamedFault, Property, Vector, VectorKind};
 use strataray::model::{CellField, Grid, Ijk, MapAxes, Spaces, Statistics};
 
 use super::Verbosity;
@@ -27,6 +27,9 @@ pub struct Arguments {
     /// Wells at each step: type, open or shut, connected cells.
     #[arg(long)]
     wells: bool,
+    /// Summary vectors by name.
+    #[arg(long)]
+    summary: bool,
     #[command(flatten)]
     added: AddedFiles,
     #[command(flatten)]
@@ -40,6 +43,13 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
     if arguments.wells {
         facts["wells"] = wells(&case)?;
     }
+    let vectors = match arguments.summary {
+        true => Some(vectors(&case, &reporter)?),
+        false => None,
+    };
+    if let Some(vectors) = &vectors {
+        facts["summary"] = vectors.iter().map(|v| json!(v.name)).collect();
+    }
     if arguments.json {
         say_line!("{}", serde_json::to_string_pretty(&facts)?);
     } else {
@@ -47,8 +57,32 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
         if arguments.wells {
             print_wells(&case)?;
         }
+        print_vectors(&vectors.unwrap_or_default());
     }
     Ok(())
+}
+
+/// The vectors of the case, none where it has no summary; says what was odd about them.
+fn vectors(case: &Case, reporter: &Reporter) -> anyhow::Result<Vec<Vector>> {
+    let Some(vectors) = case.vectors()? else {
+        reporter.note("this case has no summary: there is no SMSPEC or ESMRY beside it");
+        return Ok(Vec::new());
+    };
+    for note in &vectors.notes {
+        reporter.note(note);
+    }
+    Ok(vectors.list.clone())
+}
+
+/// A line for each kind of vectors.
+fn print_vectors(vectors: &[Vector]) {
+    for kind in VectorKind::ALL {
+        let of_kind = vectors.iter().filter(|v| v.kind == kind);
+        let names: Vec<_> = of_kind.map(|v| v.name.as_str()).collect();
+        if !names.is_empty() {
+            say_line!("  {} vectors: {}", kind.name(), names.join(" "));
+        }
+    }
 }
 
 /// Each well with its steps; cells count from 1.

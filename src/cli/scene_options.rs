@@ -11,7 +11,7 @@ use strataray::scene::{
     CameraSpec, FramingCamera, Interpolation, LightMode, LightingSpec, Mode, Projection, Scene,
     StepSpec, Storage, StrategyKind,
 };
-use strataray::view::look;
+use strataray::view::{look, wells};
 
 use super::choice::{INTERPOLATIONS, LIGHT_MODES, MODES, STORAGES, STRATEGIES, one_of};
 use super::progress::Reporter;
@@ -72,7 +72,7 @@ pub struct SceneOptions {
 /// Files that are added to a case.
 #[derive(clap::Args)]
 pub struct AddedFiles {
-    /// Files to add to the case: properties or faults in text, an INIT or restart of another name.
+    /// Files to add to the case: properties or faults in text, an INIT, restart or summary of another name.
     #[arg(long, value_name = "FILE", num_args = 1..)]
     with: Vec<PathBuf>,
 }
@@ -89,8 +89,8 @@ impl SceneOptions {
             written.insert("mode".into(), serde_json::to_value(mode)?);
         }
         let scene = self.over(look::opening(case, &written.into())?)?;
-        if scene.show.wells && case.about.wells.is_empty() {
-            reporter.note("the scene asks for wells, and this case has none");
+        for warning in wells::warnings(&scene, case)? {
+            reporter.note(&warning);
         }
         Ok(scene)
     }

@@ -342,6 +342,7 @@ pub(super) mod tests {
                 has_box: true,
                 has_legend: true,
                 facts: None,
+                warnings: Vec::new(),
             },
         }
     }

@@ -153,6 +153,7 @@ fn view(grid: &Grid, field: CellField, extinction: f64, sampling_step: f64) -> V
             has_box: false,
             has_legend: false,
             facts: None,
+            warnings: Vec::new(),
         },
     }
 }

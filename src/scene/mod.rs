@@ -6,6 +6,7 @@
 mod camera;
 mod filter;
 pub mod lighting;
+pub mod names;
 mod settings;
 mod strategy;
 mod surfaces;
@@ -20,7 +21,7 @@ pub use settings::{
     ClipSpec, CutFace, Integration, LibcSettings, PltsSettings, SrgSettings, Storage,
 };
 pub use strategy::StrategyKind;
-pub use surfaces::{Hull, ShownFaults};
+pub use surfaces::{Hull, ShownFaults, ShownWells};
 pub use transfer::{
     ColorSpec, Coloring, FoundOpacity, OpacitySpec, OwnRange, RangeSpec, ScaleSpec, TransferSpec,
 };
@@ -196,8 +197,8 @@ pub struct Show {
     pub faults: ShownFaults,
     /// Lines between the cells of non-neighbor connections.
     pub nnc: bool,
-    /// Wells, with their names.
-    pub wells: bool,
+    /// Wells, with their names: all, none, or those whose names match patterns.
+    pub wells: ShownWells,
     /// Edges of the cells on hull, faults and opaque sections; where absent they are drawn in the mode `cells`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub cell_edges: Option<bool>,
@@ -216,7 +217,7 @@ impl Default for Show {
             hull: Hull::Hidden,
             faults: ShownFaults::All(false),
             nnc: false,
-            wells: false,
+            wells: ShownWells::All(false),
             cell_edges: None,
             r#box: true,
             legend: true,

@@ -1,4 +1,4 @@
-//! Which cells are drawn: by I, J and K, and by the values of properties.
+//! Which cells are drawn: by I, J and K, by the values of properties, and by wells.
 
 use std::sync::Arc;
 
@@ -7,9 +7,10 @@ use rayon::prelude::*;
 
 use super::error::{SceneError, wrong};
 use super::grids::ShownGrids;
-use super::step::step_of;
+use super::step::{step_of, well_step};
 use crate::case::{Case, CaseError};
 use crate::model::{CellField, Dims, Ijk};
+use crate::scene::names::matches_any;
 use crate::scene::{Filter, PropertyFilter, StepSpec};
 
 fn check(filter: &PropertyFilter) -> Result<(), SceneError> {
@@ -43,7 +44,7 @@ fn kept(filter: &Filter, dims: Dims) -> Result<[Vec<bool>; 3], SceneError> {
 }
 
 /// Extent of the thinnest part that the filter leaves, given the mean edges of the cells along I, J and
-/// K: one cell where it goes by values, else the shortest run of rows, columns or layers that it keeps.
+/// K: one cell where it goes by values or wells, else the shortest run of rows, columns or layers that it keeps.
 /// `None` where it hides nothing.
 ///
 /// # Errors
@@ -53,7 +54,7 @@ pub(super) fn thinnest(
     dims: Dims,
     edges: DVec3,
 ) -> Result<Option<f64>, SceneError> {
-    let by_value = filter.properties.iter().any(PropertyFilter::limits);
+    let by_value = filter.properties.iter().any(PropertyFilter::limits) || !filter.wells.is_empty();
     let along = kept(filter, dims)?.into_iter().zip(edges.to_array());
     let runs = along.filter_map(|(flags, edge)| {
         let hides = flags.contains(&false);
@@ -101,7 +102,27 @@ pub(super) fn drawn(
         let cells = drawn.par_iter_mut().zip(values.values());
         cells.for_each(|(drawn, value)| *drawn &= property.keeps(*value));
     }
+    if !filter.wells.is_empty() {
+        let connected = connected(case, &filter.wells, well_step(case, step))?;
+        let cells = drawn.iter_mut().zip(connected);
+        cells.for_each(|(drawn, is_connected)| *drawn &= is_connected);
+    }
     Ok(drawn)
+}
+
+/// By active index: true where a well whose name matches one of some patterns is connected to the cell at a step,
+/// open or not.
+fn connected(case: &Case, names: &[String], step: usize) -> Result<Vec<bool>, CaseError> {
+    let grid = &case.grid;
+    let mut cells = vec![false; grid.active_cells().len()];
+    let wells = case.wells(step)?;
+    let named = wells.iter().filter(|well| matches_any(names, &well.name));
+    for cell in named.flat_map(|well| well.cells(grid)) {
+        if let Some(active) = grid.active_index(grid.dims().cell(cell)) {
+            cells[active.0 as usize] = true;
+        }
+    }
+    Ok(cells)
 }
 
 /// A property that filters, at the scene's step, whether or not the property shown changes with time.

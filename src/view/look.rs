@@ -262,7 +262,7 @@ pub fn opening(case: &Case, written: &Value) -> Result<Scene, SceneError> {
         background: GROUND.into(),
         show: Show {
             hull: Hull::Faint,
-            wells: has_wells(case),
+            wells: has_wells(case).into(),
             ..Show::default()
         },
         mode: match written.get("mode") {

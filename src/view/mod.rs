@@ -153,6 +153,8 @@ pub struct Notes {
     pub has_legend: bool,
     /// What is drawn in numbers, for the line below the picture; `None` where that is hidden.
     pub facts: Option<Arc<Facts>>,
+    /// What the scene asks for in vain, one sentence each.
+    pub warnings: Vec<String>,
 }
 
 /// The cells that rays meet, and their values.

@@ -13,12 +13,12 @@ use super::ghosts::Ghosts;
 use super::grids::ShownGrids;
 use super::lighting::{self, Lighting};
 use super::look::default_property;
-use super::step::{step_of, well_step};
+use super::step::step_of;
 use super::voxels::Shape;
 use super::wells::Measures;
 use super::{
-    Camera, ClipPlane, Notes, Sampling, Shown, ShownCells, Style, Surfaces, View, Wells, World,
-    clip, filter, surfaces, wells,
+    Camera, ClipPlane, Notes, Sampling, Shown, ShownCells, Style, Surfaces, View, World, clip,
+    filter, surfaces, wells,
 };
 use crate::case::Case;
 use crate::model::{CellField, Dims, Grid, Ijk, Spaces};
@@ -72,7 +72,7 @@ pub(super) fn resolve_over(
         are_all_grids,
     } = cells(&asked, [&field, &in_scale], &spaces, &clip)?;
     let world_bounds = bounds_of(&box_corners);
-    let wells = shown_wells(scene, case, &Measures::of(&spaces, &box_corners, edges))?;
+    let wells = wells::shown(scene, case, &Measures::of(&spaces, &box_corners, edges))?;
     let size = checked_size(scene.size)?;
     Ok(View {
         size,
@@ -114,28 +114,13 @@ pub(super) fn resolve_over(
             corners: box_corners,
             subject: Arc::new(subject),
         },
-        notes: notes(scene, facts),
+        notes: Notes {
+            has_box: scene.show.r#box,
+            has_legend: scene.show.legend,
+            facts,
+            warnings: wells::warnings(scene, case)?,
+        },
     })
-}
-
-/// The wells that a scene shows, of the step that it names whether or not its property changes with time.
-fn shown_wells(
-    scene: &Scene,
-    case: &Case,
-    measures: &Measures<'_>,
-) -> Result<Arc<Wells>, SceneError> {
-    match scene.show.wells {
-        true => wells::shown(case, well_step(case, &scene.step), measures),
-        false => Ok(Arc::default()),
-    }
-}
-
-fn notes(scene: &Scene, facts: Option<Arc<Facts>>) -> Notes {
-    Notes {
-        has_box: scene.show.r#box,
-        has_legend: scene.show.legend,
-        facts,
-    }
 }
 
 fn background(scene: &Scene) -> Result<[f64; 3], SceneError> {

@@ -52,4 +52,5 @@ mod statistics;
 mod storage;
 mod surfaces;
 mod synthetic;
+mod vectors;
 mod wells;

@@ -6,6 +6,7 @@ mod pore_volume;
 mod properties;
 mod slots;
 mod source;
+mod summary;
 mod wells;
 
 use std::path::{Path, PathBuf};
@@ -21,6 +22,7 @@ use self::grids::Loaded;
 use self::properties::Setting;
 use self::slots::{CellSlots, ResultCells};
 use self::source::FileSource;
+use self::summary::SummaryFiles;
 use crate::case::{About, Case, FieldCache, OverSteps, Step, WellsOfSteps};
 
 /// Opens the case that `path` names: any of its files, or its base name.
@@ -118,6 +120,7 @@ pub fn open_reporting(
     let mut warnings = Warnings::default();
     let mut about = About {
         name: files.name.clone(),
+        summary: files.summary.iter().flat_map(summary::paths).collect(),
         ..About::default()
     };
     for (file, why) in &files.not_read {
@@ -134,7 +137,8 @@ pub fn open_reporting(
     }
     let steps = open_restart(&files.restart, &mut about, &mut warnings);
     note_missing(&files, loaded.is_deck, &mut about);
-    let case = build(loaded, init, steps, about, &warnings);
+    let summary = SummaryFiles::new(files.summary);
+    let case = build(loaded, init, steps, summary, about, &warnings);
     Ok(Some(case))
 }
 
@@ -143,6 +147,7 @@ fn build(
     mut loaded: Loaded,
     init: Option<CellArrays>,
     steps: Vec<FileStep>,
+    summary: SummaryFiles,
     mut about: About,
     warnings: &Warnings,
 ) -> Case {
@@ -180,6 +185,7 @@ fn build(
         init: None,
         steps: Vec::new(),
         texts: loaded.texts,
+        summary,
     };
     source.take_fitting(init, steps, &mut about);
     leave_unfinished(&mut source.steps, &mut about.notes);

@@ -1,6 +1,7 @@
 //! Values of a case, decoded from its files when they are asked for.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use strataray_parsers::arrays::is_cell_array;
 use strataray_parsers::cells::CellArrays;
@@ -11,9 +12,10 @@ use strataray_parsers::{At, ErrorKind, ParseError};
 
 use super::local::Places;
 use super::slots::CellSlots;
+use super::summary::SummaryFiles;
 use super::wells;
 use crate::case::pores::{self, Pores};
-use crate::case::{About, CaseError, Source, Well};
+use crate::case::{About, CaseError, Source, Vectors, Well};
 
 /// Arrays that are no properties, though there may be as many values as cells: heads, wells, groups, connections.
 const NOT_PROPERTIES: &[&str] = &[
@@ -34,6 +36,8 @@ pub struct FileSource {
     pub steps: Vec<FileStep>,
     /// Arrays of decks and other text.
     pub texts: Vec<DeckProperty>,
+    /// Curves over time.
+    pub summary: SummaryFiles,
 }
 
 impl FileSource {
@@ -272,5 +276,9 @@ impl Source for FileSource {
     fn wells(&self, step: usize) -> Result<Vec<Well>, CaseError> {
         let step = self.steps.get(step);
         Ok(step.map(wells::of).transpose()?.unwrap_or_default())
+    }
+
+    fn vectors(&self) -> Result<Option<Arc<Vectors>>, CaseError> {
+        Ok(self.summary.vectors()?)
     }
 }
