@@ -354,7 +354,7 @@ fn ok_what_is_not_applied_is_said_and_doubted() {
          COPY\n PORO PERMY /\n NOSUCH PERMX /\n/\nMULTIPLY\n TRANX 0.5 /\n/\nCOPY\n PERMX PERMZ /\n/\n",
     ));
     for expected in [
-        "EQUALREG was not applied to PORO, NTG: this keyword is not evaluated",
+        "EQUALREG was not applied to PORO, NTG: the array of its regions is not in the deck",
         "EQUALS was not applied to PERMX: its box is outside the grid",
         "COPY was not applied to PERMX: the array to copy is not in the deck",
         "MULTIPLY was not applied to TRANX, which the deck does not give",
@@ -377,6 +377,190 @@ fn ok_what_is_not_applied_is_said_and_doubted() {
     assert_eq!(doubt("PERMZ"), doubt("PERMX"));
     // What is set anew for all cells is as the deck says.
     assert_eq!(doubt("NTG"), None);
+}
+
+/// Regions 1 and 2 side by side along i, and 3 instead of both in the lower layer.
+const REGIONS: &str =
+    "8*3 /\nBOX\n1 1 1 2 1 1 /\nNAME\n2*1 /\nBOX\n2 2 1 2 1 1 /\nNAME\n2*2 /\nENDBOX\n";
+
+fn regions(name: &str) -> String {
+    format!("{name}\n{}", REGIONS.replace("NAME", name))
+}
+
+#[test]
+fn ok_operations_on_regions() {
+    let poro = "PORO\n8*0.5 /\nPERMX\n1 2 3 4 5 6 7 8 /\n";
+    let with = |text: &str| {
+        let grid = ok(&cube(&format!("{}{poro}{text}", regions("MULTNUM"))));
+        property(&grid, "PORO").to_vec()
+    };
+    let (a, b) = (0.25, 0.5);
+    let first = [a, b, a, b, b, b, b, b];
+    assert_eq!(with("EQUALREG\n PORO 0.25 1 M /\n/\n"), first);
+    assert_eq!(with("EQUALREG\n PORO 0.25 1 /\n/\n"), first);
+    assert_eq!(with("MULTIREG\n PORO 0.5 1 M /\n/\n"), first);
+    assert_eq!(with("ADDREG\n PORO -0.25 1 /\n/\n"), first);
+    // Another region, other cells.
+    let second = [b, a, b, a, b, b, b, b];
+    assert_eq!(with("EQUALREG\n PORO 0.25 2 M /\n/\n"), second);
+    // Regions as they are when the record is read.
+    assert_eq!(
+        with("EQUALS\n MULTNUM 2 1 1 1 1 1 1 /\n/\nEQUALREG\n PORO 0.25 2 /\n/\n"),
+        [a, a, b, a, b, b, b, b]
+    );
+    assert_eq!(
+        with("COPYREG\n PERMX PORO 3 /\n/\n"),
+        [b, b, b, b, 5.0, 6.0, 7.0, 8.0]
+    );
+    let (grid, warning) = warned(&cube(&format!(
+        "{}{poro}EQUALREG\n PORO 0.25 7 /\n PORO 0.1 1 O /\n/\n",
+        regions("MULTNUM")
+    )));
+    assert_eq!(property(&grid, "PORO"), [0.5; 8]);
+    for expected in [
+        "EQUALREG was not applied to PORO: no cell is in its region",
+        "EQUALREG was not applied to PORO: the array of its regions is not in the deck",
+    ] {
+        assert!(warning.contains(expected), "{warning}");
+    }
+}
+
+#[test]
+fn ok_the_array_of_regions_that_is_meant() {
+    let both = format!("{}FLUXNUM\n4*1 4*2 /\nPORO\n8*0.5 /\n", regions("MULTNUM"));
+    let record = "EQUALREG\n PORO 0 1 LETTER /\n/\n";
+    let zeros = |options: &str, letter: &str| {
+        let grid = ok(&cube(&format!(
+            "{options}{both}{}",
+            record.replace("LETTER", letter)
+        )));
+        let values = property(&grid, "PORO").to_vec();
+        (0..8)
+            .filter(|cell| values[*cell] == 0.0)
+            .collect::<Vec<_>>()
+    };
+    let (flux, multiplier) = (vec![0, 1, 2, 3], vec![0, 2]);
+    assert_eq!(zeros("", "F"), flux);
+    assert_eq!(zeros("", "M"), multiplier);
+    // Where none is named: as GRIDOPTS has it.
+    assert_eq!(zeros("", ""), flux);
+    assert_eq!(zeros("GRIDOPTS\n 'YES' 0 /\n", ""), flux);
+    assert_eq!(zeros("GRIDOPTS\n 'YES' 3 /\n", ""), multiplier);
+}
+
+#[test]
+fn ok_formulas() {
+    let deck = "PORO\n8*0.5 /\nPERMX\n10 100 4*10 -3 10 /\n";
+    let target = |record: &str| {
+        let (grid, warning) = warned(&cube(&format!("{deck}OPERATE\n PORO 6* {record} /\n/\n")));
+        (property(&grid, "PORO").to_vec(), warning)
+    };
+    // By hand, for x = 10, 100 and -3, and r = 0.5.
+    for (record, expected) in [
+        ("MULTA PERMX 2 1", [21.0, 201.0, -5.0]),
+        ("POLY PERMX 2 2", [200.5, 20000.5, 18.5]),
+        ("SLOG PERMX 1 0.1", [100.0, 1e11, 10_f64.powf(0.7)]),
+        ("MULTX PERMX 3", [30.0, 300.0, -9.0]),
+        ("ADDX PERMX 3", [13.0, 103.0, 0.0]),
+        ("COPY PERMX", [10.0, 100.0, -3.0]),
+        ("MAXLIM PERMX 20", [10.0, 20.0, -3.0]),
+        ("MINLIM PERMX 20", [20.0, 100.0, 20.0]),
+        ("MULTP PERMX 2 2", [200.0, 20000.0, 18.0]),
+        ("ABS PERMX", [10.0, 100.0, 3.0]),
+        ("MULTIPLY PERMX", [5.0, 50.0, -1.5]),
+        ("INV PERMX", [0.1, 0.01, -1.0 / 3.0]),
+    ] {
+        let (values, warning) = target(record);
+        for (cell, expected) in [0, 1, 6].into_iter().zip(expected) {
+            let difference = (values[cell] - expected).abs();
+            assert!(difference <= 1e-12 * expected.abs(), "{record}: {values:?}");
+        }
+        assert!(warning.is_empty(), "{warning}");
+    }
+    for (record, first) in [("LOG10 PERMX", 1.0), ("LOGE PERMX", 10_f64.ln())] {
+        let (values, warning) = target(record);
+        assert_eq!(values[0], first);
+        assert!(values[6].is_nan() && !values[7].is_nan());
+        assert!(
+            warning.contains("PORO becomes undefined in 1 cell"),
+            "{warning}"
+        );
+    }
+    let (values, warning) = target("NOSUCH PERMX");
+    assert_eq!(values, [0.5; 8]);
+    assert!(warning.contains("OPERATE was not applied to PORO: its formula is not known"));
+}
+
+#[test]
+fn ok_formulas_in_boxes_and_regions() {
+    let deck = format!(
+        "PORO\n8*0.5 /\nPERMX\n1 2 3 4 5 6 7 8 /\n{}",
+        regions("OPERNUM")
+    );
+    let grid = ok(&cube(&format!(
+        "{deck}OPERATE\n PORO 1 1 1 1 2 2 MULTX PERMX 10 /\n PERMY 6* COPY PERMX /\n/\n\
+         OPERATER\n PORO 1 ADDX PERMX 100 /\n PERMY 3 MULTA PORO 2 1 1* O /\n/\n"
+    )));
+    assert_eq!(
+        property(&grid, "PORO"),
+        [101.0, 0.5, 103.0, 0.5, 50.0, 0.5, 0.5, 0.5]
+    );
+    let defined: Vec<f64> = property(&grid, "PERMY").to_vec();
+    // A box that is named holds for the records behind it, so the copy is of one cell.
+    assert!(defined[..4].iter().all(|value| value.is_nan()));
+    assert_eq!(defined[4..], [101.0, 2.0, 2.0, 2.0]);
+}
+
+#[test]
+fn ok_the_section_edit_has_factors_of_its_own() {
+    let grid = ok(&cube(
+        "GRID\nMULTX\n8*0.5 /\nMULTPV\n8*2 /\nPORO\n8*0.1 /\nEDIT\n\
+         MULTX\n4*0.5 4*1 /\nEQUALS\n MULTPV 3 1 1 1 1 1 1 /\n MULTY 0.1 /\n/\n\
+         BOX\n1 2 1 1 1 1 /\nPORV\n100 200 /\nENDBOX\nMULTIPLY\n PORV 10 1 2 1 2 1 1 /\n/\n",
+    ));
+    let half = 0.25;
+    assert_eq!(
+        property(&grid, "MULTX"),
+        [half, half, half, half, 0.5, 0.5, 0.5, 0.5]
+    );
+    let mut thinner = [1.0; 8];
+    thinner[0] = 0.1;
+    assert_eq!(property(&grid, "MULTY"), thinner);
+    // Given pore volumes: 100 and 200, times 10, the first times the factor of its cell in EDIT.
+    let volumes = property(&grid, "PORV");
+    assert_eq!(volumes[..2], [3000.0, 2000.0]);
+    assert!(volumes[2..].iter().all(|volume| volume.is_nan()));
+    // Others follow from the geometry, times the factors of both sections and those on PORV.
+    assert_eq!(
+        property(&grid, "MULTPV")[1..],
+        [2.0, 20.0, 20.0, 2.0, 2.0, 2.0, 2.0]
+    );
+    // In one section the last one holds.
+    let (grid, _) = warned(&cube("GRID\nMULTX\n8*0.5 /\nMULTX\n8*0.25 /\n"));
+    assert_eq!(property(&grid, "MULTX"), [0.25; 8]);
+}
+
+#[test]
+fn ok_changes_of_pore_volumes_that_are_not_known() {
+    let (grid, warning) = warned(&cube(
+        "GRID\nPORO\n8*0.1 /\nEDIT\nEQUALS\n PORV 5 1 1 1 1 1 1 /\n/\nADD\n PORV 1 /\n/\n",
+    ));
+    assert_eq!(property(&grid, "PORV")[0], 6.0);
+    assert!(
+        warning.contains("ADD was not applied to PORV where it follows from the geometry"),
+        "{warning}"
+    );
+    let (grid, _) = warned(&cube("EDIT\nADD\n PORV 1 /\n/\n"));
+    assert!(names(&grid).is_empty());
+}
+
+#[test]
+fn ok_cells_are_made_inactive_by_operations() {
+    let grid = ok(&cube(
+        "EQUALS\n ACTNUM 0 1 1 1 2 1 1 /\n/\nBOX\n2 2 2 2 2 2 /\nACTNUM\n0 /\nENDBOX\n\
+         FLUXNUM\n7*1 2 /\nEQUALREG\n ACTNUM 1 2 F /\n/\n",
+    ));
+    assert_eq!(grid.actnum.unwrap(), [0, 1, 0, 1, 1, 1, 1, 1]);
 }
 
 #[test]

@@ -64,6 +64,16 @@ pub(super) fn positive(item: &Item) -> Result<usize, Mistake> {
         })
 }
 
+/// A whole number, as of a region.
+pub(super) fn whole(item: &Item) -> Result<i32, Mistake> {
+    let text = item.text.unwrap_or(b"*");
+    let number = std::str::from_utf8(text).ok().and_then(|t| t.parse().ok());
+    number.ok_or_else(|| {
+        let message = format!("expected a whole number, found '{}'", shown(text));
+        Mistake::new(ErrorKind::BadValue, item.at, message)
+    })
+}
+
 /// MAPAXES: six finite numbers.
 pub(super) fn map_axes(items: &[Item], at: usize) -> Result<[f64; 6], Mistake> {
     if items.len() != 6 {

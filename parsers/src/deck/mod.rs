@@ -3,7 +3,8 @@
 //! The reader follows INCLUDE, skips what does not describe the grid, and stops at the SUMMARY or
 //! SCHEDULE section. It works in two steps: a scan over all files that notes where each array
 //! lies and what is done to it, and, once the dimensions are known, the parallel conversion of the
-//! arrays and, in the deck's order, what EQUALS, COPY, ADD, MULTIPLY, MINVALUE and MAXVALUE do to them.
+//! arrays and, in the deck's order, what is done to them in boxes (EQUALS, COPY, ...), regions (EQUALREG, ...) and by
+//! formulas (OPERATE).
 
 mod array;
 mod assemble;
@@ -12,6 +13,7 @@ mod cells;
 mod edit;
 mod faults;
 mod files;
+mod formula;
 mod header;
 mod include;
 mod lexer;
@@ -118,8 +120,7 @@ pub struct FaultFaces {
 impl Grdecl {
     /// Reads the grid of the deck at `path` and of all files it includes.
     ///
-    /// What the reader leaves out or cannot evaluate (operations by region, local refinements, files that are
-    /// imported) goes to `warnings`.
+    /// What the reader leaves out or cannot evaluate (an operation on what is not given, local refinements, ...) goes to `warnings`.
     ///
     /// # Errors
     /// When a file is missing or ends inside a record, when the grid is missing, radial, damaged or of the wrong

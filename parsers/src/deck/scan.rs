@@ -86,6 +86,8 @@ pub(super) struct Found {
     /// Phases as INTEHEAD numbers them: 1 oil, 2 water, 4 gas, added.
     pub(super) phases: i32,
     pub(super) min_pore_volume: Option<f64>,
+    /// True where GRIDOPTS has regions of MULTNUM.
+    pub(super) has_multiplier_regions: bool,
     /// True when radial sizes were met.
     pub(super) radial: bool,
     pub(super) files: Vec<PathBuf>,
@@ -98,7 +100,7 @@ impl Found {
     pub(super) fn describes_grid(&self) -> bool {
         let is_size = |edit: &Edit| match edit {
             Edit::Given(block, _) => block.name == "TOPS",
-            Edit::Changed { target, .. } => target == "TOPS",
+            Edit::Changed(operation) => operation.target == "TOPS",
             Edit::NotApplied { .. } => false,
         };
         let has_corners = self.coord.is_some() && self.zcorn.is_some();
@@ -118,7 +120,7 @@ pub(super) struct Scan<'a> {
     pub(super) warnings: &'a mut Warnings,
     pub(super) places: Places<'a>,
     pub(super) found: Found,
-    section: Option<Section>,
+    pub(super) section: Option<Section>,
     /// The cells that arrays at hand belong to.
     pub(super) input_box: CellBox,
     refinement: bool,
@@ -239,7 +241,7 @@ impl Scan<'_> {
             "PATHS" => self.paths(source, cursor)?,
             "FAULTS" | "MULTFLT" | "ADDZCORN" => self.lists(source, cursor, keyword)?,
             "SPECGRID" | "DIMENS" | "MAPAXES" | "MAPUNITS" | "GRIDUNIT" | "GDORIENT" | "BOX"
-            | "MINPV" | "MINPORV" => {
+            | "MINPV" | "MINPORV" | "GRIDOPTS" => {
                 let items = cursor
                     .record()
                     .map_err(|mistake| source.mistake(name, mistake))?;
@@ -274,6 +276,11 @@ impl Scan<'_> {
                     .transpose()
                     .map_err(placed)?;
                 self.found.min_pore_volume = least;
+            }
+            "GRIDOPTS" => {
+                let regions = items.get(1).filter(|item| item.text.is_some());
+                let regions = regions.map(header::whole).transpose().map_err(placed)?;
+                self.found.has_multiplier_regions = regions.is_some_and(|count| count > 0);
             }
             "MAPAXES" => {
                 self.found.map_axes = Some(header::map_axes(items, keyword.at).map_err(placed)?);
