@@ -11,6 +11,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use strataray_parsers::deck::{Grdecl, MemoryFiles, UnitSystem};
+use strataray_parsers::egrid::PorosityModel;
+use strataray_parsers::records::RecordWriter;
 use strataray_parsers::{ParseError, Warnings};
 
 /// One cell, with all corners at depth 0 or 1.
@@ -615,6 +617,125 @@ fn ok_block_centered_grids() {
     );
 }
 
+/// A ring of two cells along the radius, four around and two layers, with `sizes`.
+fn ring(sizes: &str) -> (Grdecl, String) {
+    warned(&format!(
+        "RUNSPEC\nRADIAL\nDIMENS\n2 4 2 /\nGRID\nINRAD\n1 /\n{sizes}DZ\n8*5 8*10 /\nTOPS\n8*1000 /\nPORO\n16*0.2 /\n"
+    ))
+}
+
+#[test]
+fn ok_radial_grids() {
+    let near = |values: &[f64], expected: &[f64]| {
+        let pairs = values.iter().zip(expected);
+        assert_eq!(values.len(), expected.len());
+        assert!(
+            pairs.clone().all(|(a, b)| (a - b).abs() < 1e-9),
+            "{values:?} {expected:?}"
+        );
+    };
+    let (grid, warning) = ring("DRV\n2 4 /\nDTHETAV\n4*90 /\n");
+    assert!(warning.contains("the grid is radial"), "{warning}");
+    // Radii 1, 3, 7; the second row of pillars is a quarter of a turn on.
+    near(&grid.coord[..6], &[1.0, 0.0, 1000.0, 1.0, 0.0, 1015.0]);
+    near(&grid.coord[12..15], &[7.0, 0.0, 1000.0]);
+    near(&grid.coord[30..33], &[0.0, 7.0, 1000.0]);
+    assert_eq!(grid.coord[..18], grid.coord[72..]);
+    assert_eq!([grid.zcorn[0], grid.zcorn[127]], [1000.0, 1015.0]);
+    assert_eq!(property(&grid, "PORO").len(), 16);
+    // The same by cells, and by an operation.
+    let arrays = "DR\n2 4 2 4 2 4 2 4 2 4 2 4 2 4 2 4 /\nEQUALS\n DTHETA 90 /\n/\n";
+    assert_eq!(ring(arrays).0.coord, grid.coord);
+    // Other sizes, other pillars.
+    let (other, _) = ring("DRV\n2 5 /\nDTHETAV\n4*45 /\n");
+    near(&other.coord[12..14], &[8.0, 0.0]);
+    near(
+        &other.coord[66..68],
+        &[-8.0 * 0.5_f64.sqrt(), 8.0 * 0.5_f64.sqrt()],
+    );
+    near(&other.coord[84..86], &[-8.0, 0.0]);
+    // Radii between two ends grow by the same factor: 1, 4, 16.
+    let (grown, _) = ring("OUTRAD\n16 /\nDTHETAV\n4*90 /\n");
+    near(&[grown.coord[6], grown.coord[12]], &[4.0, 16.0]);
+    let lacking = "RUNSPEC\nRADIAL\nDIMENS\n1 1 1 /\nDR\n1 /\nDTHETA\n360 /\nDZ\n1 /\nTOPS\n1 /\n";
+    err(lacking, "a radial one needs DIMENS, INRAD");
+}
+
+#[test]
+fn ok_radial_corner_points() {
+    // One cell from radius 1 to 2 and from 0 to 90 degrees.
+    let pillars = "1 0 0 1 0 1  2 0 0 2 0 1  1 90 0 1 90 1  2 90 0 2 90 1";
+    let start = CELL.find("0 0 0 0 0 1").unwrap();
+    let end = CELL.find(" /\nZCORN").unwrap();
+    let deck = format!("{}{pillars}{}", &CELL[..start], &CELL[end..]);
+    let (grid, warning) = warned(&deck.replace("1 1 1 1 F", "1 1 1 1 T"));
+    assert!(warning.contains("radial"), "{warning}");
+    assert!(grid.coord[18].abs() < 1e-15 && grid.coord[19] == 2.0);
+    assert_eq!(ok(&deck).coord[18..20], [2.0, 90.0]);
+}
+
+/// A deck of dual porosity, 1 x 1 cells in two layers of matrix and two of fractures.
+fn dual(text: &str) -> String {
+    format!("RUNSPEC\nDUALPORO\nOIL\nDIMENS\n1 1 4 /\nGRID\n{text}")
+}
+
+#[test]
+fn ok_dual_porosity_shows_the_matrix() {
+    let corners = |zcorn: &str| {
+        format!(
+            "SPECGRID\n1 1 4 1 F /\nCOORD\n0 0 0 0 0 1  1 0 0 1 0 1  0 1 0 0 1 1  1 1 0 1 1 1 /\nZCORN\n{zcorn} /\n"
+        )
+    };
+    let both = "4*0 8*1 4*2 4*0 8*1 4*2";
+    for zcorn in [both, "4*0 8*1 4*2"] {
+        let grid = ok(&dual(&format!(
+            "{}PORO\n0.1 0.2 0.3 0.4 /\nPERMX\n2*5 2*500 /\nACTNUM\n1 0 1 1 /\nFAULTS\n F 1 1 1 1 1 4 X /\n G 1 1 1 1 3 4 X /\n/\n",
+            corners(zcorn)
+        )));
+        assert_eq!(grid.porosity_model, PorosityModel::Dual);
+        assert_eq!(grid.dims, [1, 1, 2]);
+        assert_eq!(grid.zcorn.len(), 16);
+        assert_eq!(property(&grid, "PORO"), [0.1, 0.2]);
+        assert_eq!(property(&grid, "PERMX"), [5.0, 5.0]);
+        // Both, and the fracture alone.
+        assert_eq!(grid.actnum, Some(vec![3, 2]));
+        assert_eq!((grid.faults.len(), grid.faults[0].k), (1, [1, 2]));
+    }
+    // Without the word the same text is four layers.
+    let single = ok(&dual(&corners(both)).replace("DUALPORO\n", ""));
+    assert_eq!((single.dims, single.actnum), ([1, 1, 4], None));
+    // Sizes of the matrix alone.
+    let blocks = dual(
+        "DPGRID\nDX\n2*10 /\nDY\n2*10 /\nDZ\n5 6 /\nTOPS\n100 /\nBOX\n1 1 1 1 3 4 /\nPERMX\n7 8 /\nENDBOX\n",
+    );
+    let grid = ok(&blocks);
+    assert_eq!(grid.zcorn[12..], [111.0; 4]);
+    assert_eq!(grid.actnum, Some(vec![3, 3]));
+    let odd = blocks.replace("1 1 4 /", "1 1 3 /");
+    err(&odd, "DIMENS: 3 layers of dual porosity");
+}
+
+#[test]
+fn ok_activity_of_a_grid_file_is_changed() {
+    let mut out = RecordWriter::new(Vec::new());
+    out.inte("GRIDHEAD", &[1, 2, 1, 1]).unwrap();
+    out.real("COORD", &[0.5; 36]).unwrap();
+    out.real("ZCORN", &[1.5; 16]).unwrap();
+    out.inte("ACTNUM", &[0, 1]).unwrap();
+    let egrid = out.finish().unwrap();
+    let read = |text: &str| {
+        let deck = format!("GDFILE\n 'A.EGRID' /\n{text}");
+        let files = [("A.DATA", deck.into_bytes()), ("A.EGRID", egrid.clone())];
+        let files = MemoryFiles::from_iter(files);
+        let mut warnings = Warnings::default();
+        let grid = Grdecl::read_from(&files, Path::new("A.DATA"), &[], &mut warnings);
+        grid.unwrap().actnum.unwrap()
+    };
+    assert_eq!(read(""), [0, 1]);
+    assert_eq!(read("EQUALS\n ACTNUM 0 2 2 1 1 1 1 /\n/\n"), [0, 0]);
+    assert_eq!(read("ACTNUM\n2*1 /\n"), [1, 1]);
+}
+
 #[test]
 fn ok_depths_are_shifted() {
     let grid = ok(&cube(
@@ -662,7 +783,6 @@ fn ok_dimensions_without_the_number_of_coordinate_systems() {
     ] {
         assert_eq!(ok(&CELL.replace("1 1 1 1 F", dims)).dims, [1; 3], "{dims}");
     }
-    err(&CELL.replace("1 1 1 1 F", "1 1 1 T"), "radial");
 }
 
 #[test]
@@ -788,7 +908,7 @@ fn err_missing_keywords() {
     err("FAULTS\nA 1 1 1 1 1 1 X /\n/\n", "has FAULTS but no grid");
     err(
         "DIMENS\n1 1 1 /\nDR\n1 /\nDTHETA\n360 /\nDZ\n1 /\nTOPS\n1 /\n",
-        "radial",
+        "no grid: a radial one needs DIMENS, INRAD, DR",
     );
 }
 
@@ -803,7 +923,6 @@ fn err_dimensions() {
     err(&with("1 1"), "expected three numbers of cells");
     err(&with("1* 1 1"), "found '*'");
     err(&with("1 1 1 2 F"), "NUMRES");
-    err(&with("1 1 1 1 T"), "radial");
     err(&with("99999 99999 99999"), "more than a grid can have");
     err(
         &with("18446744073709551615 2 2"),

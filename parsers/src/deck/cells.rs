@@ -4,6 +4,7 @@ use super::edit::{CellBox, Cells, Change, Edit, LeftOut, Operation, Place, cells
 use super::scan::{Block, Found, Section};
 use super::{DeckProperty, assemble};
 use crate::arrays::{default_value, is_cell_array, is_multiplier, is_table};
+use crate::egrid::PorosityModel;
 use crate::error::{ParseError, Warnings};
 
 /// A one-record keyword with more values than this and half a value per cell is taken for a property gone wrong.
@@ -28,6 +29,8 @@ pub(super) struct CellArray {
 /// All arrays of a deck.
 pub(super) struct CellArrays {
     dims: [usize; 3],
+    /// True where the lower half of the layers are the fractures.
+    is_dual: bool,
     arrays: Vec<CellArray>,
     left_out: LeftOut,
     /// The array of regions that is meant where a record names none, and the one where that is not given.
@@ -47,6 +50,7 @@ impl CellArrays {
     ) -> Result<Self, ParseError> {
         let mut all = Self {
             dims,
+            is_dual: found.porosity_model != PorosityModel::Single,
             arrays: Vec::new(),
             left_out: LeftOut::default(),
             regions: match found.has_multiplier_regions {
@@ -54,6 +58,10 @@ impl CellArrays {
                 false => FLUX_REGIONS,
             },
         };
+        if let Some((place, actnum)) = found.file_actnum.take() {
+            let active = all.find_or_begin("ACTNUM", false, &place);
+            active.values = actnum.into_iter().map(f64::from).collect();
+        }
         for edit in std::mem::take(&mut found.edits) {
             match edit {
                 Edit::Given(block, cells) => all.give(&block, cells, warnings)?,
@@ -127,6 +135,15 @@ impl CellArrays {
         &mut self.arrays[at]
     }
 
+    /// Leaves out what is not of the first `dims` cells: of dual porosity the fractures, which follow the matrix.
+    pub(super) fn keep(&mut self, dims: [usize; 3]) {
+        self.dims = dims;
+        let cells = self.cells();
+        for array in &mut self.arrays {
+            array.values.truncate(cells);
+        }
+    }
+
     /// Takes an array out.
     pub(super) fn take(&mut self, name: &str) -> Option<CellArray> {
         let at = self.arrays.iter().position(|array| array.name == name)?;
@@ -169,7 +186,12 @@ impl CellArrays {
         let count = ranges.iter().map(ExactSizeIterator::len).product();
         let counts = match block.name.as_str() {
             // The tops of the first layer are enough.
-            "TOPS" if is_whole => vec![count, self.dims[0] * self.dims[1]],
+            "TOPS" if is_whole => {
+                let half = if self.is_dual { count / 2 } else { count };
+                vec![count, self.dims[0] * self.dims[1], half]
+            }
+            // The matrix alone.
+            _ if is_whole && self.is_dual => vec![count, count / 2],
             _ => vec![count],
         };
         let Some(values) = values(block, &counts, warnings)? else {
@@ -379,7 +401,7 @@ fn values(
     warnings: &mut Warnings,
 ) -> Result<Option<Vec<f64>>, ParseError> {
     if block.name == "ACTNUM" {
-        return assemble::array(block, assemble::ACTIVITY, counts[0]).map(Some);
+        return assemble::array(block, assemble::ACTIVITY, counts).map(Some);
     }
     if !may_be_cells(block) {
         return Ok(None);

@@ -11,6 +11,7 @@ use super::skip::{Skipped, ends_records, is_operation, skip_records};
 use super::source::{Places, Source};
 use super::{FaultFaces, GridUnit, faults, header};
 use crate::bytes::FileBytes;
+use crate::egrid::PorosityModel;
 use crate::error::{ErrorKind, ParseError, Warnings};
 use crate::units::UnitSystem;
 
@@ -68,12 +69,12 @@ pub(super) struct Found {
     pub(super) zcorn: Option<Block>,
     /// What is done to arrays of cells, in order.
     pub(super) edits: Vec<Edit>,
-    /// Sizes by column, row and layer: DXV, DYV, DZV.
+    /// Sizes by column, row and layer (DXV, DYV, DZV, DRV, DTHETAV), and radii (INRAD, OUTRAD).
     pub(super) vectors: Vec<Block>,
     /// A binary file with the geometry, where GDFILE names one, or why it cannot be opened.
     pub(super) grid_file: Option<(Place, Result<FileBytes, ParseError>)>,
-    /// ACTNUM of that file.
-    pub(super) file_actnum: Option<Vec<i32>>,
+    /// ACTNUM of that file, and where it is named.
+    pub(super) file_actnum: Option<(Place, Vec<i32>)>,
     pub(super) depth_shifts: Vec<DepthShift>,
     pub(super) faults: Vec<(Place, FaultFaces)>,
     /// MULTFLT: names with multipliers, in order.
@@ -88,8 +89,11 @@ pub(super) struct Found {
     pub(super) min_pore_volume: Option<f64>,
     /// True where GRIDOPTS has regions of MULTNUM.
     pub(super) has_multiplier_regions: bool,
-    /// True when radial sizes were met.
+    /// True where the grid is radial.
     pub(super) radial: bool,
+    /// True where COORD has radii and angles (`T` of SPECGRID).
+    pub(super) radial_corners: bool,
+    pub(super) porosity_model: PorosityModel,
     pub(super) files: Vec<PathBuf>,
     /// Bytes of all files, each time they are included.
     pub(super) bytes: usize,
@@ -289,7 +293,9 @@ impl Scan<'_> {
             "GRIDUNIT" => self.found.grid_unit = Some(header::grid_unit(items)),
             "GDORIENT" => self.found.gdorient = Some(header::gdorient(items)),
             _ => {
-                let dims = header::dims(items, keyword.at).map_err(placed)?;
+                let (dims, is_radial) = header::dims(items, keyword.at).map_err(placed)?;
+                self.found.radial |= is_radial;
+                self.found.radial_corners |= is_radial;
                 self.dims(source, keyword, dims);
             }
         }
@@ -298,6 +304,13 @@ impl Scan<'_> {
 
     fn dims(&mut self, source: &Source, keyword: &Keyword, dims: [usize; 3]) {
         let from_specgrid = keyword.name == "SPECGRID";
+        // Some give the layers of the matrix alone.
+        let [ni, nj, nk] = dims;
+        if self.found.porosity_model != PorosityModel::Single
+            && self.found.dims == Some([ni, nj, 2 * nk])
+        {
+            return;
+        }
         if let Some(earlier) = self.found.dims.filter(|&earlier| earlier != dims) {
             let message = format!(
                 "{} gives {} cells where the deck gave {} before; SPECGRID is followed",
@@ -429,7 +442,9 @@ impl Scan<'_> {
             Skipped::OneNumeric(end) => {
                 let block = self.block(source, keyword, end);
                 match name {
-                    "DXV" | "DYV" | "DZV" => self.found.vectors.push(block),
+                    "DXV" | "DYV" | "DZV" | "DRV" | "DTHETAV" | "INRAD" | "OUTRAD" => {
+                        self.found.vectors.push(block);
+                    }
                     _ => self.found.edits.push(Edit::Given(block, self.input_box)),
                 }
             }
@@ -440,7 +455,13 @@ impl Scan<'_> {
             self.refinement = false;
         }
         match name {
-            "DR" | "DRV" | "DTHETA" | "DTHETAV" | "INRAD" => self.found.radial = true,
+            "RADIAL" | "DR" | "DRV" | "DTHETA" | "DTHETAV" | "INRAD" => self.found.radial = true,
+            "DUALPORO" if self.section == Some(Section::Runspec) => {
+                self.found.porosity_model = PorosityModel::Dual;
+            }
+            "DUALPERM" if self.section == Some(Section::Runspec) => {
+                self.found.porosity_model = PorosityModel::DualPermeability;
+            }
             "IMPORT" => self.warn(
                 source,
                 keyword.at,

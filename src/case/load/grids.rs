@@ -125,18 +125,7 @@ fn read_egrid(
     about.files.push(path.to_owned());
     about.map_axes = egrid.map_axes;
     about.nnc = egrid.nnc.len();
-    about.porosity_model = match egrid.porosity_model {
-        PorosityModel::Single => "single",
-        PorosityModel::Dual => "dual porosity",
-        PorosityModel::DualPermeability => "dual permeability",
-    }
-    .into();
-    if egrid.porosity_model != PorosityModel::Single {
-        about.notes.push(format!(
-            "the case is of {}: the values of the matrix are shown, those of the fractures are not",
-            about.porosity_model
-        ));
-    }
+    tell_porosity(egrid.porosity_model, about);
     for local in &egrid.local_grids {
         about.notes.push(format!(
             "local grid {} ({} x {} x {}) is not shown; its place shows the host cells",
@@ -173,6 +162,21 @@ fn read_egrid(
     })
 }
 
+fn tell_porosity(model: PorosityModel, about: &mut About) {
+    about.porosity_model = match model {
+        PorosityModel::Single => "single",
+        PorosityModel::Dual => "dual porosity",
+        PorosityModel::DualPermeability => "dual permeability",
+    }
+    .into();
+    if model != PorosityModel::Single {
+        about.notes.push(format!(
+            "the case is of {}: the values of the matrix are shown, those of the fractures are not",
+            about.porosity_model
+        ));
+    }
+}
+
 fn read_deck(path: &Path, deck: Grdecl, about: &mut About) -> Result<Loaded, ParseError> {
     let start = Instant::now();
     let grid = Grid::new(&GridInput {
@@ -188,12 +192,12 @@ fn read_deck(path: &Path, deck: Grdecl, about: &mut About) -> Result<Loaded, Par
     };
     about.files.extend(deck.files);
     about.map_axes = deck.map_axes;
-    about.porosity_model = "single".into();
+    tell_porosity(deck.porosity_model, about);
     about.named_faults = named_faults(&deck.faults);
     let fault_faces = fault_faces(&deck.faults, &about.named_faults);
     Ok(Loaded {
         grid,
-        flags: CellFlags::default(),
+        flags: CellFlags::new(deck.actnum, None, deck.porosity_model),
         texts: deck.properties,
         connections: Vec::new(),
         fault_faces,

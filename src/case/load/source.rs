@@ -206,7 +206,7 @@ impl Source for FileSource {
         let text = self.texts.iter().find(|p| p.name == name);
         if let Some(property) = text.filter(|_| !self.changes(name)) {
             let values: Vec<f32> = property.values.iter().map(|v| *v as f32).collect();
-            return Ok(Some(self.cells.pick(&values)));
+            return Ok(Some(self.cells.pick_of_all(&values)));
         }
         let Some((arrays, entry)) = self
             .arrays(name, step)
