@@ -795,7 +795,10 @@ fn ok_odd_decks_are_warned_about() {
             "GDFILE\n'X.EGRID' U /\n",
             "GDFILE is not read: the deck has COORD",
         ),
-        ("IMPORT\n'X.GRDECL' /\n", "IMPORT names is not read"),
+        (
+            "IMPORT\n'X.GRDECL' /\n",
+            "IMPORT was not read, so its arrays are missing: X.GRDECL: cannot open",
+        ),
         ("some text at the end", "no closing /"),
         ("DIMENS\n2 2 2 /\n", "SPECGRID is followed"),
     ] {
@@ -979,6 +982,70 @@ fn ok_includes_quoted_bare_aliased_and_nested() {
             "ntg.inc"
         ]
     );
+}
+
+#[test]
+fn ok_imported_files() {
+    let values = |out: &mut RecordWriter<Vec<u8>>| {
+        out.real("PORO", &[0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8])?;
+        out.inte("SATNUM", &[1, 1, 1, 1, 2, 2, 2, 2])?;
+        out.chars("NAMES", &["A"])
+    };
+    let written = |mut out: RecordWriter<Vec<u8>>| {
+        values(&mut out).unwrap();
+        out.finish().unwrap()
+    };
+    let (binary, text) = (
+        written(RecordWriter::new(Vec::new())),
+        written(RecordWriter::formatted(Vec::new())),
+    );
+    let read = |text: &str, files: Vec<(&str, Vec<u8>)>| {
+        let deck = ("model/A.DATA", cube(text).into_bytes());
+        let files = MemoryFiles::from_iter(files.into_iter().chain([deck]));
+        let mut warnings = Warnings::default();
+        let grid = Grdecl::read_from(&files, Path::new("model/A.DATA"), &[], &mut warnings);
+        let said: Vec<_> = warnings.iter().map(ToString::to_string).collect();
+        (grid.unwrap(), said.join("\n"))
+    };
+    let deck = "PATHS\n'P' '..\\Props' /\n/\nIMPORT\n '$P\\arrays.bin' FORM /\nEQUALS\n PORO 0.9 1 1 1 1 1 1 /\n/\n";
+    for (form, bytes) in [("UNFORMATTED", &binary), ("FORMATTED", &text)] {
+        let deck = deck.replace("FORM", form);
+        let (grid, warning) = read(&deck, vec![("props/ARRAYS.BIN", bytes.clone())]);
+        assert_eq!(warning, "");
+        let poro: Vec<_> = property(&grid, "PORO").iter().map(|v| *v as f32).collect();
+        assert_eq!(poro, [0.9, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8]);
+        assert_eq!(property(&grid, "SATNUM")[3..5], [1.0, 2.0]);
+        assert_eq!(names(&grid), ["PORO", "SATNUM"]);
+        assert_eq!(grid.files.len(), 2);
+    }
+    // One that ends within an array, one of another number of cells, and one of text.
+    let cut = binary[..binary.len() - 9].to_vec();
+    let (grid, warning) = read(deck, vec![("props/arrays.bin", cut)]);
+    assert_eq!(names(&grid), ["PORO"]);
+    assert!(warning.contains("IMPORT was not read"), "{warning}");
+    let mut out = RecordWriter::new(Vec::new());
+    out.real("PORO", &[0.5; 7]).unwrap();
+    let (_, warning) = read(deck, vec![("props/arrays.bin", out.finish().unwrap())]);
+    assert!(
+        warning.contains("PORO has 7 values for 8 cells"),
+        "{warning}"
+    );
+    let (grid, _) = read(deck, vec![("props/arrays.bin", b"NTG\n8*0.5 /\n".to_vec())]);
+    assert_eq!(names(&grid), ["NTG", "PORO"]);
+    // A grid in a file.
+    let mut out = RecordWriter::new(Vec::new());
+    let pillars = [[0.0_f32, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]];
+    let coord = pillars.map(|[x, y]| [x, y, 0.0, x, y, 1.0]).concat();
+    out.real("COORD", &coord).unwrap();
+    out.real("ZCORN", &[0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0])
+        .unwrap();
+    let files = [
+        ("A", b"DIMENS\n1 1 1 /\nIMPORT\n 'G' /\n".to_vec()),
+        ("G", out.finish().unwrap()),
+    ];
+    let files = MemoryFiles::from_iter(files);
+    let grid = Grdecl::read_from(&files, Path::new("A"), &[], &mut Warnings::default());
+    assert_eq!(grid.unwrap().coord, ok(CELL).coord);
 }
 
 #[test]

@@ -6,7 +6,7 @@ use super::array::{Rule, Runs, runs};
 use super::cells::{CellArray, CellArrays};
 use super::edit::{Edit, Place, cells_of};
 use super::lexer::{Mistake, keyword};
-use super::scan::{Block, DepthShift, Found, product_text};
+use super::scan::{Block, Data, DepthShift, Found, product_text};
 use super::skip::is_read;
 use super::{DeckCells, FaultFaces, Grdecl, GridUnit, blocks, faults};
 use crate::arrays::is_table;
@@ -314,15 +314,25 @@ pub(super) fn array(block: &Block, rule: Rule, counts: &[usize]) -> Result<Vec<f
 }
 
 pub(super) fn numbers(block: &Block, rule: Rule) -> Result<Runs, Mistake> {
-    let start = block.data.start;
-    runs(&block.source.text()[block.data.clone()], rule).map_err(|mistake| mistake.moved(start))
+    let text = block.source.text();
+    match &block.data {
+        Data::Text(range) => {
+            runs(&text[range.clone()], rule).map_err(|mistake| mistake.moved(range.start))
+        }
+        Data::Imported(file, entry) => {
+            let placed = |kind, message| Mistake::new(kind, block.at, message);
+            let values = file.f64s(entry);
+            let values = values.map_err(|error| placed(error.kind, error.to_string()))?;
+            let in_file = |message| format!("{message} in {}", file.path().display());
+            Runs::of(values, rule).map_err(|message| placed(ErrorKind::BadValue, in_file(message)))
+        }
+    }
 }
 
 pub(super) fn expand(block: &Block, runs: Runs, expected: usize) -> Result<Vec<f64>, ParseError> {
     let failed = |kind, message| {
-        block
-            .source
-            .error(kind, block.data.end, &block.name, message)
+        let at = block.end();
+        block.source.error(kind, at, &block.name, message)
     };
     if runs.count != expected {
         let message = format!("expected {expected} values, found {}", runs.count);
@@ -346,8 +356,10 @@ pub(super) fn error(block: &Block, mut mistake: Mistake) -> ParseError {
 }
 
 pub(super) fn is_swallowed_keyword(block: &Block, mistake: &Mistake) -> bool {
-    keyword(block.source.text(), mistake.at)
-        .is_some_and(|found| found.alone || is_read(&found.name))
+    let is_text = matches!(block.data, Data::Text(_));
+    is_text
+        && keyword(block.source.text(), mistake.at)
+            .is_some_and(|found| found.alone || is_read(&found.name))
 }
 
 fn activity(array: &CellArray) -> Result<Vec<i32>, ParseError> {

@@ -425,7 +425,7 @@ fn values(
             "{} has {} values for {cells} cells: it is left out",
             block.name, runs.count
         );
-        let at = block.source.at(block.data.end);
+        let at = block.source.at(block.end());
         warnings.push(block.source.path(), at, message);
     }
     Ok(None)

@@ -13,18 +13,36 @@ use super::{FaultFaces, GridUnit, faults, header};
 use crate::bytes::FileBytes;
 use crate::egrid::PorosityModel;
 use crate::error::{ErrorKind, ParseError, Warnings};
+use crate::records::{Entry, RecordFile};
 use crate::units::UnitSystem;
 
-/// An array that is still text.
+/// An array that is not yet numbers.
 pub(super) struct Block {
     pub(super) source: Rc<Source>,
     pub(super) name: String,
     /// Offset of the keyword.
     pub(super) at: usize,
-    /// From behind the keyword to the closing `/`.
-    pub(super) data: Range<usize>,
+    pub(super) data: Data,
     /// The section it stands in; `None` in a file without sections.
     pub(super) section: Option<Section>,
+}
+
+/// Where the values of an array are.
+pub(super) enum Data {
+    /// In the text, from behind the keyword to the closing `/`.
+    Text(Range<usize>),
+    /// In a file that the keyword names.
+    Imported(Rc<RecordFile>, Entry),
+}
+
+impl Block {
+    /// The offset that people are told of its length: that of the closing `/`, or of the keyword that names the file.
+    pub(super) fn end(&self) -> usize {
+        match &self.data {
+            Data::Text(range) => range.end,
+            Data::Imported(..) => self.at,
+        }
+    }
 }
 
 /// The sections of a deck that describe the grid and its first state.
@@ -227,7 +245,7 @@ impl Scan<'_> {
             "ENDINC" => return Ok(Flow::EndOfFile),
             // PFLOTRAN names files to include like this.
             "INCLUDE" | "EXTERNAL_FILE" => return self.include(source, cursor, keyword),
-            "GDFILE" => return self.grid_file(source, cursor, keyword),
+            "GDFILE" | "IMPORT" => return self.array_file(source, cursor, keyword),
             "TITLE" => skip_title(cursor),
             "SKIP" | "SKIP100" | "SKIP300" => self.skip_region(source, cursor, keyword)?,
             "METRIC" => self.found.unit_system = Some(UnitSystem::Metric),
@@ -407,22 +425,22 @@ impl Scan<'_> {
         if self.refinement {
             return Ok(());
         }
-        let place = match name {
+        self.keep(block, self.input_box);
+        Ok(())
+    }
+
+    /// Keeps an array for when the dimensions are known.
+    pub(super) fn keep(&mut self, block: Block, cells: CellBox) {
+        let (source, at, name) = (Rc::clone(&block.source), block.at, block.name.clone());
+        let place = match name.as_str() {
             "COORD" => &mut self.found.coord,
             "ZCORN" => &mut self.found.zcorn,
-            _ => {
-                self.found.edits.push(Edit::Given(block, self.input_box));
-                return Ok(());
-            }
+            _ => return self.found.edits.push(Edit::Given(block, cells)),
         };
         if place.replace(block).is_some() {
-            self.warn(
-                source,
-                keyword.at,
-                &format!("{name} is given again; the last one is used"),
-            );
+            let message = format!("{name} is given again; the last one is used");
+            self.warn(&source, at, &message);
         }
-        Ok(())
     }
 
     /// A keyword that has no meaning here, or a property.
@@ -462,11 +480,6 @@ impl Scan<'_> {
             "DUALPERM" if self.section == Some(Section::Runspec) => {
                 self.found.porosity_model = PorosityModel::DualPermeability;
             }
-            "IMPORT" => self.warn(
-                source,
-                keyword.at,
-                "the file that IMPORT names is not read: its arrays are missing",
-            ),
             "EQLZCORN" => self.warn(
                 source,
                 keyword.at,
@@ -505,7 +518,7 @@ impl Scan<'_> {
             source: Rc::clone(source),
             name: keyword.name.clone(),
             at: keyword.at,
-            data: keyword.end..end,
+            data: Data::Text(keyword.end..end),
             section: self.section,
         }
     }
