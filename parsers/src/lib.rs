@@ -107,6 +107,7 @@ pub mod init;
 #[cfg(feature = "mmap")]
 mod mapped;
 mod parallel;
+mod radial;
 pub mod records;
 pub mod restart;
 pub mod roff;

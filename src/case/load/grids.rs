@@ -127,12 +127,7 @@ fn read_egrid(
     about.files.push(path.to_owned());
     about.map_axes = egrid.map_axes;
     about.nnc = egrid.nnc.len();
-    about.porosity_model = match egrid.porosity_model {
-        PorosityModel::Single => "single",
-        PorosityModel::Dual => "dual",
-        PorosityModel::DualPermeability => "dual_permeability",
-    }
-    .into();
+    about.porosity_model = porosity_name(egrid.porosity_model).into();
     let connections = connections(&egrid.nnc, grid.dims());
     let unit = egrid.grid_unit;
     Ok(Loaded {
@@ -156,6 +151,14 @@ fn read_egrid(
     })
 }
 
+fn porosity_name(model: PorosityModel) -> &'static str {
+    match model {
+        PorosityModel::Single => "single",
+        PorosityModel::Dual => "dual",
+        PorosityModel::DualPermeability => "dual_permeability",
+    }
+}
+
 fn read_deck(path: &Path, deck: Grdecl, about: &mut About) -> Result<Loaded, ParseError> {
     let start = Instant::now();
     let grid = Grid::new(&GridInput {
@@ -171,12 +174,16 @@ fn read_deck(path: &Path, deck: Grdecl, about: &mut About) -> Result<Loaded, Par
     };
     about.files.extend(deck.files);
     about.map_axes = deck.map_axes;
-    about.porosity_model = "single".into();
+    about.porosity_model = porosity_name(deck.porosity_model).into();
+    if deck.porosity_model != PorosityModel::Single {
+        let note = "the deck has matrix and fractures: the values of the matrix are shown, those of the fractures are not";
+        about.notes.push(note.into());
+    }
     about.named_faults = named_faults(&deck.faults);
     let fault_faces = fault_faces(&deck.faults, &about.named_faults);
     Ok(Loaded {
         grid,
-        flags: CellFlags::default(),
+        flags: CellFlags::new(deck.actnum, None, deck.porosity_model),
         texts: deck.properties,
         connections: Vec::new(),
         local_grids: Vec::new(),

@@ -133,15 +133,27 @@ impl CellSlots {
         whole || count == self.total || count == self.count()
     }
 
+    /// The values of the active cells from an array of all cells.
+    pub fn pick_of_all(&self, values: &[f32]) -> Vec<f32> {
+        match &self.places {
+            Some(places) => {
+                let value = |(_, cell): (u32, u32)| values[cell as usize];
+                let places = places.of.iter();
+                places.map(|place| place.map_or(f32::NAN, value)).collect()
+            }
+            None => {
+                let cells = self.cells.par_iter();
+                cells.map(|&c| values[c as usize]).collect()
+            }
+        }
+    }
+
     /// The values of the active cells from an array that fits.
     pub fn pick(&self, values: &[f32]) -> Vec<f32> {
         match &self.places {
             Some(places) => places.pick(values),
             None if values.len() == self.cells.len() => values.to_vec(),
-            None => {
-                let cells = self.cells.par_iter();
-                cells.map(|&c| values[c as usize]).collect()
-            }
+            None => self.pick_of_all(values),
         }
     }
 }

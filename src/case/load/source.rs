@@ -253,7 +253,7 @@ impl Source for FileSource {
         let text = self.texts.iter().find(|p| p.name == name);
         if let Some(property) = text.filter(|_| !self.changes(name)) {
             let values: Vec<f32> = property.values.iter().map(|v| *v as f32).collect();
-            return self.of_all_grids(self.cells.pick(&values), None, name);
+            return self.of_all_grids(self.cells.pick_of_all(&values), None, name);
         }
         match pores {
             Pores::Matrix => self.read(array, step, |values| self.cells.pick(values)),
