@@ -9,6 +9,7 @@ use strataray_parsers::egrid::{Egrid, GridConnections, LocalGrid, PorosityModel}
 use strataray_parsers::units::{LengthUnit, UnitSystem};
 use strataray_parsers::{At, ErrorKind, ParseError, Warnings};
 
+use super::roff;
 use super::slots::CellFlags;
 use crate::case::{About, LoadTimes, NamedFault};
 use crate::model::topology::Face;
@@ -45,6 +46,7 @@ pub struct Loaded {
 }
 
 /// Where a grid lies in the map, and the units, as its file says.
+#[derive(Default)]
 struct MapKeywords {
     axes: Option<[f64; 6]>,
     unit: Option<String>,
@@ -93,17 +95,21 @@ pub fn read(
     about: &mut About,
     warnings: &mut Warnings,
 ) -> Result<Loaded, ParseError> {
-    match &files.grid {
-        GridSource::Egrid(path) => {
-            let mut loaded = read_egrid(path, about, warnings)?;
-            add_texts(&mut loaded, files, about, warnings)?;
-            Ok(loaded)
-        }
+    let mut loaded = match &files.grid {
+        GridSource::Egrid(path) => read_egrid(path, about, warnings)?,
+        GridSource::Roff(path) => read_roff(path, about)?,
         GridSource::Deck(path) => {
             let deck = Grdecl::read_with(path, &files.added, warnings)?;
-            read_deck(path, deck, about)
+            read_deck(path, deck, about)?
         }
+    };
+    if !loaded.is_deck {
+        add_texts(&mut loaded, files, about, warnings)?;
     }
+    let Dims { ni, nj, nk } = loaded.grid.dims();
+    roff::add(&mut loaded.texts, [ni, nj, nk], &files.roff)?;
+    about.files.extend(files.roff.iter().cloned());
+    Ok(loaded)
 }
 
 fn read_egrid(
@@ -202,6 +208,46 @@ fn read_deck(path: &Path, deck: Grdecl, about: &mut About) -> Result<Loaded, Par
     })
 }
 
+fn read_roff(path: &Path, about: &mut About) -> Result<Loaded, ParseError> {
+    let roff::Contents {
+        pillars,
+        properties,
+    } = roff::read(path)?;
+    let start = Instant::now();
+    let grid = Grid::new(&GridInput {
+        dims: dims(pillars.dims),
+        coord: &pillars.coord,
+        zcorn: &pillars.zcorn,
+        actnum: pillars.actnum.as_deref(),
+        map_axes: None,
+    })
+    .map_err(|e| model_error(path, &e))?;
+    about.load_times = LoadTimes {
+        model: start.elapsed(),
+    };
+    about.files.push(path.to_owned());
+    about.porosity_model = "single".into();
+    let note = "ROFF files say no units: lengths are taken as METRES";
+    about.notes.push(note.into());
+    Ok(Loaded {
+        grid,
+        flags: CellFlags::default(),
+        texts: properties,
+        connections: Vec::new(),
+        local_grids: Vec::new(),
+        local_connections: Vec::new(),
+        fault_faces: FaultFaces::default(),
+        units: None,
+        phases: 0,
+        min_pore_volume: None,
+        is_deck: false,
+        map: MapKeywords {
+            is_map: true,
+            ..MapKeywords::default()
+        },
+    })
+}
+
 /// Faults of the deck beside an EGRID file, and all that was added by hand.
 fn add_texts(
     loaded: &mut Loaded,
@@ -212,7 +258,7 @@ fn add_texts(
     let Dims { ni, nj, nk } = loaded.grid.dims();
     let added = DeckCells::read(&files.added, [ni, nj, nk], warnings)?;
     about.files.extend(added.files);
-    loaded.texts = added.properties;
+    loaded.texts.extend(added.properties);
     loaded.units = added.unit_system;
     loaded.phases = added.phases;
     let faults = match &files.deck {

@@ -4,6 +4,7 @@ mod grids;
 mod local;
 mod pore_volume;
 mod properties;
+mod roff;
 mod slots;
 mod source;
 mod summary;
@@ -99,6 +100,7 @@ fn own_grid(path: &Path) -> Option<GridSource> {
     let grid = find(path).ok()?.grid;
     match &grid {
         GridSource::Deck(deck) if !Grdecl::is_grid(deck).unwrap_or(true) => None,
+        GridSource::Roff(file) if !roff::is_grid(file) => None,
         _ => Some(grid),
     }
 }
@@ -136,7 +138,7 @@ pub fn open_reporting(
         return Ok(None);
     }
     let steps = open_restart(&files.restart, &mut about, &mut warnings);
-    note_missing(&files, loaded.is_deck, &mut about);
+    note_missing(&files, &mut about);
     let summary = SummaryFiles::new(files.summary);
     let case = build(loaded, init, steps, summary, about, &warnings);
     Ok(Some(case))
@@ -280,8 +282,8 @@ fn read_wells(source: &FileSource, about: &mut About) {
     }
 }
 
-fn note_missing(files: &CaseFiles, is_deck: bool, about: &mut About) {
-    if is_deck {
+fn note_missing(files: &CaseFiles, about: &mut About) {
+    if !matches!(files.grid, GridSource::Egrid(_)) {
         return;
     }
     if files.init.is_none() && files.added.is_empty() {
