@@ -56,6 +56,12 @@ pub enum ModelError {
     /// The dimensions are zero or too large.
     #[error("a grid of {0} x {1} x {2} cells is not supported; 1 to 2^31-1 cells are")]
     Dimensions(usize, usize, usize),
+    /// Local grids whose shape is so unlike that of the others that the lattice of all would be nearly empty.
+    #[error(
+        "together the grids would take {0} x {1} x {2} places, nearly all of them empty: a grid has far more layers or \
+         columns than the others"
+    )]
+    Empty(usize, usize, usize),
     /// The corners of so many cells do not fit in memory.
     #[error("there is not enough memory for the corners of {0} x {1} x {2} cells")]
     Memory(usize, usize, usize),

@@ -46,6 +46,7 @@ mod picking;
 mod pictures;
 mod point_location;
 mod reported;
+mod roff;
 mod shadows;
 mod srg;
 mod statistics;

@@ -21,7 +21,9 @@ fn model_error(path: &Path, error: &ModelError) -> ParseError {
     let kind = match error {
         ModelError::Length { .. } => ErrorKind::WrongCount,
         ModelError::NotFinite { .. } => ErrorKind::BadValue,
-        ModelError::Dimensions(..) | ModelError::Memory(..) => ErrorKind::TooLarge,
+        ModelError::Dimensions(..) | ModelError::Memory(..) | ModelError::Empty(..) => {
+            ErrorKind::TooLarge
+        }
     };
     ParseError::of(kind, path, At::File, "", error.to_string())
 }
