@@ -87,6 +87,13 @@ pub(super) fn assemble(
     for shift in &found.depth_shifts {
         shift_depths(&mut zcorn, dims, shift, warnings);
     }
+    for (name, values) in [("COORD", &coord), ("ZCORN", &zcorn)] {
+        if let Some(number) = first_not(values, |value| value.is_finite()) {
+            let message = format!("value {number} becomes infinite by what the deck does to it");
+            let kind = ErrorKind::BadValue;
+            return Err(ParseError::of(kind, path, At::File, name, message));
+        }
+    }
     Ok(Grdecl {
         dims,
         coord,

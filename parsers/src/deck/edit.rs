@@ -163,6 +163,16 @@ pub(super) enum Edit {
     },
 }
 
+impl Edit {
+    pub(super) fn place(&self) -> Place {
+        match self {
+            Self::Given(block, _) => block.place(),
+            Self::Changed(operation) => operation.place.clone(),
+            Self::NotApplied { place, .. } => place.clone(),
+        }
+    }
+}
+
 impl Scan<'_> {
     /// The records of an operation up to the empty one.
     pub(super) fn operation(

@@ -36,6 +36,14 @@ pub(super) enum Data {
 }
 
 impl Block {
+    pub(super) fn place(&self) -> Place {
+        Place {
+            source: Rc::clone(&self.source),
+            at: self.at,
+            keyword: self.name.clone(),
+        }
+    }
+
     /// The offset that people are told of its length: that of the closing `/`, or of the keyword that names the file.
     pub(super) fn end(&self) -> usize {
         match &self.data {
