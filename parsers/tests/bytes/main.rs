@@ -8,3 +8,4 @@ mod kinds;
 mod memory;
 mod mutations;
 mod properties;
+mod sentences;
