@@ -157,6 +157,12 @@ impl CellArrays {
         Some(self.arrays.remove(at))
     }
 
+    /// Where an array was given.
+    pub(super) fn place(&self, name: &str) -> Option<&Place> {
+        let array = self.arrays.iter().find(|array| array.name == name)?;
+        Some(&array.place)
+    }
+
     /// The values of an array.
     pub(super) fn values(&self, name: &str) -> Option<&[f64]> {
         let array = self.arrays.iter().find(|array| array.name == name)?;
@@ -240,7 +246,7 @@ impl CellArrays {
                 let at = self.place_of(name, is_edit_factor(name, operation.section));
                 let at = at.or_else(|| self.place_of(name, false));
                 let source = at.and_then(|at| self.arrays.get(at));
-                let source = source.ok_or(": the array to copy is not in the deck")?;
+                let source = source.ok_or(": the array that it reads is not in the deck")?;
                 (source.values.clone(), source.doubts.clone())
             }
             None => (Vec::new(), Vec::new()),

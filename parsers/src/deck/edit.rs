@@ -225,7 +225,7 @@ fn edit(
                 cells,
             })));
         }
-        (_, None) => ": its record names no region",
+        (_, None) => ": its record names no region, or an array of regions that is not known",
         (None, _) if keyword.starts_with("OPERATE") => ": its formula is not known",
         (None, _) if keyword == "COPYBOX" => ": this keyword is not evaluated",
         (None, _) => ": its record is incomplete",
