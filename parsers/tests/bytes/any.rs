@@ -14,7 +14,7 @@ use strataray_parsers::restart::{self, RestartWriter};
 use strataray_parsers::{Warnings, init};
 
 use super::fixtures::cell;
-use super::properties::{READERS, holds};
+use super::properties::{BINARY_HEAD, LEGACY_HEAD, READERS, TEXT_HEAD, behind, holds};
 
 /// Text that means something to a reader, so that bytes get beyond the first check.
 const WORDS: [&str; 48] = [
@@ -125,7 +125,9 @@ proptest! {
     #[test]
     fn no_bytes_make_a_reader_panic(bytes in vec(any::<u8>(), 0..2000)) {
         for (_, reader) in READERS {
-            holds(reader, bytes.clone());
+            for head in [&[], BINARY_HEAD, TEXT_HEAD, LEGACY_HEAD] {
+                holds(reader, behind(head, &bytes));
+            }
         }
     }
 
