@@ -366,9 +366,11 @@ fn family(path: &Path, named: Option<Role>) -> Result<(String, Vec<(PathBuf, Rol
         Some(_) => path.file_stem(),
         None => path.file_name(),
     };
-    let stem = stem.and_then(|s| s.to_str()).unwrap_or_default().to_owned();
+    // A name that is not UTF-8 is compared and told by what of it can be read.
+    let stem = stem.map(|s| s.to_string_lossy().into_owned());
+    let stem = stem.unwrap_or_default();
     let mut files = siblings(path, &stem)?;
-    let exact = |p: &Path| p.file_stem().and_then(|s| s.to_str()) == Some(&stem);
+    let exact = |p: &Path| p.file_stem().is_some_and(|s| s.to_string_lossy() == stem);
     files.sort_by_key(|(p, _)| {
         let is_other = p.file_name() != path.file_name();
         (is_other, !exact(p), rank(p), p.clone())
@@ -392,7 +394,7 @@ fn siblings(path: &Path, stem: &str) -> Result<Vec<(PathBuf, Role)>, ParseError>
         }
     };
     let same_stem = |p: &Path| {
-        let this = p.file_stem().and_then(|s| s.to_str());
+        let this = p.file_stem().map(|s| s.to_string_lossy());
         this.is_some_and(|s| s.eq_ignore_ascii_case(stem))
     };
     let files = list.flatten().map(shown).filter(|p| same_stem(p));

@@ -26,7 +26,12 @@ pub(crate) fn straighten(coord: &mut [f64], ni: usize) -> String {
         );
     }
     let angle = widest.to_radians();
-    let less = 100.0 * (1.0 - angle.sin() / angle.max(f64::MIN_POSITIVE));
+    let drawn = if angle > 0.0 {
+        angle.sin() / angle
+    } else {
+        1.0
+    };
+    let less = 100.0 * (1.0 - drawn);
     format!(
         "the grid is radial: its sectors are drawn with straight sides, so their volumes are up to {less:.1} % too small"
     )

@@ -358,7 +358,7 @@ fn ok_what_is_not_applied_is_said_and_doubted() {
     for expected in [
         "EQUALREG was not applied to PORO, NTG: the array of its regions is not in the deck",
         "EQUALS was not applied to PERMX: its box is outside the grid",
-        "COPY was not applied to PERMX: the array to copy is not in the deck",
+        "COPY was not applied to PERMX: the array that it reads is not in the deck",
         "MULTIPLY was not applied to TRANX, which the deck does not give",
     ] {
         assert!(warning.contains(expected), "{expected}\n{warning}");
@@ -905,7 +905,7 @@ fn err_missing_keywords() {
     err("", "SPECGRID (or DIMENS) and COORD and ZCORN missing");
     err(
         "DIMENS\n1 1 1 /\nDX\n100 /\nDY\n100 /\nDZ\n1 /\n",
-        "no grid: COORD and ZCORN missing",
+        "no grid: a block-centered one needs DIMENS, DX (or DXV)",
     );
     err("PORO\n0.5 /\n", "has PORO but no grid");
     err("FAULTS\nA 1 1 1 1 1 1 X /\n/\n", "has FAULTS but no grid");

@@ -62,6 +62,7 @@ pub(super) fn assemble(
         (_, _, Some(corners)) => Some(corners),
         _ => None,
     };
+    let absent = missing(path, &found);
     let vectors = std::mem::take(&mut found.vectors);
     let mut arrays = CellArrays::play(&mut found, all, warnings)?;
     let actnum = arrays.take("ACTNUM");
@@ -70,7 +71,7 @@ pub(super) fn assemble(
     let [coord, mut zcorn] = match corners {
         Some(corners) => corners,
         None if !blocks::are_given(&arrays, &vectors, found.radial) => {
-            return Err(swallowed(&found).unwrap_or_else(|| missing(path, &found)));
+            return Err(swallowed(&found).unwrap_or(absent));
         }
         None => {
             let blocks = blocks::Blocks {
@@ -86,6 +87,13 @@ pub(super) fn assemble(
     zcorn.truncate(depths);
     for shift in &found.depth_shifts {
         shift_depths(&mut zcorn, dims, shift, warnings);
+    }
+    for (name, values) in [("COORD", &coord), ("ZCORN", &zcorn)] {
+        if let Some(number) = first_not(values, |value| value.is_finite()) {
+            let message = format!("value {number} becomes infinite by what the deck does to it");
+            let kind = ErrorKind::BadValue;
+            return Err(ParseError::of(kind, path, At::File, name, message));
+        }
     }
     Ok(Grdecl {
         dims,
@@ -235,7 +243,7 @@ fn check_text(path: &Path, dims: [usize; 3], bytes: usize) -> Result<(), ParseEr
     let cells: usize = dims.iter().product();
     if cells / MOST_CELLS_PER_BYTE > bytes {
         let message = format!(
-            "{} cells cannot be described by {bytes} bytes of text",
+            "{} cells cannot be described by {bytes} bytes of text: are the dimensions right?",
             product_text(dims)
         );
         return Err(too_large(path, message));
@@ -284,6 +292,9 @@ fn missing(path: &Path, found: &Found) -> ParseError {
         )
     } else if found.radial {
         "no grid: a radial one needs DIMENS, INRAD, DR (or DRV, or OUTRAD), DTHETA (or DTHETAV), DZ (or DZV) and TOPS"
+            .to_owned()
+    } else if found.is_block_centered() {
+        "no grid: a block-centered one needs DIMENS, DX (or DXV), DY (or DYV), DZ (or DZV) and TOPS"
             .to_owned()
     } else {
         format!("no grid: {} missing", absent.join(" and "))

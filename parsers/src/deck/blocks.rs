@@ -5,7 +5,7 @@ use std::path::Path;
 
 use super::assemble::{GEOMETRY, array};
 use super::cells::CellArrays;
-use super::edit::cells_of;
+use super::edit::{Place, cells_of};
 use super::scan::Block;
 use crate::error::{At, ErrorKind, ParseError, Warnings};
 use crate::radial;
@@ -77,11 +77,12 @@ impl Blocks<'_> {
     /// Upper and lower depth of each cell.
     fn depths(&self, arrays: &mut CellArrays, dz: &[f64]) -> Result<Vec<[f64; 2]>, ParseError> {
         let layer = self.dims[0] * self.dims[1];
+        let place = arrays.place("TOPS").cloned();
         let tops = arrays.take("TOPS").map(|array| array.values);
         let tops = tops.unwrap_or_default();
         if let Some(column) = (0..layer).find(|&column| tops[column].is_nan()) {
             let message = format!("has no value for cell {} of the first layer", column + 1);
-            return Err(self.error(ErrorKind::BadValue, "TOPS", message));
+            return Err(self.undefined(place.as_ref(), "TOPS", message));
         }
         let mut depths = vec![[0.0; 2]; dz.len()];
         for cell in 0..dz.len() {
@@ -144,7 +145,7 @@ impl Blocks<'_> {
                 None => Ok(sizes.to_vec()),
                 Some(cell) => {
                     let message = format!("has no value for cell {}", cell + 1);
-                    Err(self.error(ErrorKind::BadValue, name, message))
+                    Err(self.undefined(arrays.place(name), name, message))
                 }
             };
         }
@@ -188,6 +189,15 @@ impl Blocks<'_> {
 
     fn missing(&self, keyword: &str) -> ParseError {
         self.error(ErrorKind::MissingKeyword, keyword, "is missing")
+    }
+
+    /// The error about a value of an array that is not there, at the place of the array.
+    fn undefined(&self, place: Option<&Place>, name: &str, message: String) -> ParseError {
+        let kind = ErrorKind::BadValue;
+        match place {
+            Some(place) => place.source.error(kind, place.at, name, message),
+            None => self.error(kind, name, message),
+        }
     }
 
     fn error(&self, kind: ErrorKind, keyword: &str, message: impl Into<String>) -> ParseError {

@@ -1,14 +1,20 @@
 //! The arrays of a deck, made by playing its edits in their order.
 
+use std::collections::HashSet;
+
 use super::edit::{CellBox, Cells, Change, Edit, LeftOut, Operation, Place, cells_of};
-use super::scan::{Block, Found, Section};
+use super::scan::{Block, Found, Section, product_text};
 use super::{DeckProperty, assemble};
 use crate::arrays::{default_value, is_cell_array, is_multiplier, is_table};
 use crate::egrid::PorosityModel;
-use crate::error::{ParseError, Warnings};
+use crate::error::{ErrorKind, ParseError, Warnings};
 
 /// A one-record keyword with more values than this and half a value per cell is taken for a property gone wrong.
 const PROPERTY_LIKE: usize = 1000;
+
+/// Most values of all arrays together that a deck may have whatever its length (4 GiB), so that a short text cannot ask for
+/// all memory; longer ones may have one for each byte.
+const MOST_VALUES: usize = 1 << 29;
 
 /// An array in the making.
 pub(super) struct CellArray {
@@ -62,6 +68,7 @@ impl CellArrays {
             let active = all.find_or_begin("ACTNUM", false, &place);
             active.values = actnum.into_iter().map(f64::from).collect();
         }
+        check_values(found, dims)?;
         for edit in std::mem::take(&mut found.edits) {
             match edit {
                 Edit::Given(block, cells) => all.give(&block, cells, warnings)?,
@@ -150,6 +157,12 @@ impl CellArrays {
         Some(self.arrays.remove(at))
     }
 
+    /// Where an array was given.
+    pub(super) fn place(&self, name: &str) -> Option<&Place> {
+        let array = self.arrays.iter().find(|array| array.name == name)?;
+        Some(&array.place)
+    }
+
     /// The values of an array.
     pub(super) fn values(&self, name: &str) -> Option<&[f64]> {
         let array = self.arrays.iter().find(|array| array.name == name)?;
@@ -197,11 +210,7 @@ impl CellArrays {
         let Some(values) = values(block, &counts, warnings)? else {
             return Ok(());
         };
-        let place = Place {
-            source: block.source.clone(),
-            at: block.at,
-            keyword: block.name.clone(),
-        };
+        let place = block.place();
         let dims = self.dims;
         let is_factor = is_edit_factor(&block.name, block.section);
         let array = self.find_or_begin(&block.name, is_factor, &place);
@@ -237,7 +246,7 @@ impl CellArrays {
                 let at = self.place_of(name, is_edit_factor(name, operation.section));
                 let at = at.or_else(|| self.place_of(name, false));
                 let source = at.and_then(|at| self.arrays.get(at));
-                let source = source.ok_or(": the array to copy is not in the deck")?;
+                let source = source.ok_or(": the array that it reads is not in the deck")?;
                 (source.values.clone(), source.doubts.clone())
             }
             None => (Vec::new(), Vec::new()),
@@ -391,6 +400,28 @@ impl CellArray {
         };
         Some(format!("{keywords} of the deck were not applied"))
     }
+}
+
+/// Refuses more arrays than a text of this length may ask for, before any of them is made.
+fn check_values(found: &Found, dims: [usize; 3]) -> Result<(), ParseError> {
+    let most = MOST_VALUES.max(found.bytes) / dims.iter().product::<usize>();
+    let mut names = HashSet::new();
+    for edit in &found.edits {
+        let name = match edit {
+            Edit::Given(block, _) if may_be_cells(block) => block.name.as_str(),
+            Edit::Changed(operation) => operation.target.as_str(),
+            Edit::Given(..) | Edit::NotApplied { .. } => continue,
+        };
+        names.insert(name);
+        if names.len() > most {
+            let message = format!(
+                "the deck has more than {most} arrays of {} cells: leave out those that are not needed",
+                product_text(dims)
+            );
+            return Err(edit.place().error(ErrorKind::TooLarge, message));
+        }
+    }
+    Ok(())
 }
 
 /// The values of a block that has one of `counts` of them; `None`, with a warning where it matters, for one that

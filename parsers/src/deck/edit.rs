@@ -163,6 +163,16 @@ pub(super) enum Edit {
     },
 }
 
+impl Edit {
+    pub(super) fn place(&self) -> Place {
+        match self {
+            Self::Given(block, _) => block.place(),
+            Self::Changed(operation) => operation.place.clone(),
+            Self::NotApplied { place, .. } => place.clone(),
+        }
+    }
+}
+
 impl Scan<'_> {
     /// The records of an operation up to the empty one.
     pub(super) fn operation(
@@ -215,7 +225,7 @@ fn edit(
                 cells,
             })));
         }
-        (_, None) => ": its record names no region",
+        (_, None) => ": its record names no region, or an array of regions that is not known",
         (None, _) if keyword.starts_with("OPERATE") => ": its formula is not known",
         (None, _) if keyword == "COPYBOX" => ": this keyword is not evaluated",
         (None, _) => ": its record is incomplete",

@@ -44,7 +44,7 @@ pub(super) fn dims(items: &[Item], at: usize) -> Result<([usize; 3], bool), Mist
     Ok((dims, is_radial))
 }
 
-const SYSTEMS: &str = "grids with more than one coordinate system (NUMRES) are not read";
+const SYSTEMS: &str = "grids with more than one coordinate system (NUMRES) are not read from text: run the simulator and open the EGRID";
 
 /// A whole number of at least 1.
 pub(super) fn positive(item: &Item) -> Result<usize, Mistake> {

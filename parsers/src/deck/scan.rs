@@ -36,6 +36,14 @@ pub(super) enum Data {
 }
 
 impl Block {
+    pub(super) fn place(&self) -> Place {
+        Place {
+            source: Rc::clone(&self.source),
+            at: self.at,
+            keyword: self.name.clone(),
+        }
+    }
+
     /// The offset that people are told of its length: that of the closing `/`, or of the keyword that names the file.
     pub(super) fn end(&self) -> usize {
         match &self.data {
@@ -120,13 +128,23 @@ pub(super) struct Found {
 impl Found {
     /// True where pillars and depths, a file with them, or sizes of cells were found.
     pub(super) fn describes_grid(&self) -> bool {
-        let is_size = |edit: &Edit| match edit {
-            Edit::Given(block, _) => block.name == "TOPS",
-            Edit::Changed(operation) => operation.target == "TOPS",
-            Edit::NotApplied { .. } => false,
-        };
         let has_corners = self.coord.is_some() && self.zcorn.is_some();
-        has_corners || self.grid_file.is_some() || self.edits.iter().any(is_size)
+        has_corners || self.grid_file.is_some() || self.sets("TOPS")
+    }
+
+    /// True where sizes of cells were found and no corners.
+    pub(super) fn is_block_centered(&self) -> bool {
+        let has_corners = self.coord.is_some() || self.zcorn.is_some();
+        let sizes = ["DX", "DY", "DZ", "TOPS"];
+        !has_corners && (!self.vectors.is_empty() || sizes.iter().any(|name| self.sets(name)))
+    }
+
+    fn sets(&self, name: &str) -> bool {
+        self.edits.iter().any(|edit| match edit {
+            Edit::Given(block, _) => block.name == name,
+            Edit::Changed(operation) => operation.target == name,
+            Edit::NotApplied { .. } => false,
+        })
     }
 }
 
