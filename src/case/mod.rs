@@ -4,7 +4,6 @@ mod cache;
 mod difference;
 pub mod load;
 mod over_steps;
-pub mod save;
 mod weights;
 mod wells;
 
