@@ -5,7 +5,6 @@ mod difference;
 pub mod load;
 mod over_steps;
 mod pores;
-pub mod save;
 mod vectors;
 mod weights;
 mod wells;

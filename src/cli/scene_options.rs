@@ -146,19 +146,10 @@ impl SceneOptions {
     }
 
     /// The keys of the scene file; none without one.
-    fn written(&self) -> anyhow::Result<serde_json::Map<String, serde_json::Value>> {
-        let Some(path) = &self.scene else {
-            return Ok(serde_json::Map::new());
-        };
-        let text = match path.as_os_str() == "-" {
-            true => std::io::read_to_string(std::io::stdin()),
-            false => std::fs::read_to_string(path),
-        };
-        let text = text.with_context(|| format!("cannot read {}", path.display()))?;
-        // As a whole scene first, for errors that name line and column.
-        let _: Scene =
-            serde_json::from_str(&text).with_context(|| format!("{}", path.display()))?;
-        Ok(serde_json::from_str(&text)?)
+    fn written(&self) -> anyhow::Result<SceneKeys> {
+        self.scene
+            .as_deref()
+            .map_or(Ok(SceneKeys::new()), read_keys)
     }
 
     /// True where an option picks one time step.
@@ -205,6 +196,21 @@ pub fn open_executor(
         ));
     }
     Ok(executor)
+}
+
+/// Keys of a scene file with their values.
+pub type SceneKeys = serde_json::Map<String, serde_json::Value>;
+
+/// The keys of a scene file, or of standard input for `-`.
+pub fn read_keys(path: &Path) -> anyhow::Result<SceneKeys> {
+    let text = match path.as_os_str() == "-" {
+        true => std::io::read_to_string(std::io::stdin()),
+        false => std::fs::read_to_string(path),
+    };
+    let text = text.with_context(|| format!("cannot read {}", path.display()))?;
+    // As a whole scene first, for errors that name line and column.
+    let _: Scene = serde_json::from_str(&text).with_context(|| format!("{}", path.display()))?;
+    Ok(serde_json::from_str(&text)?)
 }
 
 impl AddedFiles {

@@ -6,7 +6,7 @@ use glam::DVec2;
 
 use super::activity::Activity;
 use super::depth_lists::DepthList;
-use super::grid::{Found, Grid, ModelError, Pillar};
+use super::grid::{Found, Grid, GridInput, ModelError, Pillar};
 use super::ids::{CellIndex, Dims, Ijk};
 use super::patches::{GridCell, Patch, Patches};
 
@@ -229,6 +229,42 @@ impl Grid {
         })
     }
 
+    /// The main grid without its local grids.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn main_alone(&self) -> Result<Self, ModelError> {
+        let dims = self.main_dims();
+        let Dims { ni, nj, .. } = dims;
+        let rows = (0..=nj).flat_map(|j| (0..=ni).map(move |i| i + (self.dims.ni + 1) * j));
+        let ends = rows.map(|at| [self.pillars[at].top, self.pillars[at].bottom]);
+        let coord: Vec<f64> = ends
+            .flat_map(|ends| ends.map(|end| end.to_array()))
+            .flatten()
+            .collect();
+        let depth = |at: usize| {
+            let [x, y, plane] = [at % (2 * ni), at / (2 * ni) % (2 * nj), at / (4 * ni * nj)];
+            let cell = Ijk {
+                i: x / 2,
+                j: y / 2,
+                k: plane / 2,
+            };
+            self.corner_depth(cell, x % 2 + 2 * (y % 2) + 4 * (plane % 2))
+        };
+        let zcorn: Vec<f64> = (0..8 * dims.cells()).map(depth).collect();
+        let mut actnum = vec![0; dims.cells()];
+        for (_, cell) in self.active_in(0) {
+            actnum[dims.cell(cell).0 as usize] = 1;
+        }
+        Self::new(&GridInput {
+            dims,
+            coord: &coord,
+            zcorn: &zcorn,
+            actnum: Some(&actnum),
+            map_axes: self.map_axes,
+        })
+    }
+
     /// The grids of the model: the main one, and its local grids.
     pub fn patches(&self) -> &[Patch] {
         &self.patches.list
@@ -251,6 +287,24 @@ impl Grid {
         GridCell {
             grid: &patch.name,
             ijk: own.one_based(),
+        }
+    }
+
+    /// False for all but the first of several cells that are one of the file.
+    pub fn is_first(&self, at: Ijk) -> bool {
+        let patch = &self.patches.list[self.patch_of(at).unwrap_or(0)];
+        (at.j - patch.first[1]).is_multiple_of(patch.split)
+    }
+
+    /// A cell as its file knows it, by the numbers from 1 that it has in the lattice; those outside are taken for cells
+    /// of the main grid.
+    pub fn name_of(&self, numbers: [usize; 3]) -> GridCell<'_> {
+        match self.dims().one_based(numbers) {
+            Some(at) => self.cell_name(at),
+            None => GridCell {
+                grid: "",
+                ijk: numbers,
+            },
         }
     }
 

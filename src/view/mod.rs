@@ -244,6 +244,12 @@ impl View {
         grid.bounds_of(cells.filter_map(|(cell, drawn)| drawn.then(|| grid.dims().ijk(*cell))))
     }
 
+    /// By active index of `grid` (the case's): the drawn cells that clip planes do not cut away whole.
+    pub fn seen_cells(&self, grid: &Grid) -> Vec<bool> {
+        let Shown { cells, clip, .. } = &self.shown;
+        facts::uncut(grid, &cells.drawn, clip, &self.world.spaces)
+    }
+
     /// Corners in world space of a box given by its smallest and largest corner in grid space; bit n of the
     /// index is the end along axis n.
     pub fn corners_of(&self, bounds: [DVec3; 2]) -> [DVec3; 8] {

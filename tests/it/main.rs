@@ -24,6 +24,7 @@ mod cpu_light;
 mod dispatch;
 mod doctor;
 mod executors;
+mod export;
 mod extinction;
 mod facts;
 mod films;
