@@ -45,8 +45,13 @@ impl Patch {
         }
     }
 
+    /// By cell, in natural order: the parent's cell that it lies in.
+    pub(super) fn hosts(&self) -> &[CellIndex] {
+        &self.hosts
+    }
+
     /// Where one of its cells is in the lattice.
-    fn to_lattice(&self, own: Ijk) -> Ijk {
+    pub(super) fn to_lattice(&self, own: Ijk) -> Ijk {
         let [i, j] = self.first;
         Ijk {
             i: i + own.i,
@@ -354,6 +359,7 @@ impl Grid {
             active_cells,
             map_axes: self.map_axes(),
             patches: Arc::new(patches),
+            flat: None,
             found: Found::default(),
         })
     }

@@ -136,7 +136,7 @@ fn case(off: f64) -> Case {
     let values = grid.active_cells().iter().zip(&finest).map(value).collect();
     Case {
         grid: Arc::new(grid),
-        source: Box::new(Values(HashMap::from([("VALUE".to_owned(), values)]))),
+        source: Arc::new(Values(HashMap::from([("VALUE".to_owned(), values)]))),
         ..base
     }
 }
