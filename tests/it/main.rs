@@ -47,6 +47,7 @@ mod pictures;
 mod point_location;
 mod reported;
 mod shadows;
+mod simbox;
 mod srg;
 mod statistics;
 mod storage;
