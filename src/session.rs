@@ -127,7 +127,7 @@ impl Session {
         }
     }
 
-    /// The case: its grid, steps, properties, and what was not loaded.
+    /// The case in map space: its grid, steps, properties, and what was not loaded.
     pub fn case(&self) -> &Arc<Case> {
         &self.case
     }
@@ -206,9 +206,10 @@ impl Session {
     /// # Errors
     /// When the scene cannot be shown, or there is no device that makes images.
     pub fn picture(&mut self, scene: &Scene) -> Result<Rgb8, Error> {
-        let shot = Shot::of(scene, &self.case, false)?;
-        let image = self.rendered(&shot)?;
-        Ok(shot.finished(&image, &self.case))
+        let case = self.case.in_space(scene.space);
+        let shot = Shot::of(scene, &case, false)?;
+        let image = self.rendered(&shot, &case)?;
+        Ok(shot.finished(&image, &case))
     }
 
     /// The model alone, without a background: red, green and blue times alpha, and alpha.
@@ -216,17 +217,18 @@ impl Session {
     /// # Errors
     /// As [`Self::picture`].
     pub fn image(&mut self, scene: &Scene) -> Result<Image, Error> {
-        let shot = Shot::of(scene, &self.case, true)?;
-        self.rendered(&shot)
+        let case = self.case.in_space(scene.space);
+        let shot = Shot::of(scene, &case, true)?;
+        self.rendered(&shot, &case)
     }
 
-    fn rendered(&mut self, shot: &Shot) -> Result<Image, Error> {
-        let renderer = match &mut self.renderer {
-            Some(renderer) => renderer,
-            None => self
-                .renderer
-                .insert(render::executor(None)?.renderer(&self.case.grid)?),
+    fn rendered(&mut self, shot: &Shot, case: &Case) -> Result<Image, Error> {
+        let kept = self.renderer.take();
+        let kept = match kept.filter(|kept| Arc::ptr_eq(kept.grid(), &case.grid)) {
+            Some(kept) => kept,
+            None => render::executor(None)?.renderer(&case.grid)?,
         };
+        let renderer = self.renderer.insert(kept);
         Ok(renderer.render(&shot.view, &|_| true)?.image)
     }
 }

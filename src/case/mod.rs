@@ -5,6 +5,7 @@ mod difference;
 pub mod load;
 mod over_steps;
 mod pores;
+mod simbox;
 mod vectors;
 mod weights;
 mod wells;
@@ -20,6 +21,7 @@ use crate::model::{CellField, FaultFaces, Grid, Ijk};
 
 pub use difference::{Difference, Minus, difference_name, minus, nearest};
 pub use over_steps::{Categories, MAX_CATEGORIES, OverSteps, ValueRange};
+pub use simbox::Simbox;
 pub use vectors::{Vector, VectorKind, VectorSource, Vectors};
 pub use weights::{Extent, Weighting, Weights};
 pub use wells::{Connection, ConnectionAxis, Well, WellKind, WellsOfSteps};
@@ -221,15 +223,17 @@ pub struct Case {
     /// Properties that can be shown.
     pub properties: Vec<Property>,
     /// Gives the values.
-    pub source: Box<dyn Source>,
+    pub source: Arc<dyn Source>,
     /// Fields used last.
-    pub cache: FieldCache,
+    pub cache: Arc<FieldCache>,
     /// Wells of steps, once read.
-    pub wells: WellsOfSteps,
+    pub wells: Arc<WellsOfSteps>,
     /// What was found out of properties over all steps.
-    pub over_steps: OverSteps,
+    pub over_steps: Arc<OverSteps>,
     /// The property that is a difference to another case, of a case made by [`minus`].
     pub minus: Option<Minus>,
+    /// The same case in index space.
+    pub simbox: Simbox,
 }
 
 impl Case {
@@ -394,7 +398,7 @@ impl Case {
 
     fn derived(&self, property: &Property, step: usize) -> Result<CellField, CaseError> {
         if let Some((_, derived)) = Derived::ALL.iter().find(|(n, _)| *n == property.name) {
-            return Ok(derived.field(&self.grid));
+            return Ok(derived.field(self.grid.in_map_space()));
         }
         let values = match property.name.as_str() {
             _ if !property.rest_of.is_empty() => self.rest_of(&property.rest_of, step)?,
@@ -450,7 +454,10 @@ impl Case {
     fn derived_thickness(&self) -> Result<Vec<f32>, CaseError> {
         Ok(match self.source.values("DZ", 0)? {
             Some(dz) => CellField::new(dz).values().to_vec(),
-            None => Derived::Thickness.field(&self.grid).values().to_vec(),
+            None => {
+                let grid = self.grid.in_map_space();
+                Derived::Thickness.field(grid).values().to_vec()
+            }
         })
     }
 }

@@ -97,7 +97,7 @@ impl Case {
                 values: Arc::new(values),
             };
         }
-        let bulk = Derived::Volume.field(&self.grid);
+        let bulk = Derived::Volume.field(self.grid.in_map_space());
         let mut values: Vec<f32> = bulk.values().iter().map(|v| kept(*v)).collect();
         let mut weighting = Weighting::BulkVolume;
         if let Some(porosity) = field("PORO") {
@@ -116,7 +116,7 @@ impl Case {
 
     /// The extents of each active cell. Found at the first call.
     pub fn extents(&self) -> Arc<Vec<Extent>> {
-        self.over_steps.extents(|| {
+        self.over_steps.extents(self.grid.space(), || {
             let extent = |column: &Column<'_>, k: usize| {
                 let edges = column.hexahedron(k).mean_edges();
                 Extent {
@@ -131,7 +131,8 @@ impl Case {
     /// Mean edge lengths along i, j and k of the cells with a thickness, in world space. Found at the first call for
     /// an exaggeration.
     pub fn mean_edges(&self, exaggeration: f64) -> DVec3 {
-        self.over_steps.mean_edges(exaggeration, || {
+        let space = self.grid.space();
+        self.over_steps.mean_edges(space, exaggeration, || {
             let edges_and_one = |column: &Column<'_>, k: usize| {
                 if !column.has_thickness(k) {
                     return DVec4::ZERO;

@@ -44,7 +44,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let pixel = pixel(&arguments.at)?;
     arguments.options.set_threads()?;
     let case = arguments.options.open_case(&arguments.case, &reporter)?;
-    let scene = arguments.options.scene(&case, &reporter)?;
+    let (scene, case) = arguments.options.scene_in_space(case, &reporter)?;
     let shot = Shot::of(&scene, &case, arguments.plain)?;
     let at = place(&shot, scene.size, pixel)?;
     let executor = arguments.options.open_executor(&reporter)?;

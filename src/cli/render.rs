@@ -64,7 +64,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let case = arguments.options.open_case(&arguments.case, &reporter)?;
     stages.open = start.elapsed();
     let start = Instant::now();
-    let scene = arguments.options.scene(&case, &reporter)?;
+    let (scene, case) = arguments.options.scene_in_space(case, &reporter)?;
     let plain = arguments.plain || format == picture::Format::Exr;
     let shot = Shot::of(&scene, &case, plain)?;
     stages.read = start.elapsed();

@@ -7,7 +7,7 @@ use super::row::ms;
 use super::{Plan, Reference, Row};
 use crate::case::Case;
 use crate::compare::markdown::{self, row, table};
-use crate::scene::Interpolation;
+use crate::scene::{Interpolation, Space};
 use crate::view::View;
 
 /// What a report tells of its pictures beside their figures.
@@ -240,7 +240,10 @@ fn conditions_of_view(case: &Case, view: &View) -> [markdown::Row; 3] {
         ]),
         row([
             "sampling step",
-            &format!("{:.4} {}", view.sampling.step, case.about.length_unit),
+            &match view.world.space {
+                Space::Map => format!("{:.4} {}", view.sampling.step, case.about.length_unit),
+                Space::Ijk => format!("{:.4} cells", view.sampling.step),
+            },
         ]),
     ]
 }

@@ -25,6 +25,7 @@ use super::activity::{Activity, ColumnBits};
 use super::column::{Column, Corner};
 use super::corner_point::{Hexahedron, NO_THICKNESS};
 use super::depth_lists::{DepthList, Lists, UsedDepths};
+use super::flat::Flat;
 use super::ids::{ActiveIndex, CellIndex, Dims, Ijk};
 use super::patches::Patches;
 use super::spaces::MapAxes;
@@ -128,6 +129,8 @@ pub struct Grid {
     pub(super) activity: Activity,
     pub(super) map_axes: Option<MapAxes>,
     pub(super) patches: Arc<Patches>,
+    /// Of a grid in index space.
+    pub(super) flat: Option<Arc<Flat>>,
     pub(super) found: Found,
 }
 
@@ -180,6 +183,7 @@ impl Grid {
             active_cells,
             map_axes: input.map_axes,
             patches: Arc::new(Patches::one(dims)),
+            flat: None,
             found: Found::default(),
         })
     }
@@ -221,6 +225,7 @@ impl Grid {
             active_cells,
             map_axes: self.map_axes,
             patches: self.patches.clone(),
+            flat: self.flat.clone(),
             found: Found::default(),
         }
     }

@@ -225,6 +225,7 @@ impl Grid {
             active_cells,
             map_axes: self.map_axes(),
             patches: Arc::new(patches),
+            flat: None,
             found: Found::default(),
         })
     }

@@ -38,6 +38,11 @@ impl Patch {
         }
     }
 
+    /// By cell, in natural order: the parent's cell that it lies in.
+    pub(super) fn hosts(&self) -> &[CellIndex] {
+        &self.hosts
+    }
+
     /// Where one of its cells is in the lattice.
     pub(super) fn to_lattice(&self, own: Ijk) -> Ijk {
         let [i, j] = self.first;

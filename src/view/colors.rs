@@ -308,7 +308,11 @@ fn automatic(
         Scale::Log => "log",
         Scale::Categories(_) => "categories",
     };
-    let key = format!("{} {kind} {range:?} {exaggeration}", asked.property);
+    let space = case.grid.space();
+    let key = format!(
+        "{} {kind} {range:?} {space:?} {exaggeration}",
+        asked.property
+    );
     case.over_steps.opacity(&key, || {
         let Some(field) = case.last_field(asked.property)? else {
             return Ok(None);

@@ -27,6 +27,9 @@ impl ShownGrids {
                 None => return Err(unknown(name, grid)),
             }
         }
+        for (number, hidden) in hidden.iter_mut().enumerate() {
+            *hidden |= grid.leaves_out(number);
+        }
         // Parents come first. What refines a hidden grid is hidden with it.
         for number in 1..patches.len() {
             hidden[number] |= hidden[patches[number].parent];

@@ -40,7 +40,7 @@ pub use surfaces::Surfaces;
 pub use wells::Wells;
 
 use crate::image::Blending;
-use crate::model::{CellField, FaultFaces, Grid, Spaces};
+use crate::model::{CellField, FaultFaces, Grid, Space, Spaces};
 use crate::scene::{
     CameraSpec, Interpolation, LibcSettings, PltsSettings, SrgSettings, Storage, StrategyKind,
 };
@@ -76,6 +76,8 @@ pub struct View {
 pub struct World {
     /// Grid to world and back.
     pub spaces: Spaces,
+    /// True places, or those by I, J and K.
+    pub space: Space,
     /// Factor on depth in world space.
     pub vertical_exaggeration: f64,
     /// Box of the active cells in world space.

@@ -40,6 +40,7 @@ pub(super) fn resolve_over(
     range: Option<[f64; 2]>,
 ) -> Result<View, SceneError> {
     check_version(scene)?;
+    check_space(scene, case)?;
     let exaggeration = exaggeration(scene, active_bounds(case)?)?;
     let spaces = Spaces::new(case.grid.map_axes(), exaggeration);
     let edges = case.mean_edges(exaggeration);
@@ -110,6 +111,7 @@ pub(super) fn resolve_over(
         world: World {
             spaces,
             vertical_exaggeration: exaggeration,
+            space: scene.space,
             bounds: world_bounds,
             corners: box_corners,
             subject: Arc::new(subject),
@@ -177,6 +179,16 @@ fn check_version(scene: &Scene) -> Result<(), SceneError> {
         return Err(wrong("version", problem));
     }
     Ok(())
+}
+
+fn check_space(scene: &Scene, case: &Case) -> Result<(), SceneError> {
+    match scene.space == case.grid.space() {
+        true => Ok(()),
+        false => Err(wrong(
+            "space",
+            "is another one than that of the case; take it by Case::in_space",
+        )),
+    }
 }
 
 fn early_termination(scene: &Scene) -> Result<f64, SceneError> {

@@ -23,7 +23,7 @@ use crate::common::shape::parallelepipeds::{self, corner};
 const FINE: usize = 3;
 
 /// The values of a case in memory.
-struct Values(HashMap<String, Vec<f32>>);
+pub struct Values(pub HashMap<String, Vec<f32>>);
 
 impl Source for Values {
     fn values(&self, name: &str, _step: usize) -> Result<Option<Vec<f32>>, CaseError> {
@@ -106,7 +106,7 @@ impl Refined<'_> {
 
 /// The parallelepipeds with their linear field, of which a box in the midst is refined, and a box of that again; values
 /// there are off by `off`. Values of the cells that are refined are no part of it.
-fn case(off: f64) -> Case {
+pub fn case(off: f64) -> Case {
     let base = parallelepipeds::case(0.0);
     let outer = Refined {
         name: "OUTER",
@@ -136,7 +136,7 @@ fn case(off: f64) -> Case {
     let values = grid.active_cells().iter().zip(&finest).map(value).collect();
     Case {
         grid: Arc::new(grid),
-        source: Box::new(Values(HashMap::from([("VALUE".to_owned(), values)]))),
+        source: Arc::new(Values(HashMap::from([("VALUE".to_owned(), values)]))),
         ..base
     }
 }

@@ -49,6 +49,7 @@ mod point_location;
 mod reported;
 mod roff;
 mod shadows;
+mod simbox;
 mod srg;
 mod statistics;
 mod storage;

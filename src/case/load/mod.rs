@@ -24,7 +24,7 @@ use self::properties::Setting;
 use self::slots::{CellSlots, ResultCells};
 use self::source::FileSource;
 use self::summary::SummaryFiles;
-use crate::case::{About, Case, FieldCache, OverSteps, Step, WellsOfSteps};
+use crate::case::{About, Case, FieldCache, OverSteps, Simbox, Step, WellsOfSteps};
 
 /// Opens the case that `path` names: any of its files, or its base name.
 ///
@@ -225,11 +225,12 @@ fn build(
         connections: loaded.connections,
         steps: source.steps.iter().map(step).collect(),
         properties,
-        source: Box::new(source),
-        cache: FieldCache::default(),
-        over_steps: OverSteps::default(),
-        wells: WellsOfSteps::default(),
+        source: Arc::new(source),
+        cache: Arc::new(FieldCache::default()),
+        over_steps: Arc::new(OverSteps::default()),
+        wells: Arc::new(WellsOfSteps::default()),
         minus: None,
+        simbox: Simbox::default(),
     }
 }
 

@@ -216,6 +216,10 @@ fn change(document: &mut Document, command: Command) -> Option<String> {
             let mode = document.state.setup.scene.mode;
             document.apply(Action::Mode(mode.other()));
         }
+        Command::Space => {
+            let space = document.state.setup.scene.space;
+            document.apply(Action::Space(space.other()));
+        }
         Command::NextStrategy => {
             let next = next_strategy(document.state.setup.scene.strategy);
             document.apply(Action::Strategy(next));
