@@ -56,9 +56,11 @@ pub enum Action {
     Compare(Option<Comparison>),
     /// Selects a cell by I, J, K from 1, beside those selected or alone; one that is selected is let go.
     Select([usize; 3], Beside),
+    /// Selects a well by name, and the cells that it is connected to alone.
+    Well(String, Vec<[usize; 3]>),
     /// Selects none.
     Deselect,
-    /// Shows curves of the selected cells.
+    /// Shows curves over time.
     Curves(CurvePlots),
     /// How time plays.
     Playback(Playback),
@@ -100,7 +102,7 @@ impl Action {
             Self::Background(_) => "background",
             Self::Scene(_) => "scene",
             Self::Compare(_) => "comparison",
-            Self::Select(..) | Self::Deselect => "selection",
+            Self::Select(..) | Self::Well(..) | Self::Deselect => "selection",
             Self::Curves(_) => "curves",
             Self::Playback(_) => "pace",
             Self::Slicing(_) => "slices",
@@ -132,8 +134,17 @@ impl Action {
             Self::Background(v) => scene.background = v,
             Self::Scene(v) => *scene = *v,
             Self::Compare(v) => state.setup.comparison = v,
-            Self::Select(cell, beside) => select(&mut state.selected, cell, beside),
-            Self::Deselect => state.selected.clear(),
+            Self::Select(cell, beside) => {
+                select(&mut state.selected, cell, beside);
+                state.well.take_if(|_| beside == Beside::Nothing);
+            }
+            Self::Well(name, cells) => {
+                (state.well, state.selected) = (Some(name), cells);
+            }
+            Self::Deselect => {
+                state.well = None;
+                state.selected.clear();
+            }
             Self::Curves(v) => state.curves = v,
             Self::Playback(v) => state.pace = v,
             Self::Slicing(v) => state.slicing = v,

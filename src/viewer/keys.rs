@@ -56,7 +56,7 @@ pub enum Command {
     SliceAxis(isize),
     /// Mouse, theme, size of letters.
     Settings,
-    /// Curves of the selected cells.
+    /// Curves over time.
     Curves,
     /// Cells as solid bodies, or rays through the volume.
     Mode,
@@ -74,6 +74,8 @@ pub enum Command {
     Film,
     /// Saves the values of the selected cells.
     SaveTable,
+    /// Saves the summary vectors that are shown.
+    SaveVectors,
     /// A second picture, or none.
     Compare,
     /// Selects no cell.
@@ -103,7 +105,7 @@ const fn from(view: usize) -> Command {
 }
 
 /// Every shortcut, with what it says in the sheet.
-pub const SHORTCUTS: [(Modifiers, Key, Command, &str); 59] = [
+pub const SHORTCUTS: [(Modifiers, Key, Command, &str); 60] = [
     (CTRL, Key::O, Command::Open, "Open a case"),
     (
         CTRL_SHIFT,
@@ -196,7 +198,13 @@ pub const SHORTCUTS: [(Modifiers, Key, Command, &str); 59] = [
         CTRL,
         Key::G,
         Command::Curves,
-        "Curves of the selected cells",
+        "Curves of the selected cells, wells and summary vectors",
+    ),
+    (
+        CTRL_SHIFT,
+        Key::G,
+        Command::SaveVectors,
+        "Save the summary vectors shown",
     ),
     (NONE, Key::V, Command::Mode, "Cells or volume"),
     (NONE, Key::S, Command::NextStrategy, "Next strategy"),

@@ -162,7 +162,7 @@ fn buttons(ui: &mut Ui, about: &PanelContext<'_>, table: &Table, actions: &mut V
     ui.horizontal_wrapped(|ui| {
         let curves = ui
             .button("Curves ...")
-            .on_hover_text("Properties of these cells over time, in a separate window");
+            .on_hover_text("Properties of these cells over time, below the picture");
         if curves.clicked() {
             actions.push(Action::Curves(CurvePlots {
                 is_open: true,

@@ -72,7 +72,8 @@ pub fn show(ui: &mut Ui, table: &Table, shown: Option<&str>) {
             let at = pos2(place(column, 0).left(), heads.top());
             let at = Rect::from_min_size(at, vec2(CELL, ROW));
             let [i, j, k] = cells[column];
-            let text = RichText::new(format!("{i}, {j}, {k}")).color(marks::color(column));
+            let text =
+                RichText::new(format!("{i}, {j}, {k}")).color(marks::color(column, cells.len()));
             ui.put(at, Label::new(text).truncate())
                 .on_hover_text(named(cells[column]));
         }
