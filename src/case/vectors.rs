@@ -1,5 +1,7 @@
 //! Summary vectors: curves over time of the field, groups, wells, regions and cells, as simulators write them.
 
+use strataray_parsers::calendar;
+
 use super::CaseError;
 
 /// What a vector is of.
@@ -101,6 +103,12 @@ impl Vectors {
         let is_it = |v: &Vector| v.name.eq_ignore_ascii_case(name);
         let exact = self.list.iter().position(|v| v.name == name);
         exact.or_else(|| self.list.iter().position(is_it))
+    }
+
+    /// Date of a time, with the time of day where it is not midnight; empty where the start is not known.
+    pub fn date(&self, time: usize) -> String {
+        let moment = self.start.zip(self.days.get(time)).map(|(a, b)| a + b);
+        moment.map_or_else(String::new, calendar::text)
     }
 
     /// Values of the vector at a place in the list, one for each of [`Self::days`].

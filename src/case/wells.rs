@@ -77,8 +77,17 @@ impl Well {
         self.connections.iter().filter_map(|c| c.cell_in(grid))
     }
 
+    /// The cells of [`Self::finest_connections`].
+    pub fn finest_cells<'a>(&'a self, grid: &'a Grid) -> impl Iterator<Item = Ijk> + use<'a> {
+        self.finest_connections(grid)
+            .filter_map(|c| c.cell_in(grid))
+    }
+
     /// Its connections, of which one whose cell a local grid refines is left out where others are in that grid.
-    pub fn finest_connections(&self, grid: &Grid) -> impl Iterator<Item = &Connection> {
+    pub fn finest_connections<'a>(
+        &'a self,
+        grid: &'a Grid,
+    ) -> impl Iterator<Item = &'a Connection> + use<'a> {
         let refined = |connection: &Connection| grid.host(connection.cell_in(grid)?);
         let refined: Vec<Ijk> = self.connections.iter().filter_map(refined).collect();
         let is_refined = move |cell: Ijk| refined.contains(&cell);

@@ -10,10 +10,16 @@ use crate::model::{Grid, Ijk};
 use crate::view::View;
 use crate::view::surfaces::PALETTE;
 
-/// Color of the selected cell at a place in the list, 8-bit sRGB.
-pub fn mark_color(n: usize) -> [u8; 3] {
+/// Color of the selected cell at a place in a list of `count`, 8-bit sRGB: of few cells each has another one, the
+/// colors of many, such as those of a well, run from blue to red.
+pub fn mark_color(n: usize, count: usize) -> [u8; 3] {
     // Reddish purple and blue first, which stand out from most color maps.
     let order = [6, 4, 5, 2, 0, 1, 3];
+    if count > order.len() {
+        // Without the ends, which are too dark for dark themes.
+        let part = n as f64 / (count - 1) as f64;
+        return colorous::TURBO.eval_continuous(0.1 + 0.8 * part).as_array();
+    }
     PALETTE[order[n % order.len()]].map(|v| (255.0 * v).round() as u8)
 }
 
@@ -42,7 +48,12 @@ pub fn mark_cells(picture: &mut Rgb8, view: &View, grid: &Grid, cells: &[[usize;
             let line = line.map(|p| p.to_array());
             // A light seam keeps the line apart from what is behind it.
             canvas.line(line, [0.3 * unit; 2], [255; 3], |_, _| 0.63);
-            canvas.line(line, [0.16 * unit; 2], mark_color(n), |_, _| 1.0);
+            canvas.line(
+                line,
+                [0.16 * unit; 2],
+                mark_color(n, cells.len()),
+                |_, _| 1.0,
+            );
         }
     }
 }

@@ -21,7 +21,7 @@ pub struct Facts {
     pub drawn: usize,
     /// What the values of these are like; `None` where none is drawn.
     pub values: Option<Values>,
-    /// What the filter keeps, in words; empty where it keeps all.
+    /// What the filter keeps and which local grids are hidden, in words; empty where all is drawn.
     pub filter: String,
     /// Clip planes.
     pub planes: usize,
@@ -84,10 +84,19 @@ impl Facts {
             active,
             drawn,
             values,
-            filter: scene.filter.words(),
+            filter: words(scene),
             planes: scene.clip.len(),
         }
     }
+}
+
+/// What is not drawn for the filter and the grids that are hidden.
+fn words(scene: &Scene) -> String {
+    let hidden = &scene.grids.hidden;
+    let hidden = (!hidden.is_empty()).then(|| format!("without {}", hidden.join(", ")));
+    let all = [Some(scene.filter.words()), hidden];
+    let all = all.into_iter().flatten().filter(|text| !text.is_empty());
+    all.collect::<Vec<_>>().join(", ")
 }
 
 /// Of the drawn cells those that clip planes do not cut away whole.

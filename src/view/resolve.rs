@@ -116,12 +116,16 @@ pub(super) fn resolve_over(
             corners: box_corners,
             subject: Arc::new(subject),
         },
-        notes: Notes {
-            has_box: scene.show.r#box,
-            has_legend: scene.show.legend,
-            facts,
-            warnings: wells::warnings(scene, case)?,
-        },
+        notes: notes(scene, case, facts)?,
+    })
+}
+
+fn notes(scene: &Scene, case: &Case, facts: Option<Arc<Facts>>) -> Result<Notes, SceneError> {
+    Ok(Notes {
+        has_box: scene.show.r#box,
+        has_legend: scene.show.legend,
+        facts,
+        warnings: wells::warnings(scene, case)?,
     })
 }
 

@@ -152,7 +152,7 @@ pub fn warnings(scene: &Scene, case: &Case) -> Result<Vec<String>, SceneError> {
     let names: Vec<&str> = wells.iter().map(|well| well.name.as_str()).collect();
     let known = match names.as_slice() {
         [] => "which has none".to_owned(),
-        [few @ ..] if few.len() <= MOST_NAMES => format!("which has {}", few.join(", ")),
+        few if few.len() <= MOST_NAMES => format!("which has {}", few.join(", ")),
         many => format!(
             "which has {} and {} more",
             many[..MOST_NAMES].join(", "),

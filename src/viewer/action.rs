@@ -5,8 +5,9 @@ use serde::{Deserialize, Serialize};
 use super::slices::Slicing;
 use super::state::{Comparison, CurvePlots, Playback, State};
 use crate::scene::{
-    CameraSpec, ClipSpec, Filter, Interpolation, LibcSettings, LightingSpec, Mode, PltsSettings,
-    RangeSpec, Scene, Show, Space, SrgSettings, StepSpec, Storage, StrategyKind, TransferSpec,
+    CameraSpec, ClipSpec, Filter, Grids, Interpolation, LibcSettings, LightingSpec, Mode,
+    PltsSettings, RangeSpec, Scene, Show, Space, SrgSettings, StepSpec, Storage, StrategyKind,
+    TransferSpec,
 };
 
 /// A change of a tab's state.
@@ -40,6 +41,8 @@ pub enum Action {
     SamplingStep(Option<f64>),
     /// Occlusion and lights.
     Lighting(LightingSpec),
+    /// Which local grids are drawn.
+    Grids(Grids),
     /// Which cells are drawn.
     Filter(Filter),
     /// Clip planes.
@@ -58,9 +61,11 @@ pub enum Action {
     Compare(Option<Comparison>),
     /// Selects a cell by I, J, K from 1, beside those selected or alone; one that is selected is let go.
     Select([usize; 3], Beside),
+    /// Selects a well by name, and the cells that it is connected to alone.
+    Well(String, Vec<[usize; 3]>),
     /// Selects none.
     Deselect,
-    /// Shows curves of the selected cells.
+    /// Shows curves over time.
     Curves(CurvePlots),
     /// How time plays.
     Playback(Playback),
@@ -95,6 +100,7 @@ impl Action {
             Self::Storage(_) => "storage",
             Self::SamplingStep(_) => "sampling step",
             Self::Lighting(_) => "lighting",
+            Self::Grids(_) => "local grids",
             Self::Filter(_) => "filter",
             Self::Clip(_) => "clip planes",
             Self::Camera(_) => "camera",
@@ -103,7 +109,7 @@ impl Action {
             Self::Background(_) => "background",
             Self::Scene(_) => "scene",
             Self::Compare(_) => "comparison",
-            Self::Select(..) | Self::Deselect => "selection",
+            Self::Select(..) | Self::Well(..) | Self::Deselect => "selection",
             Self::Curves(_) => "curves",
             Self::Playback(_) => "pace",
             Self::Slicing(_) => "slices",
@@ -128,6 +134,7 @@ impl Action {
             Self::Storage(v) => scene.storage = v,
             Self::SamplingStep(v) => scene.sampling_step = v,
             Self::Lighting(v) => scene.lighting = v,
+            Self::Grids(v) => scene.grids = v,
             Self::Filter(v) => scene.filter = v,
             Self::Clip(v) => scene.clip = v,
             Self::Camera(v) => scene.camera = v,
@@ -136,8 +143,17 @@ impl Action {
             Self::Background(v) => scene.background = v,
             Self::Scene(v) => *scene = *v,
             Self::Compare(v) => state.setup.comparison = v,
-            Self::Select(cell, beside) => select(&mut state.selected, cell, beside),
-            Self::Deselect => state.selected.clear(),
+            Self::Select(cell, beside) => {
+                select(&mut state.selected, cell, beside);
+                state.well.take_if(|_| beside == Beside::Nothing);
+            }
+            Self::Well(name, cells) => {
+                (state.well, state.selected) = (Some(name), cells);
+            }
+            Self::Deselect => {
+                state.well = None;
+                state.selected.clear();
+            }
             Self::Curves(v) => state.curves = v,
             Self::Playback(v) => state.pace = v,
             Self::Slicing(v) => state.slicing = v,

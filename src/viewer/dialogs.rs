@@ -22,6 +22,8 @@ pub enum Purpose {
     SaveScene,
     /// Where to save the values of the selected cells.
     SaveTable,
+    /// Where to save the summary vectors that are shown.
+    SaveVectors,
     /// Where to write a picture or film.
     Export(Box<ExportSpec>),
 }
@@ -34,6 +36,7 @@ impl Purpose {
             Self::LoadScene => "Load a scene",
             Self::SaveScene => "Save the scene",
             Self::SaveTable => "Save the values of the selected cells",
+            Self::SaveVectors => "Save the summary vectors shown",
             Self::Export(spec) if spec.kind == ExportKind::Still => "Save an image",
             Self::Export(_) => "Save an animation",
         }
@@ -45,6 +48,7 @@ impl Purpose {
             Self::Case | Self::Add | Self::LoadScene => None,
             Self::SaveScene => Some("scene.json".into()),
             Self::SaveTable => Some("cells.csv".into()),
+            Self::SaveVectors => Some("vectors.csv".into()),
             Self::Export(spec) => Some(match spec.ending() {
                 Some(ending) => format!("{}.{ending}", spec.case.about.name),
                 None => format!("{}-images", spec.case.about.name),

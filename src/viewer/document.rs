@@ -7,9 +7,10 @@ use std::time::Instant;
 use super::action::Action;
 use super::history::History;
 use super::loading::{Loading, Opened};
-use super::reader::{Curves, Table};
+use super::reader::{Curves, Table, WellList};
 use super::spread::Spread;
 use super::state::State;
+use super::vectors::VectorCurves;
 use super::watch::Watch;
 use crate::case::Case;
 use crate::case::load::CasePaths;
@@ -42,6 +43,10 @@ pub struct Document {
     pub table: Option<Table>,
     /// The property shown over time, in the selected cells.
     pub curves: Option<Curves>,
+    /// Summary vectors, where their curves are shown.
+    pub vectors: Option<VectorCurves>,
+    /// The wells of a step, once they are read.
+    pub wells: Option<WellList>,
     /// How the values are spread by which cells are filtered.
     pub spreads: Vec<Arc<Spread>>,
 }
@@ -62,6 +67,8 @@ impl Document {
             pick: None,
             table: None,
             curves: None,
+            vectors: None,
+            wells: None,
             spreads: Vec::new(),
         }
     }

@@ -56,7 +56,7 @@ pub enum Command {
     SliceAxis(isize),
     /// Mouse, theme, size of letters.
     Settings,
-    /// Curves of the selected cells.
+    /// Curves over time.
     Curves,
     /// Cells as solid bodies, or rays through the volume.
     Mode,
@@ -76,6 +76,8 @@ pub enum Command {
     Film,
     /// Saves the values of the selected cells.
     SaveTable,
+    /// Saves the summary vectors that are shown.
+    SaveVectors,
     /// A second picture, or none.
     Compare,
     /// Selects no cell.
@@ -105,7 +107,7 @@ const fn from(view: usize) -> Command {
 }
 
 /// Every shortcut, with what it says in the sheet.
-pub const SHORTCUTS: [(Modifiers, Key, Command, &str); 60] = [
+pub const SHORTCUTS: [(Modifiers, Key, Command, &str); 61] = [
     (CTRL, Key::O, Command::Open, "Open a case"),
     (
         CTRL_SHIFT,
@@ -198,7 +200,13 @@ pub const SHORTCUTS: [(Modifiers, Key, Command, &str); 60] = [
         CTRL,
         Key::G,
         Command::Curves,
-        "Curves of the selected cells",
+        "Curves of the selected cells, wells and summary vectors",
+    ),
+    (
+        CTRL_SHIFT,
+        Key::G,
+        Command::SaveVectors,
+        "Save the summary vectors shown",
     ),
     (NONE, Key::V, Command::Mode, "Cells or volume"),
     (NONE, Key::I, Command::Space, "Map, or IJK (simbox)"),

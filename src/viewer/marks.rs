@@ -10,9 +10,9 @@ use crate::picture::{cell_edges, mark_color};
 use crate::scene::Scene;
 use crate::view::View;
 
-/// Color of the selected cell at a place in the list.
-pub fn color(n: usize) -> Color32 {
-    let [r, g, b] = mark_color(n);
+/// Color of the selected cell at a place in a list of `count`.
+pub fn color(n: usize, count: usize) -> Color32 {
+    let [r, g, b] = mark_color(n, count);
     Color32::from_rgb(r, g, b)
 }
 
@@ -41,7 +41,7 @@ pub fn show(
             let line = line.map(|at| rect.min + vec2(at.x as f32, at.y as f32));
             // A light seam keeps the line apart from what is behind it.
             painter.line_segment(line, Stroke::new(3.5, Color32::from_white_alpha(160)));
-            painter.line_segment(line, Stroke::new(1.8, color(n)));
+            painter.line_segment(line, Stroke::new(1.8, color(n, selected.len())));
         }
     }
 }

@@ -31,6 +31,7 @@ mod slices;
 mod spread;
 mod state;
 mod turning;
+mod vectors;
 mod viewport;
 mod watch;
 mod welcome;
@@ -49,6 +50,7 @@ pub use slices::Slicing;
 pub use spread::{Counts, Spread};
 pub use state::{CompareLayout, Comparison, CurvePlots, Playback, Setup, State};
 pub use turning::{Turned, turn};
+pub use vectors::{VectorCurve, VectorCurves, VectorRequest};
 pub use window::Window;
 
 /// Why there is no window.

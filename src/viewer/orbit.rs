@@ -2,6 +2,7 @@
 
 use glam::{DQuat, DVec2, DVec3};
 
+use crate::model::{Grid, Ijk};
 use crate::scene::{AutomaticCamera, CameraSpec, ExplicitCamera, FramingCamera, Projection};
 use crate::view::camera::middle;
 use crate::view::{Camera, View};
@@ -65,6 +66,17 @@ pub fn pan(camera: &Camera, around: DVec3, drag: DVec2) -> Camera {
 /// Comes closer to a point by a factor above 1, or goes away by one below.
 pub fn zoom(camera: &Camera, to: DVec3, factor: f64) -> Camera {
     camera.closer(to, factor.clamp(0.1, 10.0))
+}
+
+/// A selected cell takes this part of the picture.
+const SELECTED: f64 = 0.3;
+
+/// The camera of a view on some cells, from the same direction; `None` where there are none.
+pub fn on_cells(now: &View, grid: &Grid, cells: impl IntoIterator<Item = Ijk>) -> Option<Camera> {
+    let cells: Vec<Ijk> = cells.into_iter().collect();
+    let cells = now.corners_of(grid.bounds_of(cells)?);
+    let framed = now.camera.framed(&cells, now.aspect());
+    Some(framed.closer(middle(&cells), SELECTED))
 }
 
 /// A drag that turns by angles in radians, to the right and down.

@@ -1,11 +1,12 @@
-//! Values are read on a thread of their own: those of the selected cells, curves over time, and the next
+//! Values are read on a thread of their own: those of the selected cells, curves over time, wells, and the next
 //! steps before they are shown.
 
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 
 use super::spread::Spread;
-use crate::case::{Case, Property};
+use super::vectors::{VectorCurves, VectorRequest};
+use crate::case::{Case, Property, Well};
 use crate::model::CellIndex;
 use crate::view::look::{Look, look_of};
 
@@ -53,12 +54,26 @@ pub struct TimeCurve {
     pub points: Vec<Vec<(usize, f32)>>,
 }
 
+/// The wells of a case at a step.
+pub struct WellList {
+    /// The case.
+    pub case: Arc<Case>,
+    /// The step.
+    pub step: usize,
+    /// The wells, in the order of the file.
+    pub wells: Arc<Vec<Well>>,
+}
+
 /// What the thread says.
 pub enum Read {
     /// All properties of some cells.
     Table(Table),
     /// Curves over time.
     Curves(Curves),
+    /// Summary vectors.
+    Vectors(VectorCurves),
+    /// The wells of a step.
+    Wells(WellList),
     /// How a property of a case looks at first.
     Look(Arc<Case>, String, Look),
     /// How the values of a property are spread.
@@ -74,6 +89,8 @@ struct Wishes {
     look: Option<(Arc<Case>, String)>,
     table: Option<(Cells, usize)>,
     curves: Option<(Cells, Vec<String>)>,
+    vectors: Option<(Arc<Case>, VectorRequest)>,
+    wells: Option<(Arc<Case>, usize)>,
     ahead: Option<Ahead>,
     spreads: Vec<(Arc<Case>, String, usize)>,
     ends: bool,
@@ -114,6 +131,16 @@ impl Reader {
         self.wish(|w| w.curves = Some((of, properties)));
     }
 
+    /// Asks for summary vectors over time.
+    pub fn vectors(&self, case: Arc<Case>, asked: VectorRequest) {
+        self.wish(|w| w.vectors = Some((case, asked)));
+    }
+
+    /// Asks for the wells of a step.
+    pub fn wells(&self, case: Arc<Case>, step: usize) {
+        self.wish(|w| w.wells = Some((case, step)));
+    }
+
     /// Reads properties at steps, so that they are at hand when they are shown.
     pub fn ahead(&self, case: Arc<Case>, fields: Vec<(String, usize)>) {
         self.wish(|w| w.ahead = Some((case, fields)));
@@ -134,6 +161,8 @@ impl Reader {
             w.look.take_if(|(c, _)| is_of(c));
             w.table.take_if(|(of, _)| is_of(&of.case));
             w.curves.take_if(|(of, _)| is_of(&of.case));
+            w.vectors.take_if(|(c, _)| is_of(c));
+            w.wells.take_if(|(c, _)| is_of(c));
             w.ahead.take_if(|(c, _)| is_of(c));
             w.spreads.retain(|(c, ..)| !is_of(c));
         });
@@ -164,6 +193,8 @@ enum Wish {
     Look(Arc<Case>, String),
     Table(Cells, usize),
     Curves(Cells, Vec<String>),
+    Vectors(Arc<Case>, VectorRequest),
+    Wells(Arc<Case>, usize),
     Ahead(Ahead),
     Spread(Arc<Case>, String, usize),
 }
@@ -187,6 +218,14 @@ impl Thread {
                     self.say(Read::Table(Table { of, step, rows }));
                 }
                 Wish::Curves(of, properties) => self.follow(of, properties),
+                Wish::Vectors(case, asked) => {
+                    self.say(Read::Vectors(VectorCurves::read(case, asked)));
+                }
+                Wish::Wells(case, step) => {
+                    // Where they are damaged, a note of the case says so.
+                    let wells = case.wells(step).unwrap_or_default();
+                    self.say(Read::Wells(WellList { case, step, wells }));
+                }
                 Wish::Spread(case, property, step) => {
                     let spread = Spread::of(&case, &property, step);
                     self.say(Read::Spread(Arc::new(spread)));
@@ -217,8 +256,14 @@ impl Thread {
             if let Some((of, step)) = wishes.table.take() {
                 return Some(Wish::Table(of, step));
             }
+            if let Some((case, step)) = wishes.wells.take() {
+                return Some(Wish::Wells(case, step));
+            }
             if let Some((case, property, step)) = wishes.spreads.pop() {
                 return Some(Wish::Spread(case, property, step));
+            }
+            if let Some((case, asked)) = wishes.vectors.take() {
+                return Some(Wish::Vectors(case, asked));
             }
             if let Some(ahead) = wishes.ahead.take() {
                 return Some(Wish::Ahead(ahead));
@@ -237,6 +282,7 @@ impl Thread {
     fn has_wishes(&self) -> bool {
         let w = lock(&self.wishes.0);
         let is_asked = w.look.is_some() || w.table.is_some() || w.curves.is_some();
+        let is_asked = is_asked || w.vectors.is_some() || w.wells.is_some();
         w.ends || is_asked || w.ahead.is_some() || !w.spreads.is_empty()
     }
 

@@ -18,7 +18,9 @@ pub struct State {
     pub setup: Setup,
     /// Cells that were picked, by I, J, K from 1.
     pub selected: Vec<[usize; 3]>,
-    /// The window with curves of the selected cells.
+    /// The well that was selected, whose cells are among those.
+    pub well: Option<String>,
+    /// Curves over time below the picture.
     pub curves: CurvePlots,
     /// How time plays.
     pub pace: Playback,
@@ -96,14 +98,16 @@ impl Setup {
     }
 }
 
-/// Curves of the selected cells over time.
+/// Curves over time.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default)]
 pub struct CurvePlots {
-    /// Their window is open.
+    /// They are shown.
     pub is_open: bool,
-    /// Which properties; where there are none, that of the picture.
+    /// Which properties of the selected cells; where there are none, that of the picture.
     pub properties: Vec<String>,
+    /// Which summary vectors, by name, beside those of the selected well.
+    pub vectors: Vec<String>,
 }
 
 /// How time plays.

@@ -20,3 +20,4 @@ mod selecting;
 mod showing;
 mod speed;
 mod tour;
+mod wells;

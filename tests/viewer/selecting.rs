@@ -372,6 +372,7 @@ fn curves_have_a_window_with_dates_and_several_properties() {
     let plots = CurvePlots {
         is_open: true,
         properties: vec!["SWAT".into(), "PRESSURE".into()],
+        vectors: Vec::new(),
     };
     driven.harness.state_mut().apply(Action::Curves(plots));
     driven.wait("both curves", |w| {

@@ -1,4 +1,4 @@
-//! Which cells are drawn by I, J and K, single slices, and the vertical exaggeration.
+//! Which cells are drawn by I, J and K, single slices, local grids, and the vertical exaggeration.
 
 use eframe::egui::{self, Color32, Id, Role, Ui, WidgetInfo};
 
@@ -30,7 +30,37 @@ pub fn show(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action>) {
     if filter != about.scene.filter {
         actions.push(Action::Filter(filter));
     }
+    local_grids(ui, about, actions);
     exaggeration(ui, about, actions);
+}
+
+/// Switches local grids on and off; nothing where there are none.
+fn local_grids(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action>) {
+    let locals = about.case.grid.patches().iter().skip(1);
+    let mut grids = about.scene.grids.clone();
+    for patch in locals {
+        let hidden = grids.hidden.iter();
+        let at = hidden
+            .clone()
+            .position(|name| name.eq_ignore_ascii_case(&patch.name));
+        let mut is_shown = at.is_none();
+        let dims = patch.file_dims();
+        let text = format!(
+            "Local grid {} ({} x {} x {})",
+            patch.name, dims.ni, dims.nj, dims.nk
+        );
+        let switch = ui.checkbox(&mut is_shown, text).on_hover_text(
+            "On: its cells in place of those that it refines. Off: the cells that it refines",
+        );
+        match at {
+            _ if !switch.changed() => {}
+            Some(at) => drop(grids.hidden.remove(at)),
+            None => grids.hidden.push(patch.name.clone()),
+        }
+    }
+    if grids != about.scene.grids {
+        actions.push(Action::Grids(grids));
+    }
 }
 
 /// Clears all filters.

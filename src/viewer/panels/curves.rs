@@ -1,59 +1,106 @@
-//! Curves of the selected cells over time, in a window of their own.
+//! Curves over time below the picture: summary vectors, and properties of the selected cells.
 
-use std::ops::RangeInclusive;
-
-use eframe::egui::{self, Id, ScrollArea, Ui};
-use egui_plot::{GridInput, GridMark, Line, Plot, PlotResponse, Points, VLine};
+use eframe::egui::{self, ScrollArea, Ui};
+use egui_plot::{Line, Points, VLine};
 
 use super::PanelContext;
 use super::controls::significant;
-use super::dates::Calendar;
-use super::values::named;
-use crate::case::Case;
+use super::over_time::{TimeAxis, keep_pointed, nearest_step, pointed_before, touched};
+use super::{vector_list, vector_plots};
 use crate::viewer::action::Action;
+use crate::viewer::keys::Command;
 use crate::viewer::marks;
 use crate::viewer::reader::{Curves, TimeCurve};
 use crate::viewer::state::CurvePlots;
 
-/// Points of a plot's height, at least.
-const LEAST_HEIGHT: f32 = 130.0;
-/// Months between marks of the axis, from dense to sparse, and about how many days that is.
-const MARKS: [i64; 7] = [1, 3, 6, 12, 60, 120, 600];
-const MONTH: f64 = 30.44;
+/// Points of a plot, at least.
+const LEAST: [f32; 2] = [330.0, 110.0];
+/// Points of what is written above and below a plot.
+const TEXTS: f32 = 66.0;
 
-/// Draws the curves, and which properties have some.
-pub fn show(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action>) {
+/// A plot of its own.
+enum TimePlot<'a> {
+    Vectors(vector_plots::UnitPlot<'a>),
+    Cells(&'a TimeCurve),
+}
+
+/// Draws the curves, and which ones there are; what was asked for beside changes.
+pub fn show(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action>) -> Option<Command> {
+    let mut asked = None;
     ui.horizontal_wrapped(|ui| {
+        let close = ui
+            .small_button("×")
+            .on_hover_text("Hides the curves (Ctrl + G)");
+        close
+            .widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, "Hide the curves"));
+        if close.clicked() {
+            actions.push(Action::Curves(CurvePlots {
+                is_open: false,
+                ..about.state.curves.clone()
+            }));
+        }
         properties(ui, about, actions);
-        let step = pointed_before(ui).or(about.picture.map(|p| p.view.shown.step));
-        if let Some(step) = step.and_then(|n| about.case.steps.get(n)) {
+        vector_list::menu(ui, about, actions);
+        asked = save(ui, about);
+        let shown = about.picture.map(|p| p.view.shown.step);
+        let pointed = pointed_before(ui).and_then(|days| nearest_step(about.case, days));
+        if let Some(step) = pointed.or(shown).and_then(|n| about.case.steps.get(n)) {
             ui.label(format!("{}   day {}", step.date, significant(step.days)));
         }
     });
-    let Some(curves) = about.curves else {
-        ui.weak("Select cells to see their curves.");
-        return;
-    };
-    let count = curves.curves.len().max(1) as f32;
-    let height = (ui.available_height() / count - 40.0).max(LEAST_HEIGHT);
+    let vectors = about.vectors.and_then(|v| v.vectors.as_ref().ok());
+    let axis = TimeAxis::of(about.case, vectors.map(|v| &**v));
+    let of_cells = about.curves.map_or(&[][..], |c| &c.curves);
+    let plots = vector_plots::grouped(about).into_iter();
+    let plots = plots.map(TimePlot::Vectors);
+    let plots: Vec<_> = plots.chain(of_cells.iter().map(TimePlot::Cells)).collect();
+    if plots.is_empty() {
+        ui.weak(match about.case.about.summary.is_empty() {
+            true => "Select cells to see their curves.",
+            false => "Select cells or a well to see their curves, or choose summary vectors.",
+        });
+        return asked;
+    }
+    let columns = ((ui.available_width() / LEAST[0]) as usize).clamp(1, plots.len());
+    let rows = plots.len().div_ceil(columns) as f32;
+    let height = (ui.available_height() / rows - TEXTS).max(LEAST[1]);
     let mut pointed = None;
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-        for curve in &curves.curves {
-            pointed = self::curve(ui, about, curves, curve, height).or(pointed);
+        for row in plots.chunks(columns) {
+            ui.columns(columns, |places| {
+                for (ui, plot) in places.iter_mut().zip(row) {
+                    let at = match plot {
+                        TimePlot::Vectors(plot) => {
+                            vector_plots::show(ui, about, (axis, height), plot, actions)
+                        }
+                        TimePlot::Cells(curve) => {
+                            self::curve(ui, about, (axis, height), curve, actions)
+                        }
+                    };
+                    pointed = at.or(pointed);
+                }
+            });
         }
     });
-    ui.data_mut(|d| d.insert_temp(pointed_id(), pointed));
+    keep_pointed(ui, pointed);
+    asked
 }
 
-/// Where it is kept to which step the pointer points: all plots tell the values there.
-fn pointed_id() -> Id {
-    Id::unique("step that the pointer in the curves is at")
-}
-
-/// The step that the pointer pointed to in the frame before.
-fn pointed_before(ui: &Ui) -> Option<usize> {
-    ui.data(|d| d.get_temp::<Option<usize>>(pointed_id()))
-        .flatten()
+/// Saves or copies the vectors that are shown.
+fn save(ui: &mut Ui, about: &PanelContext<'_>) -> Option<Command> {
+    let vectors = about.vectors.filter(|v| !v.curves.is_empty())?;
+    let copy = ui
+        .button("Copy")
+        .on_hover_text("Copies the summary vectors shown as CSV: a row for each time");
+    if copy.clicked()
+        && let Ok(text) = vectors.csv()
+    {
+        ui.ctx().copy_text(text);
+    }
+    let save = ui
+        .button("Save CSV ...")
+        .on_hover_text("Saves the summary vectors shown: a row for each time (Ctrl + Shift + G)");
+    save.clicked().then_some(Command::SaveVectors)
 }
 
 /// A list of the properties that change with time.
@@ -94,29 +141,32 @@ fn properties(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action>) 
             }
         }
     });
-    menu.response.on_hover_text("Properties shown as curves");
+    menu.response
+        .on_hover_text("Properties of the selected cells that are shown as curves");
 }
 
-/// The curves of a property; the step that the pointer points to.
+/// The curves of a property; the place on the axis that the pointer is at.
 fn curve(
     ui: &mut Ui,
     about: &PanelContext<'_>,
-    curves: &Curves,
+    (axis, height): (TimeAxis, f32),
     curve: &TimeCurve,
-    height: f32,
-) -> Option<usize> {
+    actions: &mut Vec<Action>,
+) -> Option<f64> {
     let case = about.case;
-    let name = format!("{} {}", curve.property, case.unit(&curve.property));
-    ui.strong(name.trim_end());
+    let curves = about.curves?;
+    ui.strong(&curve.property);
     if curve.points.iter().all(|p| p.len() < 2) {
         ui.weak(format!("{} does not change with time.", curve.property));
         return None;
     }
-    let pointed = pointed_before(ui);
+    let pointed = pointed_before(ui).and_then(|days| nearest_step(case, days));
     let ink = ui.visuals().weak_text_color();
     let days = |step: usize| case.steps.get(step).map_or(0.0, |s| s.days);
     let shown = about.picture.map(|p| p.view.shown.step);
-    let response = plot(&curve.property, Calendar::of(&case.steps), height).show(ui, |plot| {
+    let count = curves.of.cells.len();
+    let plot = axis.plot(&curve.property, case.unit(&curve.property), height);
+    let response = plot.show(ui, |plot| {
         for (n, points) in curve.points.iter().enumerate() {
             let points: Vec<_> = points
                 .iter()
@@ -126,8 +176,8 @@ fn curve(
                 .of
                 .cells
                 .get(n)
-                .map_or_else(String::new, |c| named(*c));
-            plot.line(Line::new(name, points).color(marks::color(n)));
+                .map_or_else(String::new, |c| case.grid.name_of(*c).to_string());
+            plot.line(Line::new(name, points).color(marks::color(n, count)));
         }
         for step in shown.into_iter().chain(pointed) {
             plot.vline(VLine::new("", days(step)).color(ink));
@@ -136,66 +186,26 @@ fn curve(
         for (n, points) in curve.points.iter().enumerate() {
             let at = points.iter().find(|(step, _)| *step == pointed);
             let at: Vec<_> = at.iter().map(|(s, v)| [days(*s), f64::from(*v)]).collect();
-            plot.points(Points::new("", at).radius(3.5).color(marks::color(n)));
+            plot.points(
+                Points::new("", at)
+                    .radius(3.5)
+                    .color(marks::color(n, count)),
+            );
         }
     });
     values(ui, curves, curve, pointed.or(shown));
-    nearest(case, &response)
+    touched(case, &response, actions)
 }
 
 /// The values of the cells at a step, each in the color of its curve.
 fn values(ui: &mut Ui, curves: &Curves, curve: &TimeCurve, step: Option<usize>) {
+    let count = curves.of.cells.len();
     ui.horizontal_wrapped(|ui| {
         for (n, (cell, points)) in curves.of.cells.iter().zip(&curve.points).enumerate() {
             let value = points.iter().find(|(at, _)| Some(*at) == step);
             let value = value.map_or("-".into(), |(_, v)| significant(f64::from(*v)));
-            ui.colored_label(marks::color(n), format!("{}: {value}", named(*cell)));
+            let name = curves.of.case.grid.name_of(*cell);
+            ui.colored_label(marks::color(n, count), format!("{name}: {value}"));
         }
     });
-}
-
-/// The step that the pointer is nearest to.
-fn nearest<R>(case: &Case, response: &PlotResponse<R>) -> Option<usize> {
-    let at = response.response.hover_pos()?;
-    let days = response.transform.value_from_position(at).x;
-    let apart = |n: &usize| (case.steps[*n].days - days).abs();
-    (0..case.steps.len()).min_by(|a, b| apart(a).total_cmp(&apart(b)))
-}
-
-fn plot(property: &str, calendar: Option<Calendar>, height: f32) -> Plot<'static> {
-    let text = move |days: f64| match calendar {
-        Some(calendar) => calendar.date(days),
-        None => format!("day {}", significant(days)),
-    };
-    let plot = Plot::new(("curves", property))
-        .height(height)
-        .allow_scroll(false)
-        .link_axis(Id::unique("curves over time"), [true, false])
-        .label_formatter(|_| None)
-        .x_axis_formatter(move |mark: GridMark, _: &RangeInclusive<f64>| text(mark.value))
-        .y_axis_formatter(|mark: GridMark, _: &RangeInclusive<f64>| significant(mark.value));
-    match calendar {
-        Some(calendar) => plot.x_grid_spacer(move |input| months(calendar, &input)),
-        None => plot,
-    }
-}
-
-/// Marks at the first of months or years: three thicknesses of them.
-fn months(calendar: Calendar, input: &GridInput) -> Vec<GridMark> {
-    let (low, high) = input.bounds;
-    let first = MARKS
-        .iter()
-        .position(|m| *m as f64 * MONTH >= input.base_step_size);
-    let from = first.unwrap_or(MARKS.len() - 1);
-    let mut marks: Vec<GridMark> = Vec::new();
-    for every in MARKS.iter().skip(from).take(3) {
-        let step_size = *every as f64 * MONTH;
-        for value in calendar.months([low, high], *every) {
-            match marks.iter_mut().find(|m| m.value == value) {
-                Some(known) => known.step_size = step_size,
-                None => marks.push(GridMark { value, step_size }),
-            }
-        }
-    }
-    marks
 }

@@ -18,6 +18,16 @@ impl Calendar {
         })
     }
 
+    /// That of a run which starts so many days after 1970-01-01.
+    pub fn since(start: f64) -> Self {
+        Self { start }
+    }
+
+    /// Days from 1970-01-01 to the start.
+    pub fn start(self) -> f64 {
+        self.start
+    }
+
     /// The date so many days after the start.
     pub fn date(self, days: f64) -> String {
         let [year, month, day] = date_of((self.start + days).floor() as i64);

@@ -12,6 +12,7 @@ mod display;
 mod faults;
 mod filters;
 mod light;
+mod over_time;
 mod player;
 mod property;
 mod range_slider;
@@ -21,6 +22,9 @@ mod strategy;
 mod table;
 mod transfer;
 mod values;
+mod vector_list;
+mod vector_plots;
+mod wells;
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -33,7 +37,8 @@ use super::pictures::ShownDifference;
 use super::reader::{Curves, Table};
 use super::spread::Spread;
 use super::state::State;
-use crate::case::{Case, Property};
+use super::vectors::VectorCurves;
+use crate::case::{Case, Property, Well};
 use crate::picking::Pick;
 use crate::scene::Scene;
 
@@ -63,6 +68,10 @@ pub struct PanelContext<'a> {
     pub table: Option<&'a Table>,
     /// Properties over time, in the selected cells.
     pub curves: Option<&'a Curves>,
+    /// Summary vectors, where their curves are shown.
+    pub vectors: Option<&'a VectorCurves>,
+    /// The wells of the step, once they are read.
+    pub wells: Option<&'a [Well]>,
     /// How the values are spread by which cells are filtered.
     pub spreads: &'a [Arc<Spread>],
     /// The other cases that are open, with their names.
@@ -109,10 +118,14 @@ const fn panel(title: &'static str, is_open: bool, show: Show) -> Panel {
 }
 
 /// Panels at the left, from top to bottom.
-pub const LEFT: [Panel; 6] = [
+pub const LEFT: [Panel; 7] = [
     panel("Property", true, property::show),
     panel("Cell filter", true, cells::show),
     panel("Display", true, display::show),
+    Panel {
+        count: |about| about.wells.map_or(0, <[Well]>::len),
+        ..panel("Wells", false, wells::show)
+    },
     Panel {
         count: |about| about.case.about.named_faults.len(),
         ..panel("Faults", false, faults::show)

@@ -21,6 +21,7 @@ const MENUS: [(&str, &[Command]); 5] = [
             Command::Screenshot,
             Command::Film,
             Command::SaveTable,
+            Command::SaveVectors,
             Command::CopyLine,
             Command::Close,
             Command::Reopen,
@@ -246,7 +247,11 @@ fn message(window: &Window, ui: &mut Ui) {
         .message
         .as_ref()
         .map(|(text, is_error)| (text, *is_error));
-    let Some((text, is_error)) = told.or(stale.map(|error| (error, true))) else {
+    // What the scene asks for in vain.
+    let warning = window.picture(0);
+    let warning = warning.and_then(|(picture, _)| picture.view.notes.warnings.first());
+    let told = told.or(stale.map(|error| (error, true)));
+    let Some((text, is_error)) = told.or(warning.map(|text| (text, false))) else {
         return;
     };
     let rich = egui::RichText::new(text);

@@ -6,10 +6,8 @@ use glam::DVec2;
 
 use super::Window;
 use crate::case::Case;
-use crate::model::Ijk;
 use crate::scene::CameraSpec;
 use crate::view::View;
-use crate::view::camera::middle;
 use crate::viewer::action::Action;
 use crate::viewer::keys::CameraMove;
 use crate::viewer::orbit;
@@ -17,8 +15,6 @@ use crate::viewer::orbit;
 /// Degrees of a step of [`CameraMove::Turn`], and factor of one of [`CameraMove::Zoom`].
 const STEP: f64 = 10.0;
 const CLOSER: f64 = 1.25;
-/// A selected cell takes this part of the picture.
-const SELECTED: f64 = 0.3;
 
 impl Window {
     /// Changes the camera of the document in front; nothing before there is a picture.
@@ -85,13 +81,8 @@ fn changed(
             let cells = selected
                 .iter()
                 .filter_map(|ijk| case.grid.dims().one_based(*ijk));
-            let cells: Vec<Ijk> = cells.collect();
-            match case.grid.bounds_of(cells) {
-                Some(bounds) => {
-                    let cells = now.corners_of(bounds);
-                    let framed = camera.framed(&cells, aspect);
-                    framed.closer(middle(&cells), SELECTED)
-                }
+            match orbit::on_cells(now, &case.grid, cells) {
+                Some(camera) => camera,
                 None => camera.framed(&drawn()?, aspect),
             }
         }

@@ -35,6 +35,7 @@ impl Window {
             Command::SaveScene => self.ask_file(ctx, Purpose::SaveScene),
             Command::LoadScene => self.ask_file(ctx, Purpose::LoadScene),
             Command::SaveTable => self.ask_file(ctx, Purpose::SaveTable),
+            Command::SaveVectors => self.ask_file(ctx, Purpose::SaveVectors),
             Command::Screenshot => self.sheets.export = Some(false),
             Command::Film => self.sheets.export = Some(true),
             Command::CopyLine => self.copy_command(ctx),
@@ -167,6 +168,7 @@ impl Window {
             Purpose::LoadScene => self.load_scene(&path),
             Purpose::SaveScene => self.save_scene(&path),
             Purpose::SaveTable => self.save_table(&path),
+            Purpose::SaveVectors => self.save_vectors(&path),
         };
         self.answer(told);
     }

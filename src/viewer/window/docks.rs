@@ -4,14 +4,15 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use eframe::egui::{self, CollapsingResponse, Context, Margin, ScrollArea, Ui, WidgetInfo};
+use eframe::egui::{self, CollapsingResponse, Margin, ScrollArea, Ui, WidgetInfo};
 
 use super::Window;
 use crate::case::Case;
 use crate::scene::Scene;
 use crate::viewer::action::Action;
+use crate::viewer::keys::Command;
 use crate::viewer::panels::{self, Panel, PanelContext};
-use crate::viewer::state::{CompareLayout, CurvePlots};
+use crate::viewer::state::CompareLayout;
 
 /// Points of a side's panels.
 const WIDTH: f32 = 280.0;
@@ -26,8 +27,11 @@ const EDGE: i8 = 10;
 
 /// Points beside the panels that belong to their scroll bar.
 const BAR: f32 = 10.0;
-/// Points of the window with curves at first.
-const CURVES: [f32; 2] = [460.0, 280.0];
+/// Points of the height of the curves below the picture at first and at least, and the part of it that they take at
+/// most.
+const CURVES: f32 = 300.0;
+const LEAST_CURVES: f32 = 120.0;
+const MOST_CURVES: f32 = 0.8;
 
 const NAMES: [&str; 2] = ["left", "right"];
 
@@ -84,37 +88,28 @@ impl Window {
 }
 
 impl Window {
-    /// The window with curves of the selected cells, where it is open.
+    /// The curves over time below the picture, where they are shown; what was asked for there beside changes.
     pub(super) fn curves(
         &self,
-        ctx: &Context,
+        ui: &mut Ui,
         case: &Arc<Case>,
         scene: &Scene,
         actions: &mut Vec<Action>,
-    ) {
+    ) -> Option<Command> {
         let others = self.other_cases();
-        let about = self.about(case, scene, &others);
-        let Some(about) = about.filter(|a| a.state.curves.is_open) else {
-            return;
-        };
-        let mut is_open = true;
-        // At first in the lower left corner of the image, where it hides no panel.
-        let place = self.sides.volume();
-        let corner = place.map_or(egui::Pos2::ZERO, |place| {
-            place.left_bottom() + egui::vec2(0.0, -(CURVES[1] + 60.0))
-        });
-        egui::Window::new("Curves")
-            .open(&mut is_open)
-            .default_pos(corner)
-            .default_size(CURVES)
-            .min_size([260.0, 180.0])
-            .show(ctx, |ui| panels::curves(ui, &about, actions));
-        if !is_open {
-            actions.push(Action::Curves(CurvePlots {
-                is_open,
-                ..about.state.curves.clone()
-            }));
+        let about = self.about(case, scene, &others)?;
+        if !about.state.curves.is_open {
+            return None;
         }
+        let dock = egui::Panel::bottom("curves")
+            .default_size(CURVES)
+            .size_range(LEAST_CURVES..=MOST_CURVES * ui.available_height())
+            .show(ui, |ui| {
+                // As high as it was left, whatever is in it.
+                ui.set_min_height(ui.available_height());
+                panels::curves(ui, &about, actions)
+            });
+        dock.inner
     }
 
     /// Path and name of the other cases that are open.
@@ -132,6 +127,8 @@ impl Window {
         others: &'a [(PathBuf, String)],
     ) -> Option<PanelContext<'a>> {
         let document = self.document()?;
+        let wells = document.wells.as_ref();
+        let wells = wells.filter(|w| Arc::ptr_eq(&w.case, case));
         let comparison = document.state.setup.comparison.as_ref();
         let is_compared = comparison.is_some_and(|c| c.layout == CompareLayout::ColorDifference);
         Some(PanelContext {
@@ -144,6 +141,11 @@ impl Window {
             pick: document.pick.as_ref(),
             table: document.table.as_ref(),
             curves: document.curves.as_ref(),
+            vectors: document
+                .vectors
+                .as_ref()
+                .filter(|v| Arc::ptr_eq(&v.case, case)),
+            wells: wells.map(|w| w.wells.as_slice()),
             spreads: &document.spreads,
             others,
         })

@@ -4,6 +4,7 @@ use eframe::egui::Context;
 
 use super::{Window, begin_loading};
 use crate::picking::Pick;
+use crate::view::wells::Head;
 use crate::viewer::action::{Action, Beside};
 use crate::viewer::dialogs::{Dialog, Outcome, PathSheet};
 use crate::viewer::export::Export;
@@ -53,6 +54,8 @@ impl Window {
         let case = match &read {
             Read::Table(table) => &table.of.case,
             Read::Curves(curves) => &curves.of.case,
+            Read::Vectors(vectors) => &vectors.case,
+            Read::Wells(wells) => &wells.case,
             Read::Look(case, ..) => case,
             Read::Spread(spread) => &spread.case,
         };
@@ -62,6 +65,8 @@ impl Window {
         match (self.document_of(&case), read) {
             (Some(document), Read::Table(table)) => document.table = Some(table),
             (Some(document), Read::Curves(curves)) => document.curves = Some(curves),
+            (Some(document), Read::Vectors(vectors)) => document.vectors = Some(vectors),
+            (Some(document), Read::Wells(wells)) => document.wells = Some(wells),
             (Some(document), Read::Spread(spread)) => document.spreads.push(spread),
             (Some(document), Read::Look(_, property, look)) => {
                 document
@@ -124,6 +129,18 @@ impl Window {
         self.keep_settings();
     }
 
+    /// Selects a well that was clicked in the picture.
+    fn select_well(&mut self, head: &Head) {
+        let well = self.document().and_then(|document| {
+            let mut wells = document.wells.as_ref()?.wells.iter();
+            let well = wells.find(|well| well.name == head.name)?;
+            let cells = well.finest_cells(&document.case.as_ref()?.grid);
+            Some(cells.map(|cell| cell.one_based()).collect())
+        });
+        self.apply(Action::Well(head.name.clone(), well.unwrap_or_default()));
+        self.tell(head.in_words());
+    }
+
     fn picked(&mut self, why: PickPurpose, pick: Pick) {
         if why == PickPurpose::Hover {
             let is_seen = pick.hit.is_some() || pick.fault.is_some() || pick.well.is_some();
@@ -131,8 +148,10 @@ impl Window {
             return;
         }
         let Some(hit) = &pick.hit else {
-            let well = pick.well.map(|well| well.in_words());
-            self.tell(well.unwrap_or_else(|| "no cell under the pointer".into()));
+            match pick.well {
+                Some(well) => self.select_well(&well),
+                None => self.tell("no cell under the pointer"),
+            }
             return;
         };
         let cell = hit.ijk.one_based();

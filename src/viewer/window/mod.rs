@@ -200,6 +200,13 @@ impl Window {
                 self.awaited = Some(property.clone());
             }
             (Action::Filter(_), _) => document.apply_filter(action, held),
+            (Action::Well(..), Some(case)) => {
+                let has_curves = !case.about.summary.is_empty();
+                document.apply(action);
+                if has_curves {
+                    document.state.curves.is_open = true;
+                }
+            }
             _ => document.apply(action),
         }
         // What was told of an earlier change is of no interest anymore.

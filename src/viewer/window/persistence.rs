@@ -33,6 +33,18 @@ impl Window {
         Ok(format!("the scene is in {}", path.display()))
     }
 
+    /// Saves the summary vectors that are shown as one comma-separated table, a row for each time.
+    ///
+    /// # Errors
+    /// When none is shown, or the file cannot be written; the sentence names it.
+    pub fn save_vectors(&self, path: &Path) -> Result<String, String> {
+        let document = self.document().ok_or("open a case first")?;
+        let vectors = document.vectors.as_ref().filter(|v| !v.curves.is_empty());
+        let vectors = vectors.ok_or("choose summary vectors below the picture first (Ctrl + G)")?;
+        std::fs::write(path, vectors.csv()?).map_err(|e| format!("{}: {e}", path.display()))?;
+        Ok(format!("the summary vectors are in {}", path.display()))
+    }
+
     /// Saves the values of the selected cells, and their curves, as one comma-separated table.
     ///
     /// # Errors

@@ -13,6 +13,8 @@ use crate::viewer::job::RenderRequest;
 use crate::viewer::link::Link;
 use crate::viewer::reader::Cells;
 use crate::viewer::spread::Spread;
+use crate::viewer::state::State;
+use crate::viewer::vectors::VectorRequest;
 
 /// What the reader was asked for last.
 #[derive(Default, PartialEq)]
@@ -22,7 +24,13 @@ pub struct ReadRequests {
     ahead: Option<(usize, Vec<(String, usize)>)>,
     look: Option<(usize, String)>,
     spreads: Vec<(String, usize)>,
+    wells: WellRequest,
+    vectors: VectorsRequest,
 }
+
+/// Address of a case, and the step of the wells or which vectors.
+type WellRequest = Option<(usize, usize)>;
+type VectorsRequest = Option<(usize, VectorRequest)>;
 
 /// Steps that are read ahead.
 const AHEAD: usize = 3;
@@ -160,6 +168,7 @@ impl Window {
             |w: &(String, usize)| document.spreads.iter().any(|s| s.is_of(&case, &w.0, w.1));
         asked.spreads = wanted.into_iter().filter(|w| !known(w)).collect();
         asked.ahead = Some((Arc::as_ptr(&case).addr(), next.collect()));
+        (asked.wells, asked.vectors) = self.read_wells(&case, step);
         if asked.table != self.asked.table
             && let Some((of, step)) = &asked.table
         {
@@ -189,4 +198,40 @@ impl Window {
         }
         self.asked = asked;
     }
+}
+
+impl Window {
+    /// Asks for the wells of a step and for summary vectors, where they are not those asked for last.
+    fn read_wells(&self, case: &Arc<Case>, step: usize) -> (WellRequest, VectorsRequest) {
+        let state = self.document().map(|document| &document.state);
+        let vectors = state.and_then(|state| vectors(case, state));
+        let wells = wells(case, step);
+        if wells.is_some() && wells != self.asked.wells {
+            self.reader.wells(case.clone(), step);
+        }
+        if vectors != self.asked.vectors
+            && let Some((_, asked)) = &vectors
+        {
+            self.reader.vectors(case.clone(), asked.clone());
+        }
+        (wells, vectors)
+    }
+}
+
+/// The wells to be read, if there are some: those of a step.
+fn wells(case: &Arc<Case>, step: usize) -> WellRequest {
+    let has_some = !case.about.wells.is_empty();
+    has_some.then(|| (Arc::as_ptr(case).addr(), step))
+}
+
+/// The summary vectors to be read, where their curves are shown.
+fn vectors(case: &Arc<Case>, state: &State) -> VectorsRequest {
+    let is_shown = state.curves.is_open && !case.about.summary.is_empty();
+    is_shown.then(|| {
+        let asked = VectorRequest {
+            names: state.curves.vectors.clone(),
+            well: state.well.clone(),
+        };
+        (Arc::as_ptr(case).addr(), asked)
+    })
 }

@@ -34,13 +34,6 @@ pub struct Sides {
     asked: Option<Pointed>,
 }
 
-impl Sides {
-    /// Where the volume of the first picture is, in points.
-    pub fn volume(&self) -> Option<Rect> {
-        self.rects[0]
-    }
-}
-
 /// The case and scene of a side.
 type Seen = Option<(Arc<Case>, Scene)>;
 
@@ -95,7 +88,9 @@ impl Window {
         if !self.settings.hides_panels {
             self.panels(ui, &case, &scene, &mut actions);
         }
-        self.curves(ctx, &case, &scene, &mut actions);
+        if let Some(command) = self.curves(ui, &case, &scene, &mut actions) {
+            self.perform(ctx, command);
+        }
         let touched = self.pictures(ui, ctx, &case, &scene);
         actions.extend(touched.camera.map(Action::Camera));
         actions.extend(touched.actions);
