@@ -243,7 +243,7 @@ pub(crate) fn write_heads<W: Write>(
     out.doub("DOUBHEAD", &[days])
 }
 
-/// Writes arrays of one value per active cell, each made only when its turn comes.
+/// Writes arrays of one value per active cell, or per cell as PORV has, each made only when its turn comes.
 pub(crate) fn write_arrays<W: Write, N: AsRef<str>>(
     out: &mut RecordWriter<W>,
     head: &Head,
@@ -251,7 +251,8 @@ pub(crate) fn write_arrays<W: Write, N: AsRef<str>>(
 ) -> io::Result<()> {
     for (name, values) in arrays {
         let name = name.as_ref();
-        if usize::try_from(head.active) != Ok(values.len()) {
+        let cells = head.dims.iter().map(|n| i64::from(*n)).product();
+        if ![i64::from(head.active), cells].contains(&(values.len() as i64)) {
             let (expected, found) = (head.active, values.len());
             let message = format!("{name}: expected {expected} values, found {found}");
             return Err(refused(message));

@@ -172,7 +172,7 @@ fn is_canceled(error: &(dyn std::error::Error + 'static)) -> bool {
 
 /// Makes the file.
 fn make(spec: &ExportSpec, path: &Path, progress: &dyn Fn(f64) -> bool) -> Fallible<()> {
-    let case = &spec.case;
+    let case = &spec.case.in_space(spec.scene.space);
     let (fps, sequence) = match spec.kind {
         ExportKind::Still => return still::still(spec, path, progress),
         ExportKind::Steps { fps } => {
