@@ -4,6 +4,7 @@
 #![allow(missing_docs, clippy::unwrap_used, clippy::panic, reason = "tests")]
 
 #[path = "bytes/properties.rs"]
+#[allow(dead_code, reason = "shared with other tests and with fuzzing")]
 mod properties;
 
 use std::path::{Path, PathBuf};

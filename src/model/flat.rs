@@ -112,7 +112,7 @@ impl Grid {
         for patch in self.patches() {
             let edges = match made.get(patch.parent) {
                 // Parents come first; the main grid is its own.
-                None => Some(patch.dims).map(main_edges),
+                None => Some(main_edges(patch.dims)),
                 Some(of_parent) => {
                     let dims = self.patches()[patch.parent].dims;
                     of_parent.as_ref().and_then(|e| edges_in(patch, dims, e))

@@ -238,56 +238,72 @@ impl CellArrays {
         operation: &Operation,
         warnings: &mut Warnings,
     ) -> Result<(), &'static str> {
-        let Operation { place, change, .. } = operation;
+        let mut read = self.read(operation)?;
         let target = operation.target.as_str();
-        let is_factor = is_edit_factor(target, operation.section);
-        let (source, mut doubts) = match change.source() {
-            Some(name) => {
-                let at = self.place_of(name, is_edit_factor(name, operation.section));
-                let at = at.or_else(|| self.place_of(name, false));
-                let source = at.and_then(|at| self.arrays.get(at));
-                let source = source.ok_or(": the array that it reads is not in the deck")?;
-                (source.values.clone(), source.doubts.clone())
-            }
-            None => (Vec::new(), Vec::new()),
-        };
-        let is_known = is_factor
+        let is_known = is_edit_factor(target, operation.section)
             || target == "PORV"
             || default_value(target).is_some()
             || self.place_of(target, false).is_some();
-        if !change.is_absolute() && !is_known {
+        if !operation.change.is_absolute() && !is_known {
             return Err(NOT_GIVEN);
         }
-        let (cells, is_whole) = match &operation.cells {
+        let dims = self.dims;
+        match &operation.cells {
             Cells::Box(cells) => {
-                let is_whole = cells.is_whole(self.dims);
-                let ranges = cells.ranges(self.dims);
+                let ranges = cells.ranges(dims);
                 let ranges = ranges.ok_or(": its box is outside the grid")?;
-                let cells: Box<dyn Iterator<Item = usize>> = Box::new(cells_of(ranges, self.dims));
-                (cells, is_whole)
+                read.is_whole = cells.is_whole(dims);
+                self.set(operation, cells_of(ranges, dims), &read, warnings)
             }
             Cells::Region(array, number) => {
-                let (cells, region) = self.region(array.as_deref(), *number)?;
-                doubts.extend(region);
-                let cells: Box<dyn Iterator<Item = usize>> = Box::new(cells.into_iter());
-                (cells, false)
+                let (cells, doubts) = self.region(array.as_deref(), *number)?;
+                read.doubts.extend(doubts);
+                self.set(operation, cells.into_iter(), &read, warnings)
             }
-        };
-        if target == "PORV" && !change.is_absolute() {
-            return self.change_volumes(operation, cells, &source);
         }
+    }
+
+    /// The array that a record reads, which is empty where it reads none.
+    fn read(&self, operation: &Operation) -> Result<Read, &'static str> {
+        let Some(name) = operation.change.source() else {
+            return Ok(Read::default());
+        };
+        let at = self.place_of(name, is_edit_factor(name, operation.section));
+        let at = at.or_else(|| self.place_of(name, false));
+        let array = at.and_then(|at| self.arrays.get(at));
+        let array = array.ok_or(": the array that it reads is not in the deck")?;
+        Ok(Read {
+            values: array.values.clone(),
+            doubts: array.doubts.clone(),
+            is_whole: false,
+        })
+    }
+
+    /// Changes the values of cells.
+    fn set(
+        &mut self,
+        operation: &Operation,
+        cells: impl Iterator<Item = usize>,
+        read: &Read,
+        warnings: &mut Warnings,
+    ) -> Result<(), &'static str> {
+        let Operation { place, change, .. } = operation;
+        let target = operation.target.as_str();
+        let is_factor = is_edit_factor(target, operation.section);
         let array = self.find_or_begin(target, is_factor, place);
-        if is_whole && change.is_absolute() {
+        if read.is_whole && change.is_absolute() {
             array.doubts.clear();
         }
-        for doubt in doubts {
-            array.add_doubt(&doubt);
+        for doubt in &read.doubts {
+            array.add_doubt(doubt);
+        }
+        if target == "PORV" && !change.is_absolute() {
+            return self.change_volumes(operation, cells, read);
         }
         let mut undefined = 0_usize;
         for cell in cells {
-            let read = source.get(cell).copied().unwrap_or(f64::NAN);
-            let value = change.apply(array.values[cell], read);
-            undefined += usize::from(value.is_nan() && !read.is_nan());
+            let value = change.apply(array.values[cell], read.value(cell));
+            undefined += usize::from(value.is_nan() && !read.value(cell).is_nan());
             array.values[cell] = value;
         }
         if undefined > 0 {
@@ -327,7 +343,7 @@ impl CellArrays {
         &mut self,
         operation: &Operation,
         cells: impl Iterator<Item = usize>,
-        source: &[f64],
+        read: &Read,
     ) -> Result<(), &'static str> {
         let Operation { place, change, .. } = operation;
         let given = self.find_or_begin("PORV", false, place);
@@ -337,8 +353,7 @@ impl CellArrays {
             if value.is_nan() {
                 computed.push(cell);
             } else {
-                let read = source.get(cell).copied().unwrap_or(f64::NAN);
-                *value = change.apply(*value, read);
+                *value = change.apply(*value, read.value(cell));
             }
         }
         let factor = match change {
@@ -362,6 +377,21 @@ impl CellArrays {
         {
             array.add_doubt(&place.keyword);
         }
+    }
+}
+
+/// What a record reads beside the values that it changes.
+#[derive(Default)]
+struct Read {
+    values: Vec<f64>,
+    doubts: Vec<String>,
+    /// True where the record is for all cells.
+    is_whole: bool,
+}
+
+impl Read {
+    fn value(&self, cell: usize) -> f64 {
+        self.values.get(cell).copied().unwrap_or(f64::NAN)
     }
 }
 

@@ -121,29 +121,115 @@ fn written(write: impl FnOnce(&mut RecordWriter<Vec<u8>>)) -> Vec<u8> {
     out.finish().unwrap()
 }
 
-fn of_decks(all: &mut Sentences) {
-    all.deck("an empty deck", "");
-    all.deck("a deck of properties", "PORO\n 0.5 /\n");
-    all.deck(
+/// Decks that are wrong as a whole.
+const DECKS: &[(&str, &str)] = &[
+    ("an empty deck", ""),
+    ("a deck of properties", "PORO\n 0.5 /\n"),
+    (
         "block-centered without DY",
         "DIMENS\n 1 1 1 /\nDX\n 1 /\nDZ\n 1 /\nTOPS\n 1 /\n",
-    );
-    all.deck(
+    ),
+    (
         "block-centered without a size",
         "DIMENS\n 2 1 1 /\nDX\n 1 1* /\nDY\n 2*1 /\nDZ\n 2*1 /\nTOPS\n 2*1 /\n",
-    );
-    all.deck(
+    ),
+    (
         "block-centered without a top",
         "DIMENS\n 2 1 1 /\nDX\n 2*1 /\nDY\n 2*1 /\nDZ\n 2*1 /\nTOPS\n 1 1* /\n",
-    );
-    all.deck(
+    ),
+    (
         "block-centered with uneven layers",
         "DIMENS\n 1 1 2 /\nDX\n 1 2 /\nDY\n 2*1 /\nDZ\n 2*1 /\nTOPS\n 1 /\n",
-    );
-    all.deck(
+    ),
+    (
         "vectors of another length",
         "DIMENS\n 1 1 1 /\nDXV\n 2*1 /\nDYV\n 1 /\nDZV\n 1 /\nTOPS\n 1 /\n",
-    );
+    ),
+];
+
+/// A part of the deck of one cell, and what stands there instead.
+const CHANGES: &[(&str, &str, &str)] = &[
+    ("two dimensions", "1 1 1 1 F", "1 1"),
+    ("no cells", "1 1 1 1 F", "1 0 1 1 F"),
+    ("several coordinate systems", "1 1 1 1 F", "1 1 1 2 F"),
+    (
+        "more cells than there can be",
+        "1 1 1 1 F",
+        "99999 99999 99999",
+    ),
+    (
+        "more cells than the text describes",
+        "1 1 1 1 F",
+        "1290 1290 1290",
+    ),
+    ("too few depths", "4*0 4*1", "4*0 3*1"),
+    ("a depth that is no number", "4*0 4*1", "4*0 4*1x"),
+    ("an undefined depth", "4*0 4*1", "7*0 nan"),
+    ("a depth left to its default", "4*0 4*1", "4*0 4*"),
+    ("an impossible repeat count", "4*0 4*1", "0*1"),
+    ("a missing slash", "1 1 1 /\nZCORN", "1 1 1\nZCORN"),
+];
+
+/// What stands behind the deck of one cell.
+const BEHIND_A_CELL: &[&str] = &[
+    "PORO\n 2*0.5 /\n",
+    "PORO\n 0.x /\n",
+    "PORO\n 0.5\n",
+    "PORO\n 0.5 /\nPORO\n 0.6 /\n",
+    "ACTNUM\n 0.5 /\n",
+    "ACTNUM\n 2*1 /\n",
+    "MAPAXES\n 1 2 3 /\n",
+    "MAPAXES\n 1 2 3 4 5 z /\n",
+    "MAPUNITS\n 'METRES /\n",
+    "DIMENS\n 2 2 2 /\n",
+    "MINPV\n small /\n",
+    "BOX\n 1 0 1 1 1 1 /\n",
+    "BOX\n 1 2 1 1 1 1 /\nPORO\n 0.5 /\nENDBOX\n",
+    "FAULTS\n 'F' 1 1 1 1 1 1 'U' /\n/\n",
+    "FAULTS\n 'F' 1 1 1 1 1 1 /\n/\n",
+    "FAULTS\n 'F' 2 1 1 1 1 1 'X' /\n/\n",
+    "FAULTS\n 'F' 1 2 1 1 1 1 'X' /\n/\n",
+    "FAULTS\n 'F' 1001*1 /\n/\n",
+    "MULTFLT\n 'F' much /\n/\n",
+    "ADDZCORN\n 5 1 2 1 1 1 1 /\n/\n",
+    "ADDZCORN\n 5 1 1 1 1 1 1 1 1 /\n/\n",
+    "EQLZCORN\n 5 /\n/\n",
+    "ADDZCORN\n 1e308 /\n 1e308 /\n/\n",
+    "EQUALS\n PORO 0.5 1 2 1 1 1 1 /\n/\n",
+    "EQUALS\n PORO half /\n/\n",
+    "EQUALS\n PORO /\n/\n",
+    "MULTIPLY\n TRANX 0.5 /\n/\n",
+    "COPY\n PERMX PERMY /\n/\n",
+    "COPYBOX\n PORO 1 1 /\n/\n",
+    "PORO\n 0.5 /\nEQUALREG\n PORO 0.3 1 M /\n/\n",
+    "PORO\n 0.5 /\nEQUALREG\n PORO 0.3 one /\n/\n",
+    "PORO\n 0.5 /\nEQUALREG\n PORO 0.3 /\n/\n",
+    "PORO\n 0.5 /\nEQUALREG\n PORO 0.3 1 Q /\n/\n",
+    "PORO\n 0.5 /\nMULTNUM\n 1 /\nMULTIREG\n PORO 2 7 M /\n/\n",
+    "PORO\n 0.5 /\nOPERATE\n PORO 6* CUBE PORO /\n/\n",
+    "PORO\n 0 /\nOPERATE\n PORO 6* INV PORO /\n/\n",
+    "EDIT\nADD\n PORV 1 /\n/\n",
+    "CARFIN\n 'L' 6*1 2 2 2 /\nENDFIN\n",
+    "INCLUDE\n 'gone.inc' /\n",
+    "INCLUDE\n /\n",
+    "INCLUDE\n 'CASE.DATA' /\n",
+    "IMPORT\n 'gone.bin' /\n",
+    "GDFILE\n 'gone.egrid' /\n",
+    "SKIP\nPORO\n",
+    "NOECHO\n12 abc\n",
+    "words at the end",
+];
+
+fn of_decks(all: &mut Sentences) {
+    for (title, text) in DECKS {
+        all.deck(title, text);
+    }
+    for (title, from, to) in CHANGES {
+        all.changed(title, from, to);
+    }
+    for text in BEHIND_A_CELL {
+        all.cell(text);
+    }
     let radial = "RUNSPEC\nRADIAL\nDIMENS\n 1 1 1 /\nGRID\nDTHETAV\n 360 /\nDZ\n 1 /\nTOPS\n 1 /\n";
     all.deck("radial without radii", radial);
     all.deck(
@@ -158,79 +244,13 @@ fn of_decks(all: &mut Sentences) {
         "dual porosity of odd layers",
         &format!("RUNSPEC\nDUALPORO\nGRID\n{CELL}"),
     );
-    all.changed("two dimensions", "1 1 1 1 F", "1 1");
-    all.changed("no cells", "1 1 1 1 F", "1 0 1 1 F");
-    all.changed("several coordinate systems", "1 1 1 1 F", "1 1 1 2 F");
-    all.changed(
-        "more cells than there can be",
-        "1 1 1 1 F",
-        "99999 99999 99999",
-    );
-    all.changed(
-        "more cells than the text describes",
-        "1 1 1 1 F",
-        "1290 1290 1290",
-    );
-    all.changed("too few depths", "4*0 4*1", "4*0 3*1");
-    all.changed("a depth that is no number", "4*0 4*1", "4*0 4*1x");
-    all.changed("an undefined depth", "4*0 4*1", "7*0 nan");
-    all.changed("a depth left to its default", "4*0 4*1", "4*0 4*");
-    all.changed("an impossible repeat count", "4*0 4*1", "0*1");
-    all.changed("a missing slash", "1 1 1 /\nZCORN", "1 1 1\nZCORN");
     all.deck(
         "depths that are cut off",
         CELL.trim_end().trim_end_matches('/'),
     );
-    for text in [
-        "PORO\n 2*0.5 /\n",
-        "PORO\n 0.x /\n",
-        "PORO\n 0.5\n",
-        "PORO\n 0.5 /\nPORO\n 0.6 /\n",
-        "ACTNUM\n 0.5 /\n",
-        "ACTNUM\n 2*1 /\n",
-        "MAPAXES\n 1 2 3 /\n",
-        "MAPAXES\n 1 2 3 4 5 z /\n",
-        "MAPUNITS\n 'METRES /\n",
-        "DIMENS\n 2 2 2 /\n",
-        "MINPV\n small /\n",
-        "BOX\n 1 0 1 1 1 1 /\n",
-        "BOX\n 1 2 1 1 1 1 /\nPORO\n 0.5 /\nENDBOX\n",
-        "FAULTS\n 'F' 1 1 1 1 1 1 'U' /\n/\n",
-        "FAULTS\n 'F' 1 1 1 1 1 1 /\n/\n",
-        "FAULTS\n 'F' 2 1 1 1 1 1 'X' /\n/\n",
-        "FAULTS\n 'F' 1 2 1 1 1 1 'X' /\n/\n",
-        "FAULTS\n 'F' 1001*1 /\n/\n",
-        "MULTFLT\n 'F' much /\n/\n",
-        "ADDZCORN\n 5 1 2 1 1 1 1 /\n/\n",
-        "ADDZCORN\n 5 1 1 1 1 1 1 1 1 /\n/\n",
-        "EQLZCORN\n 5 /\n/\n",
-        "ADDZCORN\n 1e308 /\n 1e308 /\n/\n",
-        "EQUALS\n PORO 0.5 1 2 1 1 1 1 /\n/\n",
-        "EQUALS\n PORO half /\n/\n",
-        "EQUALS\n PORO /\n/\n",
-        "MULTIPLY\n TRANX 0.5 /\n/\n",
-        "COPY\n PERMX PERMY /\n/\n",
-        "COPYBOX\n PORO 1 1 /\n/\n",
-        "PORO\n 0.5 /\nEQUALREG\n PORO 0.3 1 M /\n/\n",
-        "PORO\n 0.5 /\nEQUALREG\n PORO 0.3 one /\n/\n",
-        "PORO\n 0.5 /\nEQUALREG\n PORO 0.3 /\n/\n",
-        "PORO\n 0.5 /\nEQUALREG\n PORO 0.3 1 Q /\n/\n",
-        "PORO\n 0.5 /\nMULTNUM\n 1 /\nMULTIREG\n PORO 2 7 M /\n/\n",
-        "PORO\n 0.5 /\nOPERATE\n PORO 6* CUBE PORO /\n/\n",
-        "PORO\n 0 /\nOPERATE\n PORO 6* INV PORO /\n/\n",
-        "EDIT\nADD\n PORV 1 /\n/\n",
-        "CARFIN\n 'L' 6*1 2 2 2 /\nENDFIN\n",
-        "INCLUDE\n 'gone.inc' /\n",
-        "INCLUDE\n /\n",
-        "INCLUDE\n 'CASE.DATA' /\n",
-        "IMPORT\n 'gone.bin' /\n",
-        "GDFILE\n 'gone.egrid' /\n",
-        "SKIP\nPORO\n",
-        "NOECHO\n12 abc\n",
-        "words at the end",
-    ] {
-        all.cell(text);
-    }
+}
+
+fn of_files_of_decks(all: &mut Sentences) {
     let deck = |text: &str| ("CASE.DATA", text.as_bytes().to_vec());
     all.decks("a binary file", &[("CASE.DATA", fixtures::egrid())]);
     all.decks(
@@ -433,6 +453,9 @@ fn of_grids(all: &mut Sentences) {
         out.inte("NNC1", &[1]).unwrap();
         out.inte("NNC2", &[9]).unwrap();
     });
+}
+
+fn of_legacy_grids(all: &mut Sentences) {
     let legacy = |out: &mut RecordWriter<Vec<u8>>, cell: [i32; 3], corners: usize| {
         out.inte("COORDS", &[cell[0], cell[1], cell[2], 1, 1])
             .unwrap();
@@ -514,6 +537,9 @@ fn of_results(all: &mut Sentences) {
     let mut warnings = Warnings::default();
     let read = Summary::extended_from_bytes(("CASE.ESMRY", fixtures::init()), &mut warnings);
     all.add("no ESMRY", &warnings, read);
+}
+
+fn of_roff(all: &mut Sentences) {
     all.roff("ROFF: another file", "roff-asc", "roff");
     all.roff("ROFF: no tag", "tag filedata", "filedata");
     all.roff("ROFF: an unknown type", "int nX 1", "long nX 1");
@@ -597,9 +623,12 @@ fn of_cases(all: &mut Sentences) {
 fn people_are_told_the_same_word_for_word() {
     let mut all = Sentences::default();
     of_decks(&mut all);
+    of_files_of_decks(&mut all);
     of_records(&mut all);
     of_grids(&mut all);
+    of_legacy_grids(&mut all);
     of_results(&mut all);
+    of_roff(&mut all);
     of_cases(&mut all);
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/bytes/sentences.txt");
     if std::env::var_os("UPDATE_SENTENCES").is_some() {

@@ -340,7 +340,10 @@ fn err_what_is_damaged() {
     assert_eq!(kind, ErrorKind::BadValue);
     let (kind, text) = said("zvalues", "zvaluos");
     assert_eq!(kind, ErrorKind::MissingKeyword);
-    assert_eq!(text, "A.ROFF: zvalues: is missing");
+    assert_eq!(
+        text,
+        "A.ROFF: zvalues: is missing; a grid needs dimensions, cornerLines and zvalues"
+    );
     for form in FORMS {
         let whole = write(form, 8, depth).1;
         for length in (1..whole.len() - 20).step_by(7) {

@@ -2,16 +2,13 @@
 
 use std::collections::HashMap;
 
-use glam::DVec2;
 use strataray_parsers::ParseError;
 use strataray_parsers::cells::CellArrays;
 use strataray_parsers::egrid::{GridConnections, LocalGrid as FileGrid};
 
+use super::radial;
 use super::slots::{CellFlags, CellSlots, ResultCells};
-use crate::model::{CellIndex, Dims, Grid, GridInput, Ijk, LocalGrid, Pillar};
-
-/// Degrees that a cell of a radial grid spans at most: its faces are flat.
-const WIDEST_SECTOR: f32 = 30.0;
+use crate::model::{CellIndex, Dims, Grid, GridInput, Ijk, LocalGrid};
 
 /// A local grid, and where in files its values stand.
 pub struct Local {
@@ -107,18 +104,14 @@ fn local(
         ));
         file.coord.truncate(6 * dims.pillars());
     }
-    let built = |dims, coord: &[f32], zcorn: &[f32], actnum: Option<&[i32]>| {
-        let map_axes = None;
-        let input = GridInput {
-            dims,
-            coord,
-            zcorn,
-            actnum,
-            map_axes,
-        };
-        Grid::new(&input).map_err(|e| e.to_string())
-    };
-    let mut grid = built(dims, &file.coord, &file.zcorn, file.actnum.as_deref())?;
+    let mut grid = Grid::new(&GridInput {
+        dims,
+        coord: &file.coord,
+        zcorn: &file.zcorn,
+        actnum: file.actnum.as_deref(),
+        map_axes: None,
+    })
+    .map_err(|e| e.to_string())?;
     let results = ResultCells {
         active: init
             .and_then(|init| init.head().ok())
@@ -127,17 +120,23 @@ fn local(
         init,
     };
     let slots = CellSlots::new(&mut grid, &CellFlags::default(), &results, notes);
+    let mut grid = LocalGrid {
+        name: file.name.clone(),
+        parent: 0,
+        grid,
+        split: 1,
+        hosts,
+    };
     if file.is_radial {
-        return radial(&file, (grid, hosts, slots), parent, main, built, notes);
+        grid = radial::straightened(&file, grid, parent, main)?;
+        notes.push(format!(
+            "local grid {} is radial: it is shown with flat faces, and its outer rings reach the sides of the cells that \
+             it refines",
+            file.name
+        ));
     }
     Ok(Local {
-        grid: LocalGrid {
-            name: file.name,
-            parent: 0,
-            grid,
-            split: 1,
-            hosts,
-        },
+        grid,
         slots,
         number: file.number,
     })
@@ -180,150 +179,6 @@ fn hosts(file: &FileGrid, parent: Dims) -> Result<Vec<CellIndex>, String> {
     hosts.ok_or_else(outside)
 }
 
-/// A radial grid as hexahedra around the middle of its hosts, whose sides its outermost ring reaches: files give rings
-/// that are as large, not of their shape. J runs around, and each sector is as many cells as keep its flat faces near
-/// to the circle.
-fn radial(
-    file: &FileGrid,
-    (grid, hosts, slots): (Grid, Vec<CellIndex>, CellSlots),
-    parent: &Grid,
-    main: &Grid,
-    built: impl Fn(Dims, &[f32], &[f32], Option<&[i32]>) -> Result<Grid, String>,
-    notes: &mut Vec<String>,
-) -> Result<Local, String> {
-    let dims = grid.dims();
-    let Dims { ni, nj, nk } = dims;
-    let angle = |row: usize| file.coord[6 * (ni + 1) * row + 1];
-    let widest = (0..nj).map(|j| (angle(j + 1) - angle(j)).abs());
-    let split = (widest.fold(0.0, f32::max) / WIDEST_SECTOR).ceil();
-    if !(0.0..=360.0 / WIDEST_SECTOR).contains(&split) {
-        return Err("angles of COORD are no sectors of a circle".into());
-    }
-    let split = (split as usize).max(1);
-    let whole = Dims {
-        nj: nj * split,
-        ..dims
-    };
-    let outline = Outline::of(parent, &hosts);
-    let radius = |i: usize, row: usize, end: usize| file.coord[6 * (i + (ni + 1) * row) + end];
-    // Faces are told from their backs by the handedness of the whole model.
-    let turn = if main.signed_bulk_volume() < 0.0 {
-        -1.0
-    } else {
-        1.0
-    };
-    // Between the angles of a row of pillars and the next: what the two have, mixed.
-    let mixed = |row: usize, of: &dyn Fn(usize) -> f32| {
-        let (before, part) = (row / split, (row % split) as f32 / split as f32);
-        let next = if row.is_multiple_of(split) {
-            before
-        } else {
-            before + 1
-        };
-        of(before) + part * (of(next) - of(before))
-    };
-    let mut coord = Vec::with_capacity(6 * whole.pillars());
-    for row in 0..=whole.nj {
-        for i in 0..=ni {
-            for end in [0, 3] {
-                let at = |n: usize| move |row: usize| 6 * (i + (ni + 1) * row) + end + n;
-                let value = |n: usize| mixed(row, &|row| file.coord[at(n)(row)]);
-                let outermost = mixed(row, &|row| radius(ni, row, end));
-                let way = DVec2::from_angle(f64::from(value(1)).to_radians());
-                let way = DVec2::new(way.x, turn * way.y);
-                let depth = f64::from(value(2));
-                let place = outline.place(way, f64::from(value(0)), f64::from(outermost), depth);
-                coord.extend([place.x as f32, place.y as f32, value(2)]);
-            }
-        }
-    }
-    let depth = |plane: usize, j: usize, dj: usize, x: usize| {
-        file.zcorn[x + 2 * ni * (2 * j + dj + 2 * nj * plane)]
-    };
-    let mut zcorn = Vec::with_capacity(8 * whole.cells());
-    for plane in 0..2 * nk {
-        for y in 0..2 * whole.nj {
-            let (j, part) = (y / 2 / split, (y / 2 % split + y % 2) as f32 / split as f32);
-            zcorn.extend((0..2 * ni).map(|x| {
-                let [near, far] = [0, 1].map(|dj| depth(plane, j, dj, x));
-                near + part * (far - near)
-            }));
-        }
-    }
-    let of_file = |cell: u32| {
-        let own = whole.ijk(CellIndex(cell));
-        dims.cell(Ijk {
-            j: own.j / split,
-            ..own
-        })
-    };
-    let cells = || (0..whole.cells() as u32).map(of_file);
-    let actnum: Vec<i32> = cells()
-        .map(|cell| i32::from(grid.active_index(cell).is_some()))
-        .collect();
-    let shown = built(whole, &coord, &zcorn, Some(&actnum))?;
-    notes.push(format!(
-        "local grid {} is radial: it is shown with flat faces, and its outer rings reach the sides of the cells that it \
-         refines",
-        file.name
-    ));
-    Ok(Local {
-        grid: LocalGrid {
-            name: file.name.clone(),
-            parent: 0,
-            grid: shown,
-            split,
-            hosts: cells().map(|cell| hosts[cell.0 as usize]).collect(),
-        },
-        slots,
-        number: file.number,
-    })
-}
-
-/// The sides of the cells that a radial grid refines, by the pillars at their corners.
-struct Outline([Pillar; 4]);
-
-impl Outline {
-    fn of(grid: &Grid, hosts: &[CellIndex]) -> Self {
-        let cells = hosts.iter().map(|cell| grid.dims().ijk(*cell));
-        let start = [[usize::MAX; 2], [0; 2]];
-        let [low, high] = cells.fold(start, |[a, b], c| {
-            [
-                [a[0].min(c.i), a[1].min(c.j)],
-                [b[0].max(c.i), b[1].max(c.j)],
-            ]
-        });
-        // One around after the other.
-        Self([
-            *grid.pillar(low[0], low[1], 0),
-            *grid.pillar(high[0], low[1], 1),
-            *grid.pillar(high[0], high[1], 3),
-            *grid.pillar(low[0], high[1], 2),
-        ])
-    }
-
-    /// The place in plan of a point that lies in a direction (of length 1) from the middle, at a radius, where the
-    /// outermost radius is `outermost`: rings near the middle stay circles.
-    fn place(&self, way: DVec2, radius: f64, outermost: f64, depth: f64) -> DVec2 {
-        let corners = self.0.map(|pillar| pillar.at(depth).truncate());
-        let middle = corners.iter().sum::<DVec2>() / 4.0;
-        let reach = (0..4).filter_map(|n| {
-            let (from, to) = (corners[n] - middle, corners[(n + 1) % 4] - middle);
-            // The middle plus t times the way is from plus s times the side.
-            let side = to - from;
-            let across = way.perp_dot(side);
-            let (t, s) = (from.perp_dot(side) / across, from.perp_dot(way) / across);
-            (t > 0.0 && (-1e-9..=1.0 + 1e-9).contains(&s)).then_some(t)
-        });
-        let reach = reach.fold(f64::INFINITY, f64::min);
-        let factor = match reach.is_finite() && outermost > 0.0 {
-            true => 1.0 + (reach / outermost - 1.0) * (radius / outermost),
-            false => 1.0,
-        };
-        middle + radius * factor * way
-    }
-}
-
 /// Where the values of a lattice's cells stand.
 pub struct Places {
     locals: Vec<(String, CellSlots)>,
@@ -364,7 +219,7 @@ pub fn join(
     let pairs = connections.iter().flat_map(|list| {
         let [a, b] = list.grids;
         let pairs = list.cells.iter();
-        pairs.filter_map(move |pair| Some([(a, pair[0]), (b, pair[1])]))
+        pairs.map(move |pair| [(a, pair[0]), (b, pair[1])])
     });
     let pairs = pairs.filter_map(|[a, b]| Some([cell(a.0, a.1)?, cell(b.0, b.1)?]));
     let pairs: Vec<[Ijk; 2]> = pairs.collect();

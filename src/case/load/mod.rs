@@ -4,6 +4,7 @@ mod grids;
 mod local;
 mod pore_volume;
 mod properties;
+mod radial;
 mod roff;
 mod slots;
 mod source;

@@ -51,7 +51,7 @@ pub(super) struct Buffer {
 
 impl Buffer {
     /// Adds a mesh and gives its number.
-    pub fn add(&mut self, name: &str, mesh: Mesh) -> usize {
+    pub fn add(&mut self, name: &str, mesh: &Mesh) -> usize {
         let points = |all: &[Vec3]| -> Vec<u8> {
             let numbers = all.iter().flat_map(Vec3::to_array);
             numbers.flat_map(f32::to_le_bytes).collect()

@@ -62,7 +62,7 @@ pub(super) fn write(
 /// Adds a node below the root, unless it has nothing.
 fn add(nodes: &mut Vec<Value>, name: &str, mesh: Mesh, buffer: &mut Buffer) {
     if !mesh.is_empty() {
-        let mesh = buffer.add(name, mesh);
+        let mesh = buffer.add(name, &mesh);
         nodes.push(json!({"name": name, "mesh": mesh}));
     }
 }

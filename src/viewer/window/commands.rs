@@ -232,18 +232,7 @@ fn change(document: &mut Document, command: Command) -> Option<String> {
             let soft = LightingSpec::preset("soft").filter(|_| is_off);
             document.apply(Action::Lighting(soft.unwrap_or_default()));
         }
-        Command::Compare => {
-            let setup = &document.state.setup;
-            let next = match (&setup.comparison, &document.case) {
-                (None, Some(case)) => Some(Comparison::opening(case, &setup.scene)),
-                _ => None,
-            };
-            let told = next.is_some().then(|| {
-                "more steps, properties, cases and strategies are in the Compare panel".into()
-            });
-            document.apply(Action::Compare(next));
-            return told;
-        }
+        Command::Compare => return compare(document),
         Command::Curves => {
             let curves = &document.state.curves;
             document.apply(Action::Curves(CurvePlots {
@@ -259,6 +248,20 @@ fn change(document: &mut Document, command: Command) -> Option<String> {
         _ => {}
     }
     None
+}
+
+/// Opens a second picture, or closes it.
+fn compare(document: &mut Document) -> Option<String> {
+    let setup = &document.state.setup;
+    let next = match (&setup.comparison, &document.case) {
+        (None, Some(case)) => Some(Comparison::opening(case, &setup.scene)),
+        _ => None,
+    };
+    let told = next
+        .is_some()
+        .then(|| "more steps, properties, cases and strategies are in the Compare panel".into());
+    document.apply(Action::Compare(next));
+    told
 }
 
 /// Why there is no cell to step to along the line of sight.
