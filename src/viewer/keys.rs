@@ -74,6 +74,8 @@ pub enum Command {
     Film,
     /// Saves the values of the selected cells.
     SaveTable,
+    /// Writes the drawn cells, or their surfaces, for other programs.
+    ExportCells,
     /// A second picture, or none.
     Compare,
     /// Selects no cell.
@@ -103,7 +105,7 @@ const fn from(view: usize) -> Command {
 }
 
 /// Every shortcut, with what it says in the sheet.
-pub const SHORTCUTS: [(Modifiers, Key, Command, &str); 59] = [
+pub const SHORTCUTS: [(Modifiers, Key, Command, &str); 60] = [
     (CTRL, Key::O, Command::Open, "Open a case"),
     (
         CTRL_SHIFT,
@@ -216,6 +218,7 @@ pub const SHORTCUTS: [(Modifiers, Key, Command, &str); 59] = [
         Command::SaveTable,
         "Save the values of the selected cells",
     ),
+    (CTRL, Key::E, Command::ExportCells, "Export the drawn cells"),
     (NONE, Key::C, Command::Compare, "Compare two pictures"),
     (
         NONE,

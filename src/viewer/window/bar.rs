@@ -21,6 +21,7 @@ const MENUS: [(&str, &[Command]); 5] = [
             Command::Screenshot,
             Command::Film,
             Command::SaveTable,
+            Command::ExportCells,
             Command::CopyLine,
             Command::Close,
             Command::Reopen,

@@ -35,6 +35,7 @@ impl Window {
             Command::SaveScene => self.ask_file(ctx, Purpose::SaveScene),
             Command::LoadScene => self.ask_file(ctx, Purpose::LoadScene),
             Command::SaveTable => self.ask_file(ctx, Purpose::SaveTable),
+            Command::ExportCells => self.export_cells(ctx),
             Command::Screenshot => self.sheets.export = Some(false),
             Command::Film => self.sheets.export = Some(true),
             Command::CopyLine => self.copy_command(ctx),
