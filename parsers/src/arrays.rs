@@ -73,10 +73,16 @@ pub fn is_region(name: &str) -> bool {
 /// What a cell has where a deck gives an array only in part; `None` where nothing is agreed on.
 pub fn default_value(name: &str) -> Option<f64> {
     match name {
-        "ACTNUM" | "NTG" | "SATNUM" | "PVTNUM" | "EQLNUM" | "FIPNUM" | "ROCKNUM" => Some(1.0),
-        "MULTNUM" => None,
-        _ => name.starts_with("MULT").then_some(1.0),
+        "ACTNUM" | "NTG" | "SATNUM" | "PVTNUM" | "EQLNUM" | "FIPNUM" | "ROCKNUM" | "MULTNUM" => {
+            Some(1.0)
+        }
+        _ => is_multiplier(name).then_some(1.0),
     }
+}
+
+/// True of factors on transmissibilities and pore volumes.
+pub fn is_multiplier(name: &str) -> bool {
+    name.starts_with("MULT") && name != "MULTNUM"
 }
 
 #[cfg(test)]
@@ -104,9 +110,7 @@ mod tests {
             assert_eq!(is_region(name), expected, "{name}");
         }
         assert_eq!(default_value("MULTZ-"), Some(1.0));
-        assert_eq!(
-            (default_value("MULTNUM"), default_value("PORO")),
-            (None, None)
-        );
+        assert_eq!(default_value("PORO"), None);
+        assert!(is_multiplier("MULTPV") && !is_multiplier("MULTNUM"));
     }
 }

@@ -12,6 +12,8 @@ pub enum GridSource {
     Egrid(PathBuf),
     /// A text deck or grid file: corner-point or block-centered.
     Deck(PathBuf),
+    /// A ROFF file, binary or text.
+    Roff(PathBuf),
 }
 
 /// Where the time steps are.
@@ -58,10 +60,14 @@ pub struct CaseFiles {
     pub deck: Option<PathBuf>,
     /// Text files that were added by hand: properties, faults and what else goes on where the grid's text ends.
     pub added: Vec<PathBuf>,
+    /// ROFF files of properties: those beside a ROFF grid whose names begin with its own and `--`, and those added by hand.
+    pub roff: Vec<PathBuf>,
     /// Static properties.
     pub init: Option<PathBuf>,
     /// Time steps.
     pub restart: RestartSource,
+    /// Curves over time.
+    pub summary: Option<SummarySource>,
     /// Files that belong to the case and are not read, with the reason.
     pub not_read: Vec<(PathBuf, &'static str)>,
 }
@@ -75,6 +81,7 @@ enum Role {
     Separate(u32),
     Deck,
     Text,
+    Roff,
     /// Curves over time, which [`find_summary`] finds.
     Summary(SummaryPart),
     NotRead(&'static str),
@@ -107,7 +114,7 @@ fn role(path: &Path) -> Option<Role> {
         "UNSMRY" | "FUNSMRY" => Role::Summary(SummaryPart::Unified),
         "ESMRY" => Role::Summary(SummaryPart::Extended),
         "GRDECL" => Role::Text,
-        "ROFF" => Role::NotRead("a ROFF file is not opened as a case"),
+        "ROFF" | "ROFFBIN" | "ROFFASC" => Role::Roff,
         "EPC" => Role::NotRead("RESQML is not read"),
         // Text grids are called .grid too.
         "GRID" if form(path).is_none() => Role::Text,
@@ -133,16 +140,30 @@ fn rank(path: &Path) -> usize {
 
 /// The form of a file of arrays; `None` for other files.
 fn form(path: &Path) -> Option<Form> {
+    Form::of(&start(path)?)
+}
+
+/// The first bytes of a file.
+fn start(path: &Path) -> Option<Vec<u8>> {
     let mut start = Vec::new();
     let file = std::fs::File::open(path).ok()?;
     std::io::Read::read_to_end(&mut std::io::Read::take(file, 64), &mut start).ok()?;
-    Form::of(&start)
+    Some(start)
+}
+
+/// True for a file that begins as ROFF files do.
+fn is_roff(path: &Path) -> bool {
+    start(path).is_some_and(|start| {
+        let text = String::from_utf8_lossy(&start);
+        text.contains("roff-bin") || text.contains("roff-asc")
+    })
 }
 
 /// What the content of the file named by the user shows, where its extension says nothing sure.
 fn sniff(path: &Path) -> Role {
     match role(path) {
         None | Some(Role::Text) if form(path).is_some() => Role::Egrid,
+        None | Some(Role::Text) if is_roff(path) => Role::Roff,
         None => Role::Text,
         Some(role) => role,
     }
@@ -183,10 +204,15 @@ pub fn find(path: &Path) -> Result<CaseFiles, ParseError> {
     let grid = match named {
         Some(Role::Text) => Some(GridSource::Deck(path.to_owned())),
         Some(Role::Egrid) => Some(GridSource::Egrid(path.to_owned())),
+        Some(Role::Roff) => Some(GridSource::Roff(path.to_owned())),
         _ => first(Role::Egrid).map(GridSource::Egrid),
     };
     let deck = first(Role::Deck).or_else(|| first(Role::Text));
-    let Some(grid) = grid.or_else(|| deck.clone().map(GridSource::Deck)) else {
+    let roff = || first(Role::Roff).map(GridSource::Roff);
+    let Some(grid) = grid
+        .or_else(|| deck.clone().map(GridSource::Deck))
+        .or_else(roff)
+    else {
         return Err(no_grid(path, &stem, &files));
     };
     let deck = deck.filter(|_| matches!(grid, GridSource::Egrid(_)));
@@ -214,12 +240,17 @@ pub fn find(path: &Path) -> Result<CaseFiles, ParseError> {
         }
     };
     Ok(CaseFiles {
+        roff: match &grid {
+            GridSource::Roff(grid) => properties_beside(grid),
+            _ => Vec::new(),
+        },
         name: stem,
         grid,
         deck,
         added: Vec::new(),
         init: first(Role::Init),
         restart,
+        summary: summary_of(&files, named),
         not_read: files
             .iter()
             .filter_map(|(p, r)| Some((p.clone(), reason(r)?)))
@@ -227,7 +258,8 @@ pub fn find(path: &Path) -> Result<CaseFiles, ParseError> {
     })
 }
 
-/// As [`find`], with files added by hand to what is found: text beside the grid, an INIT or restart of another name.
+/// As [`find`], with files added by hand to what is found: text beside the grid, an INIT, restart or summary of another
+/// name.
 ///
 /// # Errors
 /// As [`find`]; and when an added file is not there or can be no part of a case.
@@ -242,6 +274,7 @@ pub fn find_with(path: &Path, with: &[PathBuf]) -> Result<CaseFiles, ParseError>
             |message: &str| ParseError::of(ErrorKind::Unsupported, added, At::File, "", message);
         match sniff(added) {
             Role::Deck | Role::Text => files.added.push(added.clone()),
+            Role::Roff => files.roff.push(added.clone()),
             Role::Init => files.init = Some(added.clone()),
             Role::Unified => files.restart = RestartSource::Unified(added.clone()),
             Role::Separate(report) => separate.push((report, added.clone())),
@@ -250,7 +283,7 @@ pub fn find_with(path: &Path, with: &[PathBuf]) -> Result<CaseFiles, ParseError>
                     "is a grid of its own and cannot be added to another one",
                 ));
             }
-            Role::Summary(_) => return Err(refuse("holds curves over time, which are not read")),
+            Role::Summary(_) => files.summary = Some(find_summary(added)?),
             Role::NotRead(why) => return Err(refuse(why)),
         }
     }
@@ -273,12 +306,22 @@ pub fn find_summary(path: &Path) -> Result<SummarySource, ParseError> {
     let path = only.as_deref().unwrap_or(path);
     let named = path.is_file().then(|| role(path)).flatten();
     let (stem, files) = family(path, named)?;
+    summary_of(&files, named).ok_or_else(|| {
+        let message = format!(
+            "this case has no summary: looked for {stem}.SMSPEC with {stem}.UNSMRY or {stem}.S0001, and {stem}.ESMRY"
+        );
+        not_found(path, message)
+    })
+}
+
+/// The summary among the files of a case; `named` is what the user named of them.
+fn summary_of(files: &[(PathBuf, Role)], named: Option<Role>) -> Option<SummarySource> {
     let first = |wanted: SummaryPart| {
         let file = files.iter().find(|(_, r)| *r == Role::Summary(wanted));
         file.map(|(p, _)| p.clone())
     };
     let mut separate: Vec<(u32, PathBuf)> = Vec::new();
-    for (file, role) in &files {
+    for (file, role) in files {
         if let Role::Summary(SummaryPart::Separate(report)) = role
             && !separate.iter().any(|s| s.0 == *report)
         {
@@ -292,23 +335,17 @@ pub fn find_summary(path: &Path) -> Result<SummarySource, ParseError> {
     };
     let extended = first(SummaryPart::Extended);
     if let (Some(file), true) = (&extended, is_named(|p| p == SummaryPart::Extended)) {
-        return Ok(SummarySource::Extended(file.clone()));
+        return Some(SummarySource::Extended(file.clone()));
     }
     let wants_separate = is_named(|p| matches!(p, SummaryPart::Separate(_)));
     let unified = first(SummaryPart::Unified).filter(|_| !wants_separate);
     match (first(SummaryPart::Spec), unified, extended) {
-        (Some(spec), Some(data), _) => Ok(SummarySource::Unified { spec, data }),
-        (Some(spec), None, _) if !separate.is_empty() => Ok(SummarySource::Separate {
+        (Some(spec), Some(data), _) => Some(SummarySource::Unified { spec, data }),
+        (Some(spec), None, _) if !separate.is_empty() => Some(SummarySource::Separate {
             spec,
             data: separate,
         }),
-        (_, _, Some(file)) => Ok(SummarySource::Extended(file)),
-        _ => {
-            let message = format!(
-                "this case has no summary: looked for {stem}.SMSPEC with {stem}.UNSMRY or {stem}.S0001, and {stem}.ESMRY"
-            );
-            Err(not_found(path, message))
-        }
+        (_, _, extended) => extended.map(SummarySource::Extended),
     }
 }
 
@@ -329,9 +366,11 @@ fn family(path: &Path, named: Option<Role>) -> Result<(String, Vec<(PathBuf, Rol
         Some(_) => path.file_stem(),
         None => path.file_name(),
     };
-    let stem = stem.and_then(|s| s.to_str()).unwrap_or_default().to_owned();
+    // A name that is not UTF-8 is compared and told by what of it can be read.
+    let stem = stem.map(|s| s.to_string_lossy().into_owned());
+    let stem = stem.unwrap_or_default();
     let mut files = siblings(path, &stem)?;
-    let exact = |p: &Path| p.file_stem().and_then(|s| s.to_str()) == Some(&stem);
+    let exact = |p: &Path| p.file_stem().is_some_and(|s| s.to_string_lossy() == stem);
     files.sort_by_key(|(p, _)| {
         let is_other = p.file_name() != path.file_name();
         (is_other, !exact(p), rank(p), p.clone())
@@ -355,11 +394,30 @@ fn siblings(path: &Path, stem: &str) -> Result<Vec<(PathBuf, Role)>, ParseError>
         }
     };
     let same_stem = |p: &Path| {
-        let this = p.file_stem().and_then(|s| s.to_str());
+        let this = p.file_stem().map(|s| s.to_string_lossy());
         this.is_some_and(|s| s.eq_ignore_ascii_case(stem))
     };
     let files = list.flatten().map(shown).filter(|p| same_stem(p));
     Ok(files.filter_map(|p| role(&p).map(|r| (p, r))).collect())
+}
+
+/// ROFF files of properties beside a ROFF grid: `geogrid--poro.roff` beside `geogrid.roff`.
+fn properties_beside(grid: &Path) -> Vec<PathBuf> {
+    let Some(stem) = grid.file_stem().and_then(|s| s.to_str()) else {
+        return Vec::new();
+    };
+    let start = format!("{stem}--");
+    let folder = grid.parent().filter(|p| !p.as_os_str().is_empty());
+    let files = std::fs::read_dir(folder.unwrap_or_else(|| Path::new(".")));
+    let files = files.into_iter().flatten().flatten();
+    let is_property = |name: &std::ffi::OsString| {
+        let name = name.to_str().unwrap_or_default();
+        name.starts_with(&start) && role(Path::new(name)) == Some(Role::Roff)
+    };
+    let names = files.map(|entry| entry.file_name()).filter(is_property);
+    let mut found: Vec<PathBuf> = names.map(|name| grid.with_file_name(name)).collect();
+    found.sort();
+    found
 }
 
 fn no_grid(path: &Path, stem: &str, files: &[(PathBuf, Role)]) -> ParseError {
@@ -377,7 +435,7 @@ fn no_grid(path: &Path, stem: &str, files: &[(PathBuf, Role)]) -> ParseError {
         "there is no such case"
     };
     let message = format!(
-        "{found}: looked for {stem}.EGRID, {stem}.DATA and {stem}.GRDECL{}",
+        "{found}: looked for {stem}.EGRID, {stem}.DATA, {stem}.GRDECL and {stem}.ROFF{}",
         reason.unwrap_or_default()
     );
     ParseError::of(kind, path, At::File, "", message)

@@ -3,7 +3,8 @@
 use std::sync::Arc;
 
 use super::{
-    About, Case, CaseError, FieldCache, Kind, OverSteps, Property, Source, Step, Well, WellsOfSteps,
+    About, Case, CaseError, FieldCache, Kind, OverSteps, Property, Source, Step, Vectors, Well,
+    WellsOfSteps,
 };
 use crate::model::CellField;
 
@@ -195,16 +196,17 @@ pub fn minus(
         connections: a.connections.clone(),
         steps: dated(a, b, &steps),
         properties: a.properties.iter().cloned().chain([property]).collect(),
-        source: Box::new(Subtracted {
+        source: Arc::new(Subtracted {
             of: [a.clone(), b.clone()],
             names: [now, base].map(str::to_owned),
             own: name.to_owned(),
             places: places(a, b),
             steps,
         }),
-        cache: FieldCache::default(),
-        over_steps: OverSteps::default(),
-        wells: WellsOfSteps::default(),
+        cache: Arc::new(FieldCache::default()),
+        over_steps: Arc::new(OverSteps::default()),
+        wells: Arc::new(WellsOfSteps::default()),
+        simbox: a.simbox.of_same_grid(),
         minus: Some(Minus {
             name: name.to_owned(),
             now: now.to_owned(),
@@ -267,6 +269,10 @@ struct Subtracted {
 impl Source for Subtracted {
     fn wells(&self, step: usize) -> Result<Vec<Well>, CaseError> {
         Ok(self.of[0].wells(step)?.to_vec())
+    }
+
+    fn vectors(&self) -> Result<Option<Arc<Vectors>>, CaseError> {
+        self.of[0].vectors()
     }
 
     fn values(&self, name: &str, step: usize) -> Result<Option<Vec<f32>>, CaseError> {

@@ -1,5 +1,7 @@
 //! What is exported: cells of a case, properties, steps.
 
+use std::sync::Arc;
+
 use glam::{DAffine3, DMat3};
 use rayon::prelude::*;
 
@@ -18,7 +20,11 @@ pub struct Contents<'a> {
     pub properties: Vec<Exported>,
     /// Steps of those that change with time.
     pub steps: Vec<usize>,
-    /// By active index of the case's grid: true for cells that are written.
+    /// The grid: the case's, or its main grid alone.
+    grid: Arc<Grid>,
+    /// By active index of the grid the one of the case's, where it is another grid.
+    places: Option<Vec<usize>>,
+    /// By active index of the grid: true for cells that are written.
     drawn: Vec<bool>,
 }
 
@@ -34,7 +40,7 @@ pub struct Exported {
 }
 
 impl<'a> Contents<'a> {
-    /// The cells that a view shows, or all active ones, and properties by name at some steps.
+    /// The cells that a view shows, or all active ones that no local grid refines, and properties by name at some steps.
     ///
     /// # Errors
     /// When no cell is written, or the case does not have a property, or not at any of the steps.
@@ -46,7 +52,10 @@ impl<'a> Contents<'a> {
     ) -> Result<Self, ExportError> {
         let drawn = match view {
             Some(view) => view.seen_cells(&case.grid),
-            None => vec![true; case.grid.active_cells().len()],
+            None => {
+                let all = || vec![true; case.grid.active_cells().len()];
+                case.grid.finest().unwrap_or_else(all)
+            }
         };
         if !drawn.contains(&true) {
             return Err(ExportError::Empty);
@@ -63,16 +72,43 @@ impl<'a> Contents<'a> {
             view,
             properties,
             steps: steps.to_vec(),
+            grid: case.grid.clone(),
+            places: None,
+            drawn,
+        })
+    }
+
+    /// The same of the main grid alone, for files that hold one grid: without a view all of its cells.
+    ///
+    /// # Errors
+    /// When no cell is left.
+    pub(super) fn of_main_grid(&self) -> Result<Self, ExportError> {
+        let grid = &self.case.grid;
+        let main = grid.main_alone();
+        let main = main.map_err(|error| ExportError::Grid(error.to_string()))?;
+        let places: Vec<usize> = grid.active_in(0).map(|(active, _)| active).collect();
+        let is_drawn = |place: &usize| self.view.is_none() || self.drawn[*place];
+        let drawn: Vec<bool> = places.iter().map(is_drawn).collect();
+        if !drawn.contains(&true) {
+            return Err(ExportError::Empty);
+        }
+        Ok(Self {
+            case: self.case,
+            view: self.view,
+            properties: self.properties.clone(),
+            steps: self.steps.clone(),
+            grid: Arc::new(main),
+            places: Some(places),
             drawn,
         })
     }
 
     /// The grid.
     pub fn grid(&self) -> &Grid {
-        &self.case.grid
+        &self.grid
     }
 
-    /// By active index of the case's grid: true for cells that are written.
+    /// By active index of the grid: true for cells that are written.
     pub fn drawn(&self) -> &[bool] {
         &self.drawn
     }
@@ -131,9 +167,13 @@ impl<'a> Contents<'a> {
             Err(CaseError::NotAtStep { .. }) => return Ok(None),
             field => field?,
         };
-        let values = field.values().iter().zip(&self.drawn);
-        let drawn = values.filter(|(_, drawn)| **drawn);
-        Ok(Some(drawn.map(|(value, _)| *value).collect()))
+        let values = field.values();
+        let value = |active: usize| match &self.places {
+            Some(places) => values[places[active]],
+            None => values[active],
+        };
+        let drawn = (0..self.drawn.len()).filter(|active| self.drawn[*active]);
+        Ok(Some(drawn.map(value).collect()))
     }
 
     /// A value for each of all cells, from one for each that is written and one for all others.

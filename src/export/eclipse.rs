@@ -31,9 +31,6 @@ pub(super) fn write(
     let (cells, count) = (contents.grid().dims().cells(), contents.count());
     output.expect(9 * cells + contents.pairs().len() * count);
     let [init, restart] = ["INIT", "UNRST"].map(|name| sibling(path, name));
-    if !contents.case.about.local_grids.is_empty() {
-        output.note("local grids are not written".into());
-    }
     let egrid = egrid(contents);
     output.write(path, |file| egrid.write(file).map(drop))?;
     if contents.dynamics().next().is_none() && restart.exists() {
@@ -90,6 +87,7 @@ pub(super) fn egrid(contents: &Contents<'_>) -> Egrid {
 fn connections(contents: &Contents<'_>) -> Vec<[i32; 2]> {
     let grid = contents.grid();
     let number = |ijk: &Ijk| {
+        (contents.case.grid.patch_of(*ijk) == Some(0)).then_some(())?;
         let cell = grid.dims().cell(*ijk);
         let active = grid.active_index(cell)?;
         contents.drawn()[active.0 as usize].then_some(cell.0 as i32 + 1)

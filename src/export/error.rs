@@ -34,6 +34,9 @@ pub enum ExportError {
     /// Surfaces were asked for without a view, which has their colors.
     #[error("surfaces are written of what a scene shows, and there is none")]
     NoView,
+    /// The main grid cannot be taken apart from its local grids.
+    #[error("the main grid cannot be written: {0}")]
+    Grid(String),
     /// No cell is written.
     #[error("no cell is drawn, so there is nothing to write")]
     Empty,

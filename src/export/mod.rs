@@ -9,6 +9,8 @@
 //! | CSV, Parquet | cells by I, J, K from 1 | no row | rows |
 //! | glTF | meters, y up, z south, from an origin that its root node has | no face | one step |
 //!
+//! Files of one grid have the main grid alone; VTU and tables have the cells of local grids, too, and their names.
+//!
 //! Cells that are not written are inactive in files of whole grids, and have the value 0 there; VTU and tables leave
 //! them out. Map coordinates are in the unit of the map, depths too. Which cells are written does not change with the
 //! step: a scene's filter counts at the scene's step.
@@ -100,6 +102,16 @@ pub fn write(
 ) -> Result<Written, ExportError> {
     let format = Format::from_path(path)?;
     let mut output = Output::new(&contents.case.about.files, progress);
+    let is_whole_grid = matches!(format, Format::Eclipse | Format::Grdecl | Format::Roff);
+    let main;
+    let contents = match is_whole_grid && contents.case.grid.patches().len() > 1 {
+        true => {
+            output.note("local grids are not written: the file holds one grid".into());
+            main = contents.of_main_grid()?;
+            &main
+        }
+        false => contents,
+    };
     match format {
         Format::Eclipse => eclipse::write(contents, path, &mut output),
         Format::Grdecl => grdecl::write(contents, path, &mut output),

@@ -15,6 +15,7 @@ use super::contents::{Contents, Exported};
 use super::error::{ExportError, failed};
 use super::output::Output;
 use crate::case::Case;
+use crate::model::GridCell;
 
 /// Heads of the columns.
 pub const HEADS: [&str; 10] = [
@@ -24,11 +25,30 @@ pub const HEADS: [&str; 10] = [
 /// What is in the column `grid` of cells of the main grid.
 const GLOBAL: &str = "global";
 
+/// The name of a cell's grid in the table.
+fn grid_name(cell: GridCell<'_>) -> &str {
+    match cell.grid {
+        "" => GLOBAL,
+        name => name,
+    }
+}
+
+/// Cells with their values, of those that are one cell of the file the first.
+fn named<'a>(
+    contents: &'a Contents<'_>,
+    values: Vec<f32>,
+) -> impl Iterator<Item = (GridCell<'a>, f32)> {
+    let grid = contents.grid();
+    let cells = contents.cells().zip(values);
+    let cells = cells.filter(|(cell, value)| !value.is_nan() && grid.is_first(*cell));
+    cells.map(|(cell, value)| (grid.cell_name(cell), value))
+}
+
 /// A value of a cell.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Row<'a> {
-    /// The cell, by I, J, K from 1.
-    pub cell: [usize; 3],
+    /// The cell.
+    pub cell: GridCell<'a>,
     /// The step; `None` where the property does not change with time.
     pub step: Option<usize>,
     /// The property.
@@ -59,12 +79,12 @@ impl<'a, W: Write> CsvTable<'a, W> {
     /// # Errors
     /// When writing fails.
     pub fn row(&mut self, row: &Row<'_>) -> io::Result<()> {
-        let [i, j, k] = row.cell.map(|n| n.to_string());
+        let [i, j, k] = row.cell.ijk.map(|n| n.to_string());
         let step = row.step.and_then(|n| Some((n, self.case.steps.get(n)?)));
         let number = step.map(|(n, _)| n.to_string()).unwrap_or_default();
         Ok(self.writer.write_record([
             self.case.about.name.as_str(),
-            GLOBAL,
+            grid_name(row.cell),
             &i,
             &j,
             &k,
@@ -118,10 +138,9 @@ pub(super) fn write_csv(
     let fail = failed(path);
     let mut table = CsvTable::new(contents.case, output.file(path)?).map_err(&fail)?;
     each(contents, output, |(property, step, values)| {
-        let cells = contents.cells().zip(values).filter(|(_, v)| !v.is_nan());
-        for (cell, value) in cells {
+        for (cell, value) in named(contents, values) {
             let row = Row {
-                cell: cell.one_based(),
+                cell,
                 step,
                 property: &property.name,
                 value,
@@ -148,13 +167,8 @@ pub(super) fn write_parquet(
     let schema = schema().map_err(fail)?;
     let mut writer = SerializedFileWriter::new(file, schema, settings).map_err(fail)?;
     let mut rows = Columns::default();
-    let cells: Vec<[i32; 3]> = contents
-        .cells()
-        .map(|cell| cell.one_based().map(|n| n as i32))
-        .collect();
     each(contents, output, |(property, step, values)| {
-        let defined = cells.iter().zip(values).filter(|(_, v)| !v.is_nan());
-        rows.add(contents.case, property, step, defined);
+        rows.add(contents.case, property, step, named(contents, values));
         match rows.values.len() >= ROWS {
             true => rows.write(&mut writer).map_err(fail),
             false => Ok(()),
@@ -189,6 +203,7 @@ fn schema() -> Result<TypePtr, ParquetError> {
 #[derive(Default)]
 struct Columns {
     case: Vec<ByteArray>,
+    grids: Vec<ByteArray>,
     cells: [Vec<i32>; 3],
     /// Of the rows that have one.
     dates: Vec<ByteArray>,
@@ -206,12 +221,19 @@ impl Columns {
         case: &Case,
         property: &Exported,
         step: Option<usize>,
-        values: impl Iterator<Item = (&'c [i32; 3], f32)>,
+        values: impl Iterator<Item = (GridCell<'c>, f32)>,
     ) {
         let before = self.values.len();
+        // Copies share their bytes.
+        let mut last = (GLOBAL, ByteArray::from(GLOBAL));
         for (cell, value) in values {
-            for (column, number) in self.cells.iter_mut().zip(cell) {
-                column.push(*number);
+            let name = grid_name(cell);
+            if name != last.0 {
+                last = (name, ByteArray::from(name));
+            }
+            self.grids.push(last.1.clone());
+            for (column, number) in self.cells.iter_mut().zip(cell.ijk) {
+                column.push(number as i32);
             }
             self.values.push(value);
         }
@@ -240,11 +262,10 @@ impl Columns {
         if rows.values.is_empty() {
             return Ok(());
         }
-        let global = vec![ByteArray::from(GLOBAL); rows.values.len()];
         let mut group = writer.next_row_group()?;
         let some = Some(rows.has_step.as_slice());
         column::<ByteArrayType, _>(&mut group, &rows.case, None)?;
-        column::<ByteArrayType, _>(&mut group, &global, None)?;
+        column::<ByteArrayType, _>(&mut group, &rows.grids, None)?;
         for numbers in &rows.cells {
             column::<Int32Type, _>(&mut group, numbers, None)?;
         }

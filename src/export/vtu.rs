@@ -70,8 +70,17 @@ fn write_step(
 ) -> Result<(), ExportError> {
     let mut cells = Arrays::default();
     for (axis, name) in ["I", "J", "K"].into_iter().enumerate() {
-        let numbers = contents.cells().map(|ijk| ijk.one_based()[axis] as i32);
+        let grid = contents.grid();
+        let numbers = contents
+            .cells()
+            .map(|at| grid.cell_name(at).ijk[axis] as i32);
         cells.add(name, 1, &numbers.collect::<Vec<i32>>());
+    }
+    if contents.grid().patches().len() > 1 {
+        // 0 is the main grid, local ones follow in the order of the file.
+        let grids = contents.cells().map(|at| contents.grid().patch_of(at));
+        let numbers = grids.map(|number| number.unwrap_or(0) as i32);
+        cells.add("GRID", 1, &numbers.collect::<Vec<i32>>());
     }
     for property in &contents.properties {
         let values = contents.values(&property.name, step.unwrap_or_default())?;

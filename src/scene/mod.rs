@@ -6,6 +6,7 @@
 mod camera;
 mod filter;
 pub mod lighting;
+pub mod names;
 mod settings;
 mod strategy;
 mod surfaces;
@@ -13,14 +14,15 @@ pub mod transfer;
 
 use serde::{Deserialize, Serialize};
 
+pub use crate::model::Space;
 pub use camera::{AutomaticCamera, CameraSpec, ExplicitCamera, FramingCamera, Projection};
 pub use filter::{Filter, Indices, PropertyFilter};
-pub use lighting::{LightMode, LightingSpec};
+pub use lighting::{LightMode, LightSpec, LightingSpec};
 pub use settings::{
     ClipSpec, CutFace, Integration, LibcSettings, PltsSettings, SrgSettings, Storage,
 };
 pub use strategy::StrategyKind;
-pub use surfaces::{Hull, ShownFaults};
+pub use surfaces::{Hull, ShownFaults, ShownWells};
 pub use transfer::{
     ColorSpec, Coloring, FoundOpacity, OpacitySpec, OwnRange, RangeSpec, ScaleSpec, TransferSpec,
 };
@@ -47,6 +49,9 @@ pub struct Scene {
     pub step: StepSpec,
     /// What one looks at: the faces of the cells, or into the volume.
     pub mode: Mode,
+    /// The true geometry, or flat layers and square columns by I, J and K.
+    #[serde(skip_serializing_if = "Space::is_map")]
+    pub space: Space,
     /// How values vary inside a cell; in the mode `cells` each has one value.
     pub interpolation: Interpolation,
     /// Values at both ends of the color map; those of the step shown where absent.
@@ -72,6 +77,9 @@ pub struct Scene {
     pub storage: Storage,
     /// Occlusion and lights.
     pub lighting: LightingSpec,
+    /// Which local grids are drawn in place of the cells that they refine: all, but those that are named.
+    #[serde(skip_serializing_if = "Grids::is_default")]
+    pub grids: Grids,
     /// Which cells are drawn.
     pub filter: Filter,
     /// Clip planes; kept is what all of them keep.
@@ -91,6 +99,7 @@ impl Default for Scene {
             property: None,
             step: StepSpec::Name("last".into()),
             mode: Mode::default(),
+            space: Space::default(),
             interpolation: Interpolation::Vertex,
             range: RangeSpec::STEP,
             transfer: TransferSpec::default(),
@@ -103,10 +112,55 @@ impl Default for Scene {
             plts: PltsSettings::default(),
             storage: Storage::default(),
             lighting: LightingSpec::default(),
+            grids: Grids::default(),
             filter: Filter::default(),
             clip: Vec::new(),
             show: Show::default(),
         }
+    }
+}
+
+impl Scene {
+    /// The same in a space. Places and lengths mean something in the other one alone: where that was another, camera,
+    /// exaggeration, clip planes, sampling and lights that stand somewhere are as if they had not been given.
+    #[must_use]
+    pub fn in_space(self, space: Space) -> Self {
+        if space == self.space {
+            return self;
+        }
+        let mut lighting = self.lighting;
+        let is_far = |light: &LightSpec| matches!(light, LightSpec::Directional { .. });
+        lighting.lights.retain(is_far);
+        Self {
+            space,
+            camera: CameraSpec::Automatic(AutomaticCamera {
+                projection: self.camera.projection(),
+                ..AutomaticCamera::default()
+            }),
+            vertical_exaggeration: None,
+            clip: Vec::new(),
+            sampling_step: None,
+            transfer: TransferSpec {
+                reference_length: None,
+                ..self.transfer
+            },
+            lighting,
+            ..self
+        }
+    }
+}
+
+/// Which local grids are drawn.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Grids {
+    /// Names of those that are not: the cells that they refine are drawn in their place.
+    pub hidden: Vec<String>,
+}
+
+impl Grids {
+    fn is_default(&self) -> bool {
+        self.hidden.is_empty()
     }
 }
 
@@ -178,8 +232,8 @@ pub struct Show {
     pub faults: ShownFaults,
     /// Lines between the cells of non-neighbor connections.
     pub nnc: bool,
-    /// Wells, with their names.
-    pub wells: bool,
+    /// Wells, with their names: all, none, or those whose names match patterns.
+    pub wells: ShownWells,
     /// Edges of the cells on hull, faults and opaque sections; where absent they are drawn in the mode `cells`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub cell_edges: Option<bool>,
@@ -198,7 +252,7 @@ impl Default for Show {
             hull: Hull::Hidden,
             faults: ShownFaults::All(false),
             nnc: false,
-            wells: false,
+            wells: ShownWells::All(false),
             cell_edges: None,
             r#box: true,
             legend: true,

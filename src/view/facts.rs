@@ -1,9 +1,12 @@
 //! What is drawn, in numbers.
 
+use std::borrow::Cow;
+
 use glam::DVec3;
 use rayon::prelude::*;
 
 use super::ClipPlane;
+use super::grids::ShownGrids;
 use crate::case::{Case, Weighting};
 use crate::model::{CellField, Grid, Spaces};
 use crate::scene::{Coloring, Scene};
@@ -12,7 +15,7 @@ use crate::transfer::kinds::Quantity;
 /// What is drawn, in numbers: those of what is seen, for the line below the picture.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Facts {
-    /// Active cells of the case.
+    /// Active cells of the grids shown.
     pub active: usize,
     /// Those that are drawn and not cut away.
     pub drawn: usize,
@@ -45,25 +48,40 @@ impl Facts {
         case: &Case,
         property: &str,
         values: &CellField,
-        seen: &[bool],
+        (seen, grids): (&[bool], &ShownGrids),
         scene: &Scene,
     ) -> Self {
         let has_mean = scene.transfer.coloring != Coloring::Categories
             && Quantity::of(property) != Quantity::Region;
-        let all = values.values();
+        let counts = grids.counted(&case.grid);
+        let active = counts.as_ref().map_or(values.values().len(), |counts| {
+            counts.iter().filter(|counts| **counts).count()
+        });
+        let (all, seen) = match &counts {
+            None => (Cow::from(values.values()), Cow::from(seen)),
+            Some(counts) => {
+                let value =
+                    |(value, counts): (&f32, &bool)| if *counts { *value } else { f32::NAN };
+                let all: Vec<f32> = values.values().iter().zip(counts).map(value).collect();
+                let seen: Vec<bool> = seen.iter().zip(counts).map(|(a, b)| *a && *b).collect();
+                (all.into(), seen.into())
+            }
+        };
         let Counted {
             valued,
             drawn,
             range,
-        } = Counted::of(all, seen);
+        } = Counted::of(&all, &seen);
         let values = range.map(|[min, max]| Values {
             min,
             max,
-            mean: has_mean.then(|| mean(case, all, seen)).flatten(),
+            mean: has_mean
+                .then(|| mean(case, property, &all, &seen))
+                .flatten(),
             are_all: drawn == valued,
         });
         Self {
-            active: case.grid.active_cells().len(),
+            active,
             drawn,
             values,
             filter: scene.filter.words(),
@@ -144,8 +162,8 @@ impl Counted {
 }
 
 /// The mean by pore volume, or by what stands in for it.
-fn mean(case: &Case, values: &[f32], seen: &[bool]) -> Option<(f64, Weighting)> {
-    let weights = case.weights();
+fn mean(case: &Case, property: &str, values: &[f32], seen: &[bool]) -> Option<(f64, Weighting)> {
+    let weights = case.weights_of(property);
     let mean = weighted(values, seen, &weights.values)?;
     Some((mean, weights.weighting))
 }

@@ -1,4 +1,4 @@
-//! Which cells are drawn: by I, J and K, and by the values of properties.
+//! Which cells are drawn: by I, J and K, by the values of properties, and by wells.
 
 use std::sync::Arc;
 
@@ -6,9 +6,11 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::error::{SceneError, wrong};
-use super::step::step_of;
+use super::grids::ShownGrids;
+use super::step::{step_of, well_step};
 use crate::case::{Case, CaseError};
 use crate::model::{CellField, Dims, Ijk};
+use crate::scene::names::matches_any;
 use crate::scene::{Filter, PropertyFilter, StepSpec};
 
 fn check(filter: &PropertyFilter) -> Result<(), SceneError> {
@@ -42,7 +44,7 @@ fn kept(filter: &Filter, dims: Dims) -> Result<[Vec<bool>; 3], SceneError> {
 }
 
 /// Extent of the thinnest part that the filter leaves, given the mean edges of the cells along I, J and
-/// K: one cell where it goes by values, else the shortest run of rows, columns or layers that it keeps.
+/// K: one cell where it goes by values or wells, else the shortest run of rows, columns or layers that it keeps.
 /// `None` where it hides nothing.
 ///
 /// # Errors
@@ -52,7 +54,7 @@ pub(super) fn thinnest(
     dims: Dims,
     edges: DVec3,
 ) -> Result<Option<f64>, SceneError> {
-    let by_value = filter.properties.iter().any(PropertyFilter::limits);
+    let by_value = filter.properties.iter().any(PropertyFilter::limits) || !filter.wells.is_empty();
     let along = kept(filter, dims)?.into_iter().zip(edges.to_array());
     let runs = along.filter_map(|(flags, edge)| {
         let hides = flags.contains(&false);
@@ -64,22 +66,26 @@ pub(super) fn thinnest(
     Ok(runs.chain(one_cell).min_by(f64::total_cmp))
 }
 
-/// Which active cells of a case are drawn, by active index: those with a thickness and a value of `field`
-/// that pass the filter.
+/// Which active cells of a case are drawn, by active index: those of the grids shown with a thickness and a value of
+/// `field` that pass the filter. I, J and K of a cell of a local grid are those of the main grid's cell that it lies in.
 ///
 /// # Errors
 /// When the filter names what the case does not have, or contradicts itself.
 pub(super) fn drawn(
     case: &Case,
     field: &CellField,
+    grids: &ShownGrids,
     filter: &Filter,
     step: &StepSpec,
 ) -> Result<Vec<bool>, SceneError> {
     let grid = &case.grid;
     let dims = grid.dims();
-    let [i, j, k] = kept(filter, dims)?;
-    let passes = |ijk: Ijk| i[ijk.i] && j[ijk.j] && k[ijk.k];
-    let has_all = [&i, &j, &k].iter().all(|kept| !kept.contains(&false));
+    let [i, j, k] = kept(filter, grid.main_dims())?;
+    let passes = |cell: Ijk| {
+        let at = grid.main_cell(cell);
+        grids.shows(grid, cell) && i[at.i] && j[at.j] && k[at.k]
+    };
+    let has_all = grids.are_all() && [&i, &j, &k].iter().all(|kept| !kept.contains(&false));
     let cells = grid.active_cells().par_iter().zip(grid.thick());
     let mut drawn: Vec<bool> = cells
         .zip(field.values())
@@ -96,7 +102,27 @@ pub(super) fn drawn(
         let cells = drawn.par_iter_mut().zip(values.values());
         cells.for_each(|(drawn, value)| *drawn &= property.keeps(*value));
     }
+    if !filter.wells.is_empty() {
+        let connected = connected(case, &filter.wells, well_step(case, step))?;
+        let cells = drawn.iter_mut().zip(connected);
+        cells.for_each(|(drawn, is_connected)| *drawn &= is_connected);
+    }
     Ok(drawn)
+}
+
+/// By active index: true where a well whose name matches one of some patterns is connected to the cell at a step,
+/// open or not.
+fn connected(case: &Case, names: &[String], step: usize) -> Result<Vec<bool>, CaseError> {
+    let grid = &case.grid;
+    let mut cells = vec![false; grid.active_cells().len()];
+    let wells = case.wells(step)?;
+    let named = wells.iter().filter(|well| matches_any(names, &well.name));
+    for cell in named.flat_map(|well| well.cells(grid)) {
+        if let Some(active) = grid.active_index(grid.dims().cell(cell)) {
+            cells[active.0 as usize] = true;
+        }
+    }
+    Ok(cells)
 }
 
 /// A property that filters, at the scene's step, whether or not the property shown changes with time.

@@ -268,6 +268,7 @@ const LABELS: Margins = Margins {
 pub(super) fn still(filter: &Filter, case: &Case) -> Option<Filter> {
     let mut still = filter.clone();
     still.properties.retain(|p| !case.is_dynamic(&p.name));
+    still.wells.clear();
     (still != *filter).then_some(still)
 }
 

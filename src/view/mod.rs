@@ -9,6 +9,7 @@ pub mod facts;
 mod filter;
 pub mod framing;
 pub mod ghosts;
+mod grids;
 mod half_turns;
 pub mod lighting;
 pub mod look;
@@ -39,13 +40,14 @@ pub use surfaces::Surfaces;
 pub use wells::Wells;
 
 use crate::image::Blending;
-use crate::model::{CellField, FaultFaces, Grid, Spaces};
+use crate::model::{CellField, FaultFaces, Grid, Space, Spaces};
 use crate::scene::{
     CameraSpec, Interpolation, LibcSettings, PltsSettings, SrgSettings, Storage, StrategyKind,
 };
 use crate::transfer::TransferFunction;
 use bounds::box_corners;
 use ghosts::Ghosts;
+pub use grids::ShownGrids;
 use resolve::{camera as placed, checked_size};
 
 /// All that a renderer needs beside the grid: what every strategy and the reference integrate.
@@ -74,6 +76,8 @@ pub struct View {
 pub struct World {
     /// Grid to world and back.
     pub spaces: Spaces,
+    /// True places, or those by I, J and K.
+    pub space: Space,
     /// Factor on depth in world space.
     pub vertical_exaggeration: f64,
     /// Box of the active cells in world space.
@@ -151,6 +155,8 @@ pub struct Notes {
     pub has_legend: bool,
     /// What is drawn in numbers, for the line below the picture; `None` where that is hidden.
     pub facts: Option<Arc<Facts>>,
+    /// What the scene asks for in vain, one sentence each.
+    pub warnings: Vec<String>,
 }
 
 /// The cells that rays meet, and their values.

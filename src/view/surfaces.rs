@@ -86,7 +86,7 @@ impl Surfaces {
         Self {
             hull: if solid { Hull::Opaque } else { scene.show.hull },
             faults: scene.show.faults.are_shown(),
-            wells: scene.show.wells,
+            wells: scene.show.wells.are_shown(),
             cell_edges: scene.show.cell_edges.unwrap_or(solid),
             solid,
         }

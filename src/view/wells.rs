@@ -5,9 +5,12 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::error::SceneError;
+use super::step::well_step;
 use super::surfaces::Surfaces;
 use crate::case::{Case, Connection, ConnectionAxis, Well, WellKind};
-use crate::model::{Grid, Ijk, Spaces};
+use crate::model::{Grid, Spaces};
+use crate::scene::names::matches;
+use crate::scene::{Scene, ShownWells};
 
 /// The wells that a view shows.
 ///
@@ -106,17 +109,66 @@ impl<'a> Measures<'a> {
     }
 }
 
-/// The wells of a case at a step; none of those that have no connection in the global grid.
+/// The wells that a scene shows, of the step that it names whether or not its property changes with time; none of
+/// those that have no connection in a grid shown.
 pub(super) fn shown(
+    scene: &Scene,
     case: &Case,
-    step: usize,
     measures: &Measures<'_>,
 ) -> Result<Arc<Wells>, SceneError> {
     let mut wells = Wells::default();
-    for well in case.wells(step)?.iter() {
-        wells.add(&case.grid, well, measures);
+    let asked = &scene.show.wells;
+    if asked.are_shown() {
+        let of_step = case.wells(well_step(case, &scene.step))?;
+        for well in of_step.iter().filter(|well| asked.shows(&well.name)) {
+            wells.add(&case.grid, well, measures);
+        }
     }
     Ok(Arc::new(wells))
+}
+
+/// Names that a warning lists, at most.
+const MOST_NAMES: usize = 12;
+
+/// What a scene asks of wells in vain, one sentence each.
+///
+/// # Errors
+/// When the wells of its step cannot be read.
+pub fn warnings(scene: &Scene, case: &Case) -> Result<Vec<String>, SceneError> {
+    let mut warnings = Vec::new();
+    if scene.show.wells.are_shown() && case.about.wells.is_empty() {
+        warnings.push("the scene asks for wells, and this case has none".to_owned());
+    }
+    let shown = match &scene.show.wells {
+        ShownWells::Named(names) => names.as_slice(),
+        ShownWells::All(_) => &[],
+    };
+    let asked = [("show.wells", shown), ("filter.wells", &scene.filter.wells)];
+    if asked.iter().all(|(_, names)| names.is_empty()) {
+        return Ok(warnings);
+    }
+    let step = well_step(case, &scene.step);
+    let wells = case.wells(step)?;
+    let names: Vec<&str> = wells.iter().map(|well| well.name.as_str()).collect();
+    let known = match names.as_slice() {
+        [] => "which has none".to_owned(),
+        [few @ ..] if few.len() <= MOST_NAMES => format!("which has {}", few.join(", ")),
+        many => format!(
+            "which has {} and {} more",
+            many[..MOST_NAMES].join(", "),
+            many.len() - MOST_NAMES
+        ),
+    };
+    for (field, patterns) in asked {
+        for pattern in patterns {
+            if !names.iter().any(|name| matches(pattern, name)) {
+                warnings.push(format!(
+                    "{field}: no well matches {pattern} at step {step}, {known}"
+                ));
+            }
+        }
+    }
+    Ok(warnings)
 }
 
 impl Wells {
@@ -177,7 +229,7 @@ impl Wells {
 /// The parts of a well in its cells, from the head on, in world space; true where something can flow.
 fn pieces(grid: &Grid, well: &Well, spaces: &Spaces) -> Vec<([DVec3; 2], bool)> {
     let mut pieces: Vec<([DVec3; 2], bool)> = Vec::new();
-    for connection in &well.connections {
+    for connection in well.finest_connections(grid) {
         let Some(ends) = ends(grid, connection) else {
             continue;
         };
@@ -194,14 +246,9 @@ fn pieces(grid: &Grid, well: &Well, spaces: &Spaces) -> Vec<([DVec3; 2], bool)> 
     pieces
 }
 
-/// Middles of the two faces through which a well passes a cell, in grid space; `None` where that lies in a local grid
-/// or in none.
+/// Middles of the two faces through which a well passes a cell, in grid space; `None` where that lies in no grid.
 fn ends(grid: &Grid, connection: &Connection) -> Option<[DVec3; 2]> {
-    let (dims, Ijk { i, j, k }) = (grid.dims(), connection.cell);
-    if connection.grid.is_some() || i >= dims.ni || j >= dims.nj || k >= dims.nk {
-        return None;
-    }
-    let corners = grid.hexahedron(connection.cell).0;
+    let corners = grid.hexahedron(connection.cell_in(grid)?).0;
     let bit = match connection.axis {
         ConnectionAxis::I => 0,
         ConnectionAxis::J => 1,

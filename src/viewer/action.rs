@@ -6,7 +6,7 @@ use super::slices::Slicing;
 use super::state::{Comparison, CurvePlots, Playback, State};
 use crate::scene::{
     CameraSpec, ClipSpec, Filter, Interpolation, LibcSettings, LightingSpec, Mode, PltsSettings,
-    RangeSpec, Scene, Show, SrgSettings, StepSpec, Storage, StrategyKind, TransferSpec,
+    RangeSpec, Scene, Show, Space, SrgSettings, StepSpec, Storage, StrategyKind, TransferSpec,
 };
 
 /// A change of a tab's state.
@@ -18,6 +18,8 @@ pub enum Action {
     Step(usize),
     /// Cells as solid bodies, or rays through the volume.
     Mode(Mode),
+    /// True places of the cells, or those by I, J and K; the camera frames the model anew.
+    Space(Space),
     /// Values in a cell.
     Interpolation(Interpolation),
     /// Ends of the color map.
@@ -84,6 +86,7 @@ impl Action {
             Self::Property(_) => "property",
             Self::Step(_) => "time step",
             Self::Mode(_) => "mode",
+            Self::Space(_) => "space",
             Self::Interpolation(_) => "interpolation",
             Self::Range(_) => "color range",
             Self::Transfer(_) => "transfer function",
@@ -114,6 +117,7 @@ impl Action {
             Self::Property(name) => state.setup.show(name),
             Self::Step(step) => scene.step = StepSpec::Index(step),
             Self::Mode(v) => state.setup.scene.mode = v,
+            Self::Space(v) => *scene = std::mem::take(scene).in_space(v),
             Self::Interpolation(v) => state.setup.change_look(|look| look.interpolation = v),
             Self::Range(v) => state.setup.change_look(|look| look.range = v),
             Self::Transfer(v) => state.setup.change_look(|look| look.transfer = v),

@@ -60,6 +60,8 @@ pub enum Command {
     Curves,
     /// Cells as solid bodies, or rays through the volume.
     Mode,
+    /// True places of the cells, or those by I, J and K.
+    Space,
     /// The next strategy.
     NextStrategy,
     /// Lighting off, or soft.
@@ -105,7 +107,7 @@ const fn from(view: usize) -> Command {
 }
 
 /// Every shortcut, with what it says in the sheet.
-pub const SHORTCUTS: [(Modifiers, Key, Command, &str); 60] = [
+pub const SHORTCUTS: [(Modifiers, Key, Command, &str); 61] = [
     (CTRL, Key::O, Command::Open, "Open a case"),
     (
         CTRL_SHIFT,
@@ -201,6 +203,7 @@ pub const SHORTCUTS: [(Modifiers, Key, Command, &str); 60] = [
         "Curves of the selected cells",
     ),
     (NONE, Key::V, Command::Mode, "Cells or volume"),
+    (NONE, Key::I, Command::Space, "Map, or IJK (simbox)"),
     (NONE, Key::S, Command::NextStrategy, "Next strategy"),
     (NONE, Key::Q, Command::Light, "Occlusion on or off"),
     (CTRL, Key::D, Command::Theme, "Dark or light theme"),

@@ -257,3 +257,66 @@ fn differences_are_properties_of_a_scene() {
     let said = refusal(&case, json!({"property": "SWAT-SWAT@2099-01-01"}));
     assert!(said.contains("no step 2099-01-01"), "{said}");
 }
+
+#[test]
+fn cells_of_wells_are_drawn_alone() {
+    let Some(file) = common::data("reek/REEK.EGRID") else {
+        return;
+    };
+    let case = load::open(&file).unwrap();
+    let of = |filter: Value| view(&case, json!({"filter": filter}));
+    // As ICON of the restart file has it: straight down.
+    let view_of_one = of(json!({"wells": ["op_5"]}));
+    let cells = drawn(&case, &view_of_one);
+    let column = (1..=14).map(|k| [25, 35, k]);
+    let is_active = |c: &[usize; 3]| {
+        let cell = case.grid.dims().one_based(*c).unwrap();
+        case.grid.is_active(cell)
+    };
+    assert_eq!(cells, column.filter(is_active).collect::<Vec<_>>());
+    assert!(cells.len() > 10);
+    // Patterns add up, and other filters count too.
+    let producers = drawn(&case, &of(json!({"wells": ["OP_?", "OP_5"]})));
+    let all = drawn(&case, &of(json!({"wells": ["*"]})));
+    assert!(cells.len() < producers.len() && producers.len() < all.len());
+    let layer = drawn(&case, &of(json!({"wells": ["*"], "k": [3, 3]})));
+    let expected: Vec<_> = all.iter().filter(|c| c[2] == 3).copied().collect();
+    assert_eq!(layer, expected);
+    assert!(!layer.is_empty());
+    // What frames the picture stands still over time.
+    assert_eq!(
+        view_of_one.world.subject,
+        view(&case, json!({})).world.subject
+    );
+    // What no well matches is said, and nothing is drawn.
+    let none = of(json!({"wells": ["X*"]}));
+    assert!(drawn(&case, &none).is_empty());
+    let [warning] = none.notes.warnings.as_slice() else {
+        panic!("{:?}", none.notes.warnings);
+    };
+    assert!(
+        warning.contains("filter.wells") && warning.contains("X*") && warning.contains("OP_1"),
+        "{warning}"
+    );
+    assert!(view_of_one.notes.warnings.is_empty());
+}
+
+#[test]
+fn wells_are_shown_by_their_names() {
+    let Some(file) = common::data("reek/REEK.EGRID") else {
+        return;
+    };
+    let case = load::open(&file).unwrap();
+    let heads = |wells: Value| {
+        let view = view(&case, json!({"show": {"wells": wells}}));
+        let heads = &view.shown.wells.heads;
+        let names: Vec<_> = heads.iter().map(|head| head.name.clone()).collect();
+        (names, view.notes.warnings.len())
+    };
+    assert_eq!(heads(json!(true)).0.len(), 8);
+    assert_eq!(heads(json!(["WI*"])).0, ["WI_1", "WI_2", "WI_3"]);
+    assert_eq!(heads(json!(["op_2", "A"])), (vec!["OP_2".to_owned()], 1));
+    assert_eq!(heads(json!([])), (Vec::new(), 0));
+    let said = serde_json::from_value::<Scene>(json!({"show": {"wells": "P*"}})).unwrap_err();
+    assert!(said.to_string().contains("[\"P*\"]"), "{said}");
+}

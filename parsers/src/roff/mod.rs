@@ -207,7 +207,7 @@ impl RoffFile {
 
     fn need(&self, name: &str) -> Result<&Tag, ParseError> {
         self.find(name).ok_or_else(|| {
-            let message = "is missing";
+            let message = "is missing: this ROFF file has neither a grid nor properties";
             let kind = ErrorKind::MissingKeyword;
             ParseError::of(kind, self.path(), At::File, name, message)
         })

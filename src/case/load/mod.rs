@@ -1,10 +1,13 @@
 //! From files to a [`Case`]: the one module that knows both the file formats and the model.
 
 mod grids;
+mod local;
 mod pore_volume;
 mod properties;
+mod roff;
 mod slots;
 mod source;
+mod summary;
 mod wells;
 
 use std::path::{Path, PathBuf};
@@ -20,7 +23,8 @@ use self::grids::Loaded;
 use self::properties::Setting;
 use self::slots::{CellSlots, ResultCells};
 use self::source::FileSource;
-use crate::case::{About, Case, FieldCache, OverSteps, Step, WellsOfSteps};
+use self::summary::SummaryFiles;
+use crate::case::{About, Case, FieldCache, OverSteps, Simbox, Step, WellsOfSteps};
 
 /// Opens the case that `path` names: any of its files, or its base name.
 ///
@@ -96,6 +100,7 @@ fn own_grid(path: &Path) -> Option<GridSource> {
     let grid = find(path).ok()?.grid;
     match &grid {
         GridSource::Deck(deck) if !Grdecl::is_grid(deck).unwrap_or(true) => None,
+        GridSource::Roff(file) if !roff::is_grid(file) => None,
         _ => Some(grid),
     }
 }
@@ -117,6 +122,7 @@ pub fn open_reporting(
     let mut warnings = Warnings::default();
     let mut about = About {
         name: files.name.clone(),
+        summary: files.summary.iter().flat_map(summary::paths).collect(),
         ..About::default()
     };
     for (file, why) in &files.not_read {
@@ -132,8 +138,9 @@ pub fn open_reporting(
         return Ok(None);
     }
     let steps = open_restart(&files.restart, &mut about, &mut warnings);
-    note_missing(&files, loaded.is_deck, &mut about);
-    let case = build(loaded, init, steps, about, &warnings);
+    note_missing(&files, &mut about);
+    let summary = SummaryFiles::new(files.summary);
+    let case = build(loaded, init, steps, summary, about, &warnings);
     Ok(Some(case))
 }
 
@@ -142,6 +149,7 @@ fn build(
     mut loaded: Loaded,
     init: Option<CellArrays>,
     steps: Vec<FileStep>,
+    summary: SummaryFiles,
     mut about: About,
     warnings: &Warnings,
 ) -> Case {
@@ -171,11 +179,15 @@ fn build(
         init: init.as_ref(),
     };
     let cells = CellSlots::new(&mut loaded.grid, &loaded.flags, &results, &mut about.notes);
+    let local_grids = std::mem::take(&mut loaded.local_grids);
+    let locals = local::read(local_grids, &loaded.grid, init.as_ref(), &mut about.notes);
     let mut source = FileSource {
         cells,
+        local: None,
         init: None,
         steps: Vec::new(),
         texts: loaded.texts,
+        summary,
     };
     source.take_fitting(init, steps, &mut about);
     leave_unfinished(&mut source.steps, &mut about.notes);
@@ -189,6 +201,23 @@ fn build(
     };
     let properties = properties::of(&source, &setting, &mut about);
     about.notes.extend(warnings.iter().map(ToString::to_string));
+    if !locals.is_empty() {
+        match local::join(
+            &loaded.grid,
+            &source.cells,
+            locals,
+            &loaded.local_connections,
+        ) {
+            Ok((grid, places, connections)) => {
+                loaded.grid = grid;
+                loaded.connections.extend(connections);
+                source.local = Some(places);
+            }
+            Err(why) => about
+                .notes
+                .push(format!("local grids are not shown: {why}")),
+        }
+    }
     Case {
         grid: Arc::new(loaded.grid),
         about,
@@ -196,11 +225,12 @@ fn build(
         connections: loaded.connections,
         steps: source.steps.iter().map(step).collect(),
         properties,
-        source: Box::new(source),
-        cache: FieldCache::default(),
-        over_steps: OverSteps::default(),
-        wells: WellsOfSteps::default(),
+        source: Arc::new(source),
+        cache: Arc::new(FieldCache::default()),
+        over_steps: Arc::new(OverSteps::default()),
+        wells: Arc::new(WellsOfSteps::default()),
         minus: None,
+        simbox: Simbox::default(),
     }
 }
 
@@ -253,8 +283,8 @@ fn read_wells(source: &FileSource, about: &mut About) {
     }
 }
 
-fn note_missing(files: &CaseFiles, is_deck: bool, about: &mut About) {
-    if is_deck {
+fn note_missing(files: &CaseFiles, about: &mut About) {
+    if !matches!(files.grid, GridSource::Egrid(_)) {
         return;
     }
     if files.init.is_none() && files.added.is_empty() {

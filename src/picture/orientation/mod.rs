@@ -1,5 +1,5 @@
 //! What shows where one is: the model's box with coordinates along its edges, a scale bar, the directions
-//! east, north and up, and the vertical exaggeration. Here they are laid out as lines and texts; pictures and
+//! east, north and up or I, J and K, and the vertical exaggeration. Here they are laid out as lines and texts; pictures and
 //! the window draw them.
 
 mod coordinates;
@@ -13,6 +13,7 @@ pub use edges::on_screen;
 pub use wells::well_names;
 
 use super::ticks::shortened;
+use crate::scene::Space;
 use crate::view::View;
 use crate::view::camera::middle;
 
@@ -78,11 +79,12 @@ impl Orientation {
         };
         // Else it stands among the facts below the picture.
         if view.notes.facts.is_none() {
-            layout.exaggeration(view.world.vertical_exaggeration);
+            layout.exaggeration(view);
         }
-        triad::add(&mut layout, &view.camera);
+        triad::add(&mut layout, view);
         let room = layout.paper.size.min_element() / layout.paper.unit;
-        if room >= ROOM[0] {
+        // Numbers of cells have no length.
+        if room >= ROOM[0] && view.world.space.is_map() {
             layout.scale_bar(view, length_unit);
         }
         if room >= ROOM[1] {
@@ -140,9 +142,12 @@ impl Arrangement<'_> {
     }
 
     /// The vertical exaggeration, bottom left, as far as there is room.
-    fn exaggeration(&mut self, factor: f64) {
-        let factor = format!("{factor:.2}");
-        let full = format!("Vertical exaggeration ×{}", shortened(&factor));
+    fn exaggeration(&mut self, view: &View) {
+        let factor = format!("{:.2}", view.world.vertical_exaggeration);
+        let full = match view.world.space {
+            Space::Map => format!("Vertical exaggeration ×{}", shortened(&factor)),
+            Space::Ijk => format!("I, J, K: layers ×{}", shortened(&factor)),
+        };
         let unit = self.paper.unit;
         let room = self.paper.size.x - 2.0 * unit;
         let short = format!("×{}", shortened(&factor));

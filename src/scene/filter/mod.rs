@@ -1,4 +1,4 @@
-//! Which cells are drawn, as scenes have it: by I, J and K, and by the values of properties.
+//! Which cells are drawn, as scenes have it: by I, J and K, by the values of properties, and by wells.
 
 mod indices;
 
@@ -18,6 +18,10 @@ pub struct Filter {
     pub k: Option<Indices>,
     /// Filters by value.
     pub properties: Vec<PropertyFilter>,
+    /// Keeps the cells that wells of these names are connected to at the scene's step; the names may be patterns, see
+    /// [`super::names`]. All cells where there are none.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub wells: Vec<String>,
 }
 
 /// Keeps the cells whose value lies in a range, or is one of a list.
@@ -140,6 +144,7 @@ impl Filter {
     pub fn limits(&self) -> bool {
         self.axes().iter().any(|axis| axis.2.is_some())
             || self.properties.iter().any(PropertyFilter::limits)
+            || !self.wells.is_empty()
     }
 
     /// What it keeps as a person would say it, such as `K 2-5, SOIL 0.6 to 1.0`; empty where it keeps
@@ -149,7 +154,14 @@ impl Filter {
         let axes = axes.filter_map(|(name, _, kept)| Some(format!("{name} {}", kept?.text())));
         let values = self.properties.iter().filter(|p| p.limits());
         let values = values.map(PropertyFilter::words);
-        axes.chain(values).collect::<Vec<_>>().join(", ")
+        let wells = match self.wells.as_slice() {
+            [] => None,
+            wells => Some(format!("cells of wells {}", wells.join(" "))),
+        };
+        axes.chain(values)
+            .chain(wells)
+            .collect::<Vec<_>>()
+            .join(", ")
     }
 }
 
@@ -202,6 +214,7 @@ mod tests {
             r#"{"i":[1,46],"j":null,"k":"2,4-6, 10-30:2","properties":[]}"#,
             r#"{"i":null,"j":"7","k":null,"properties":[{"name":"SOIL","min":0.6}]}"#,
             r#"{"i":null,"j":null,"k":null,"properties":[{"name":"SOIL","max":0.6,"invert":true}]}"#,
+            r#"{"i":null,"j":null,"k":null,"properties":[],"wells":["P*","I1"]}"#,
             r#"{"i":null,"j":null,"k":null,"properties":[{"name":"FIPNUM","values":[1.0,3.0],"enabled":false}]}"#,
         ] {
             let filter = read(json).unwrap();
@@ -257,6 +270,10 @@ mod tests {
             "K 2-5, SOIL 0.6 to 1.0"
         );
         assert_eq!(words(r#"{"i":[7,7],"j":"1, 4-8:2"}"#), "I 7, J 1,4-8:2");
+        assert_eq!(
+            words(r#"{"k":[2,5],"wells":["P*","I1"]}"#),
+            "K 2-5, cells of wells P* I1"
+        );
         for (filter, said) in [
             (r#""min":0.25"#, "A from 0.25"),
             (r#""max":200,"invert":true"#, "A above 200"),

@@ -14,7 +14,7 @@ use crate::export::{self, Contents, ExportError};
 use crate::picture::film::{Film, FilmFormat, FilmShape};
 use crate::picture::filming::{FilmingError, shoot};
 use crate::render::{self, RenderError};
-use crate::scene::Scene;
+use crate::scene::{Scene, Space};
 use crate::view::{Sequence, Shown, Turn, resolve, step};
 
 /// What is to be made.
@@ -178,9 +178,10 @@ fn is_canceled(error: &(dyn std::error::Error + 'static)) -> bool {
         || matches!(of_film, Some(FilmingError::Render(RenderError::Canceled)))
 }
 
-/// Writes the cells that the scene draws, with the values of its property at its step; what to say of it.
+/// Writes the cells that the scene draws, where they are on the map, with the values of its property at its step; what
+/// to say of it.
 fn cells(spec: &ExportSpec, path: &Path, progress: &dyn Fn(f64) -> bool) -> Fallible<Vec<String>> {
-    let view = resolve(&spec.scene, &spec.case)?;
+    let view = resolve(&spec.scene.clone().in_space(Space::Map), &spec.case)?;
     let Shown { property, step, .. } = &view.shown;
     let names = [property.clone()];
     let contents = Contents::new(&spec.case, Some(&view), &names, &[*step])?;
@@ -189,7 +190,7 @@ fn cells(spec: &ExportSpec, path: &Path, progress: &dyn Fn(f64) -> bool) -> Fall
 
 /// Makes the file; what to say of it.
 fn make(spec: &ExportSpec, path: &Path, progress: &dyn Fn(f64) -> bool) -> Fallible<Vec<String>> {
-    let case = &spec.case;
+    let case = &spec.case.in_space(spec.scene.space);
     let (fps, sequence) = match spec.kind {
         ExportKind::Still => return still::still(spec, path, progress).map(|()| Vec::new()),
         ExportKind::Cells => return cells(spec, path, progress),

@@ -14,7 +14,7 @@ const FIELD: f32 = 84.0;
 const FORM: &str = "2,4-6,10-30:2";
 
 pub fn show(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action>) {
-    let dims = about.case.grid.dims();
+    let dims = about.case.grid.main_dims();
     let mut filter = about.scene.filter.clone();
     for (axis, name) in AXES.into_iter().enumerate() {
         ui.push_id(name, |ui| {
@@ -131,7 +131,7 @@ fn wrong(ui: &Ui) -> Color32 {
 
 /// Steps through single slices of an axis.
 fn slices(ui: &mut Ui, about: &PanelContext<'_>, filter: &mut Filter, actions: &mut Vec<Action>) {
-    let dims = about.case.grid.dims();
+    let dims = about.case.grid.main_dims();
     let before = about.state.slicing;
     let mut slicing = before;
     ui.horizontal_wrapped(|ui| {

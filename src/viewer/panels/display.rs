@@ -4,7 +4,7 @@ use eframe::egui::{self, Ui};
 
 use super::PanelContext;
 use super::controls::one_of;
-use crate::scene::{CutFace, Hull, Inactive, Mode, Show, ShownFaults};
+use crate::scene::{CutFace, Hull, Inactive, Mode, Show, ShownFaults, ShownWells};
 use crate::transfer::presets::parse_color;
 use crate::view::Surfaces;
 use crate::viewer::action::Action;
@@ -42,10 +42,14 @@ pub fn show(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action>) {
         ui.checkbox(&mut show.legend, "Legend")
             .on_hover_text("Legend and title");
         let has_wells = !about.case.about.wells.is_empty();
-        let wells = egui::Checkbox::new(&mut show.wells, "Wells");
-        ui.add_enabled(has_wells, wells)
+        let mut wells = show.wells.are_shown();
+        let switch = egui::Checkbox::new(&mut wells, "Wells");
+        let switch = ui.add_enabled(has_wells, switch)
             .on_hover_text("Tubes through the cells that wells are connected to: green for producers, blue for water injectors, orange for gas injectors, gray where nothing flows")
             .on_disabled_hover_text("The files name no wells");
+        if switch.changed() {
+            show.wells = ShownWells::All(wells);
+        }
         ui.end_row();
         background(ui, about, actions);
         ui.end_row();

@@ -21,7 +21,7 @@ fn written(table: &Table, curves: Option<&Curves>) -> io::Result<Vec<u8>> {
     for (cell, values) in by_cell(table, curves) {
         for (property, step, value) in values {
             out.row(&Row {
-                cell,
+                cell: table.of.case.grid.name_of(cell),
                 step,
                 property,
                 value,

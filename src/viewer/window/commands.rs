@@ -196,7 +196,7 @@ fn change(document: &mut Document, command: Command) -> Option<String> {
             document.move_step(if last { isize::MAX / 2 } else { isize::MIN / 2 }, false);
         }
         Command::Slice(by) => {
-            let dims = document.case.as_ref()?.grid.dims();
+            let dims = document.case.as_ref()?.grid.main_dims();
             let State { setup, slicing, .. } = &document.state;
             let (slicing, filter) = (*slicing, slicing.stepped(&setup.scene.filter, dims, by));
             let told = slicing.words(&filter, dims);
@@ -204,7 +204,7 @@ fn change(document: &mut Document, command: Command) -> Option<String> {
             return Some(told);
         }
         Command::SliceAxis(by) => {
-            let dims = document.case.as_ref()?.grid.dims();
+            let dims = document.case.as_ref()?.grid.main_dims();
             let State { setup, slicing, .. } = &document.state;
             let axis = (slicing.axis as isize + by).rem_euclid(3) as usize;
             let (slicing, filter) = slicing.along(axis, &setup.scene.filter, dims);
@@ -216,6 +216,10 @@ fn change(document: &mut Document, command: Command) -> Option<String> {
         Command::Mode => {
             let mode = document.state.setup.scene.mode;
             document.apply(Action::Mode(mode.other()));
+        }
+        Command::Space => {
+            let space = document.state.setup.scene.space;
+            document.apply(Action::Space(space.other()));
         }
         Command::NextStrategy => {
             let next = next_strategy(document.state.setup.scene.strategy);
