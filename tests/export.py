@@ -77,7 +77,10 @@ class Case:
         self.steps = [self.spread(v) for v in arrays(self.restart)[dynamic]]
         day, month, year = arrays(self.restart)["INTEHEAD"][0][64:67]
         self.first_date = f"{year:04}{month:02}{day:02}"
-        self.poro = self.spread(arrays(self.init)[static][0])
+        init = arrays(self.init)
+        self.poro = self.spread(init[static][0])
+        # Whole numbers, and values of all cells.
+        self.others = [name for name in ("SATNUM", "PORV") if name in init]
 
     def spread(self, given):
         """Values of active cells, i fastest, as an array of all cells."""
@@ -90,13 +93,14 @@ class Case:
 def eclipse(case, made):
     for ending, names in [
         ("EGRID", ["COORD", "ZCORN"]),
-        ("INIT", [case.static]),
+        ("INIT", [case.static, *case.others]),
         ("UNRST", [case.dynamic, "SEQNUM"]),
     ]:
         before, after = [arrays(path.with_suffix(f".{ending}")) for path in (case.path, made)]
         for name in names:
             same = len(before[name]) == len(after.get(name, []))
-            same = same and all(np.array_equal(a, b) for a, b in zip(before[name], after[name]))
+            pairs = list(zip(before[name], after.get(name, [])))
+            same = same and all(a.dtype == b.dtype and np.array_equal(a, b) for a, b in pairs)
             check(f"resfo {ending} {name}: the same bits", same, f"{len(before[name])} arrays")
     grid = xtgeo.grid_from_file(made, fformat="egrid")
     check("xtgeo EGRID corners", largest(corners(grid), corners(case.grid)) == 0.0)
@@ -211,6 +215,7 @@ def main(program, path, static, dynamic):
             made = Path(folder) / name
             files[made.suffix] = made
             properties = [dynamic] if made.suffix == ".glb" else [static, dynamic]
+            properties += case.others if made.suffix == ".EGRID" else []
             subprocess.run(
                 [program, "export", path, "--quiet", "--property", *properties, "-o", made],
                 check=True,

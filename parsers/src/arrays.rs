@@ -64,6 +64,12 @@ pub fn is_table(name: &str) -> bool {
     TABLES.contains(&name)
 }
 
+/// True of numbers of regions, which files have as whole numbers. FIPOIL and the like are amounts of restarts.
+pub fn is_region(name: &str) -> bool {
+    let is_amount = ["FIPOIL", "FIPWAT", "FIPGAS"].contains(&name);
+    is_cell_array(name) && !is_amount && (name.starts_with("FIP") || name.contains("NUM"))
+}
+
 /// What a cell has where a deck gives an array only in part; `None` where nothing is agreed on.
 pub fn default_value(name: &str) -> Option<f64> {
     match name {
@@ -92,6 +98,17 @@ mod tests {
             assert!(is_table(name) && !is_cell_array(name), "{name}");
         }
         assert!(!is_cell_array("MYPROP") && !is_cell_array("FIP"));
+        for (name, expected) in [
+            ("SATNUM", true),
+            ("FIPNUM", true),
+            ("FIPZON", true),
+            ("KRNUMX-", true),
+            ("FIPOIL", false),
+            ("PORO", false),
+            ("AQUNUM", false),
+        ] {
+            assert_eq!(is_region(name), expected, "{name}");
+        }
         assert_eq!(default_value("MULTZ-"), Some(1.0));
         assert_eq!(default_value("PORO"), None);
         assert!(is_multiplier("MULTPV") && !is_multiplier("MULTNUM"));

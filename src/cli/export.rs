@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use strataray::case::Case;
 use strataray::export::{self, Contents, Format};
+use strataray::scene::Space;
 use strataray::view::{View, look, resolve, step};
 
 use super::Verbosity;
@@ -116,6 +117,7 @@ fn view(
             keys.insert("step".into(), (*step).into());
         }
     }
-    let scene = look::opening(case, &keys.into())?;
+    // What is written lies on the map, whatever space the scene has.
+    let scene = look::opening(case, &keys.into())?.in_space(Space::Map);
     Ok(Some(resolve(&scene, case)?))
 }

@@ -190,6 +190,13 @@ impl<'a> Contents<'a> {
         self.spread(std::iter::repeat_n(1, self.count()), 0)
     }
 
+    /// The unit of the map, or of the grid where that lies on none.
+    pub fn map_unit(&self) -> &str {
+        let axes = self.grid().map_axes();
+        let unit = axes.and_then(|axes| axes.unit);
+        unit.map_or(&self.case.about.length_unit, |unit| unit.name)
+    }
+
     /// Map coordinates from those of the grid: z is up, and all lengths are in the unit of the map.
     pub fn map_from_grid(&self) -> DAffine3 {
         let spaces = Spaces::new(self.grid().map_axes(), 1.0);

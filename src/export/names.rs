@@ -17,7 +17,7 @@ const TAKEN: [&str; 4] = ["ACTNUM", "COORD", "NNC", "ZCORN"];
 /// `MULTX-`. Differences begin with `D_`, so that they are not taken for what they are a difference of.
 pub(super) fn keyword(name: &str) -> String {
     let (body, end) = match name.strip_suffix('-') {
-        Some(body) if name.len() <= LENGTH => (body, "-"),
+        Some(body) => (body, if name.len() <= LENGTH { "-" } else { "" }),
         _ if TAKEN.contains(&name) => (name, "_"),
         _ => (name, ""),
     };

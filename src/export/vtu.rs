@@ -98,7 +98,7 @@ fn write_step(
 /// What the file is, for people, and its time.
 fn about(contents: &Contents<'_>, step: Option<usize>) -> String {
     let about = &contents.case.about;
-    let mut units: Vec<String> = vec![format!("coordinates {}", about.map_unit)];
+    let mut units: Vec<String> = vec![format!("coordinates {}", contents.map_unit())];
     let named = contents.properties.iter().filter(|p| !p.unit.is_empty());
     units.extend(named.map(|p| format!("{} {}", p.name, p.unit)));
     let text = format!(

@@ -78,6 +78,8 @@ pub enum Command {
     SaveTable,
     /// Saves the summary vectors that are shown.
     SaveVectors,
+    /// Writes the drawn cells, or their surfaces, for other programs.
+    ExportCells,
     /// A second picture, or none.
     Compare,
     /// Selects no cell.
@@ -107,7 +109,7 @@ const fn from(view: usize) -> Command {
 }
 
 /// Every shortcut, with what it says in the sheet.
-pub const SHORTCUTS: [(Modifiers, Key, Command, &str); 61] = [
+pub const SHORTCUTS: [(Modifiers, Key, Command, &str); 62] = [
     (CTRL, Key::O, Command::Open, "Open a case"),
     (
         CTRL_SHIFT,
@@ -227,6 +229,7 @@ pub const SHORTCUTS: [(Modifiers, Key, Command, &str); 61] = [
         Command::SaveTable,
         "Save the values of the selected cells",
     ),
+    (CTRL, Key::E, Command::ExportCells, "Export the drawn cells"),
     (NONE, Key::C, Command::Compare, "Compare two pictures"),
     (
         NONE,

@@ -352,6 +352,42 @@ fn ok_tables_have_the_same_rows() {
 }
 
 #[test]
+fn ok_local_grids_are_in_tables_and_meshes_and_no_other_files() {
+    let Some(model) = common::data("lgr_nnc/LGR_TESTMOD.EGRID") else {
+        return;
+    };
+    let case = open(&model);
+    let folder = tempfile::tempdir().unwrap();
+    let file = |name: &str| folder.path().join(name);
+    write(&case, None, &["PORO"], &[], &file("a.csv")).unwrap();
+    let rows = rows(&file("a.csv"));
+    let mut grids: Vec<&str> = rows.iter().map(|row| row[1].as_str()).collect();
+    grids.sort_unstable();
+    grids.dedup();
+    assert_eq!(grids, ["LGR1", "LGR2", "global"]);
+    write(&case, None, &["PORO"], &[], &file("a.vtu")).unwrap();
+    let bytes = std::fs::read(file("a.vtu")).unwrap();
+    let numbers: Vec<i32> = bytemuck::pod_collect_to_vec(appended(&bytes, "GRID"));
+    let count = |grid: &str| rows.iter().filter(|row| row[1] == grid).count();
+    let of = |number: i32| numbers.iter().filter(|n| **n == number).count();
+    assert_eq!([of(0), of(1), of(2)], ["global", "LGR1", "LGR2"].map(count));
+    // Files of one grid have all cells of the main one, those that are refined too.
+    let written = write(&case, None, &["PORO"], &[], &file("A.EGRID")).unwrap();
+    assert!(written.notes[0].starts_with("local grids are not written"));
+    let copy = open(&file("A.EGRID"));
+    assert_eq!(copy.grid.active_cells().len(), 30);
+    let field = copy.field("PORO", 0).unwrap();
+    assert!(count("global") < 30);
+    for row in rows.iter().filter(|row| row[1] == "global") {
+        let ijk = [2, 3, 4].map(|n| row[n].parse::<usize>().unwrap());
+        let dims = copy.grid.dims();
+        let cell = dims.cell(dims.one_based(ijk).unwrap());
+        let value = field.value(&copy.grid, cell).unwrap();
+        assert_eq!(row[8], value.to_string());
+    }
+}
+
+#[test]
 fn ok_undefined_values_are_left_out_or_marked() {
     let folder = tempfile::tempdir().unwrap();
     let file = |name: &str| folder.path().join(name);

@@ -22,6 +22,7 @@ const MENUS: [(&str, &[Command]); 5] = [
             Command::Film,
             Command::SaveTable,
             Command::SaveVectors,
+            Command::ExportCells,
             Command::CopyLine,
             Command::Close,
             Command::Reopen,

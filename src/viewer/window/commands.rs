@@ -36,6 +36,7 @@ impl Window {
             Command::LoadScene => self.ask_file(ctx, Purpose::LoadScene),
             Command::SaveTable => self.ask_file(ctx, Purpose::SaveTable),
             Command::SaveVectors => self.ask_file(ctx, Purpose::SaveVectors),
+            Command::ExportCells => self.export_cells(ctx),
             Command::Screenshot => self.sheets.export = Some(false),
             Command::Film => self.sheets.export = Some(true),
             Command::CopyLine => self.copy_command(ctx),
