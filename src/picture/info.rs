@@ -62,6 +62,7 @@ impl Info {
         let factor = shortened(&factor);
         let stretched = match view.world.space {
             Space::Map => format!("Z x {factor}"),
+            Space::Ijk if factor == "1" => "IJK space".into(),
             Space::Ijk => format!("IJK space, K x {factor}"),
         };
         items.push(Item::of([(6, stretched)]));

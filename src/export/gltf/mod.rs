@@ -37,10 +37,10 @@ pub(super) fn write(
     let mut nodes = vec![root(contents, view, &space)];
     let grid = contents.grid();
     let hull = hull(grid, view, contents.drawn(), &space);
-    add(&mut nodes, "hull", hull, &mut buffer);
+    add(&mut nodes, "hull", &hull, &mut buffer);
     output.advance(1)?;
     for (name, mesh) in faults(contents, view, &space) {
-        add(&mut nodes, &format!("fault {name}"), mesh, &mut buffer);
+        add(&mut nodes, &format!("fault {name}"), &mesh, &mut buffer);
     }
     output.advance(1)?;
     for (number, head) in view.shown.wells.heads.iter().enumerate() {
@@ -51,7 +51,7 @@ pub(super) fn write(
         add(
             &mut nodes,
             &format!("well {}", head.name),
-            mesh,
+            &mesh,
             &mut buffer,
         );
     }
@@ -60,9 +60,9 @@ pub(super) fn write(
 }
 
 /// Adds a node below the root, unless it has nothing.
-fn add(nodes: &mut Vec<Value>, name: &str, mesh: Mesh, buffer: &mut Buffer) {
+fn add(nodes: &mut Vec<Value>, name: &str, mesh: &Mesh, buffer: &mut Buffer) {
     if !mesh.is_empty() {
-        let mesh = buffer.add(name, &mesh);
+        let mesh = buffer.add(name, mesh);
         nodes.push(json!({"name": name, "mesh": mesh}));
     }
 }
