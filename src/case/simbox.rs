@@ -27,8 +27,8 @@ impl Simbox {
 impl Case {
     /// The case in a space, given in map space. Values, also those that follow from the geometry such as DEPTH, are the
     /// same in both. Made at the first call.
-    pub fn in_space(self: &Arc<Self>, space: Space) -> Arc<Self> {
-        match space {
+    pub fn in_space(self: &Arc<Self>, space: impl Into<Space>) -> Arc<Self> {
+        match space.into() {
             Space::Ijk if self.grid.space().is_map() => {
                 let made = || Arc::new(self.flattened());
                 self.simbox.case.get_or_init(made).clone()

@@ -7,7 +7,8 @@ use super::row::ms;
 use super::{Plan, Reference, Row};
 use crate::case::Case;
 use crate::compare::markdown::{self, row, table};
-use crate::scene::{Interpolation, Space};
+use crate::model::Space;
+use crate::scene::Interpolation;
 use crate::view::View;
 
 /// What a report tells of its pictures beside their figures.

@@ -2,7 +2,8 @@
 
 use super::ticks::{short_label, shortened};
 use crate::case::{Case, Weighting};
-use crate::scene::{Space, StrategyKind};
+use crate::model::Space;
+use crate::scene::StrategyKind;
 use crate::transfer::Scale;
 use crate::view::facts::Values;
 use crate::view::{Facts, View};

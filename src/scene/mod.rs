@@ -14,7 +14,6 @@ pub mod transfer;
 
 use serde::{Deserialize, Serialize};
 
-pub use crate::model::Space;
 pub use camera::{AutomaticCamera, CameraSpec, ExplicitCamera, FramingCamera, Projection};
 pub use filter::{Filter, Indices, PropertyFilter};
 pub use lighting::{LightMode, LightSpec, LightingSpec};
@@ -175,6 +174,34 @@ pub enum StepSpec {
     Index(usize),
     /// `first`, `last`, a date `2001-06-30`, or a number as text.
     Name(String),
+}
+
+/// What places of cells go by.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Space {
+    /// Their true geometry.
+    #[default]
+    Map,
+    /// Their numbers I, J and K: flat layers and square columns (simbox).
+    Ijk,
+}
+
+impl Space {
+    /// The other one.
+    #[must_use]
+    pub fn other(self) -> Self {
+        match self {
+            Self::Map => Self::Ijk,
+            Self::Ijk => Self::Map,
+        }
+    }
+
+    /// True of the true geometry.
+    #[allow(clippy::trivially_copy_pass_by_ref, reason = "what serde calls")]
+    fn is_map(&self) -> bool {
+        *self == Self::Map
+    }
 }
 
 /// What one looks at.

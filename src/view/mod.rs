@@ -71,6 +71,15 @@ pub struct View {
     pub notes: Notes,
 }
 
+impl From<crate::scene::Space> for Space {
+    fn from(space: crate::scene::Space) -> Self {
+        match space {
+            crate::scene::Space::Map => Self::Map,
+            crate::scene::Space::Ijk => Self::Ijk,
+        }
+    }
+}
+
 /// Where a model is in world space.
 #[derive(Debug, Clone)]
 pub struct World {

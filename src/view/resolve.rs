@@ -21,7 +21,7 @@ use super::{
     filter, surfaces, wells,
 };
 use crate::case::Case;
-use crate::model::{CellField, Dims, Grid, Ijk, Spaces};
+use crate::model::{CellField, Dims, Grid, Ijk, Space, Spaces};
 use crate::scene::{CameraSpec, Inactive, Mode, Scene, SrgSettings};
 use crate::transfer::presets;
 
@@ -111,7 +111,7 @@ pub(super) fn resolve_over(
         world: World {
             spaces,
             vertical_exaggeration: exaggeration,
-            space: scene.space,
+            space: scene.space.into(),
             bounds: world_bounds,
             corners: box_corners,
             subject: Arc::new(subject),
@@ -186,7 +186,7 @@ fn check_version(scene: &Scene) -> Result<(), SceneError> {
 }
 
 fn check_space(scene: &Scene, case: &Case) -> Result<(), SceneError> {
-    match scene.space == case.grid.space() {
+    match Space::from(scene.space) == case.grid.space() {
         true => Ok(()),
         false => Err(wrong(
             "space",

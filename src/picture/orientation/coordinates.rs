@@ -4,9 +4,9 @@ use glam::{DVec2, DVec3};
 
 use super::edges::{self, Edge};
 use super::{Area, Arrangement, overlap};
+use crate::model::Space;
 use crate::picture::ticks::plain_labels;
 use crate::picture::units::short_unit;
-use crate::scene::Space;
 use crate::view::View;
 use crate::view::camera::middle;
 

@@ -13,7 +13,7 @@ pub use edges::on_screen;
 pub use wells::well_names;
 
 use super::ticks::shortened;
-use crate::scene::Space;
+use crate::model::Space;
 use crate::view::View;
 use crate::view::camera::middle;
 

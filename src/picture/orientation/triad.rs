@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3};
 
 use super::{Arrangement, Arrow, Text};
-use crate::scene::Space;
+use crate::model::Space;
 use crate::view::View;
 
 /// A direction of the world.
