@@ -64,6 +64,11 @@ impl FileBytes {
         Self::open_mapping(path, SMALL)
     }
 
+    /// As [`Self::open`], of a file that is one of `count` that are held together: all of them take no more memory than one.
+    pub(crate) fn open_one_of(path: &Path, count: usize) -> Result<Self, ParseError> {
+        Self::open_mapping(path, SMALL / (count as u64).max(1))
+    }
+
     /// As [`Self::open`]; files of more bytes than `small` are mapped.
     pub(crate) fn open_mapping(path: &Path, small: u64) -> Result<Self, ParseError> {
         Ok(Self {
@@ -110,5 +115,25 @@ impl fmt::Debug for FileBytes {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let length = self.bytes().len();
         write!(f, "FileBytes({}, {length} bytes)", self.path.display())
+    }
+}
+
+#[cfg(all(test, feature = "mmap"))]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn many_files_that_are_held_together_are_mapped() {
+        let file = tempfile::NamedTempFile::new().unwrap();
+        let cut = |opened: FileBytes| {
+            file.as_file().set_len(50).unwrap();
+            opened.is_whole()
+        };
+        file.as_file().set_len(100).unwrap();
+        assert!(cut(FileBytes::open(file.path()).unwrap()));
+        file.as_file().set_len(100).unwrap();
+        assert!(cut(FileBytes::open_one_of(file.path(), 1000).unwrap()));
+        file.as_file().set_len(100).unwrap();
+        assert!(!cut(FileBytes::open_one_of(file.path(), 1 << 20).unwrap()));
     }
 }

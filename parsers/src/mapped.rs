@@ -3,7 +3,8 @@
 //! Hazard: when another process truncates the file while it is mapped, touching the lost
 //! pages raises SIGBUS, which ends this one. What lowers it:
 //!
-//! - Only files above 64 MiB are mapped; others are read into memory.
+//! - Only files above 64 MiB are mapped; others are read into memory. Files that are held together, one for each step,
+//!   share these 64 MiB.
 //! - A simulator only appends to its result files while it runs, which is harmless, but it begins them anew
 //!   when it is run again: whoever reads an array asks [`Map::is_whole`] before, which leaves the moment of decoding
 //!   an array, not the hours that a file is open.

@@ -132,7 +132,8 @@ pub fn open_separate(
     files: &[(u32, PathBuf)],
     warnings: &mut Warnings,
 ) -> Result<Vec<Step>, ParseError> {
-    let opened = |(report, path): &(u32, PathBuf)| (*report, FileBytes::open(path));
+    let opened =
+        |(report, path): &(u32, PathBuf)| (*report, FileBytes::open_one_of(path, files.len()));
     separate(files.iter().map(opened), warnings)
 }
 

@@ -97,7 +97,10 @@ impl Summary {
                 Self::from_bytes(FileBytes::open(spec)?, FileBytes::open(data)?, warnings)
             }
             SummarySource::Separate { spec, data } => {
-                let open = |(report, path): &(u32, PathBuf)| Ok((*report, FileBytes::open(path)?));
+                let count = data.len();
+                let open = |(report, path): &(u32, PathBuf)| {
+                    Ok((*report, FileBytes::open_one_of(path, count)?))
+                };
                 let data = data.iter().map(open).collect::<Result<_, ParseError>>()?;
                 Self::separate_from_bytes(FileBytes::open(spec)?, data, warnings)
             }

@@ -40,6 +40,32 @@ fn f04_block_centered_grids() {
 }
 
 #[test]
+fn a_deck_of_dual_porosity_shows_its_matrix() {
+    let folder = tempfile::tempdir().unwrap();
+    let sizes = "DX\n 120*100 /\nDY\n 120*80 /\nDZ\n 30*10 30*20 60*5 /\nTOPS\n 30*2000 /\nPORO\n 60*0.2 60*0.01 /\n";
+    let single = tiny::write(folder.path(), "A.DATA", blocks(sizes));
+    assert_eq!(active(&open(&single)), 120);
+    let dual = blocks(sizes).replace("METRIC", "METRIC\nDUALPORO");
+    let case = open(&tiny::write(folder.path(), "B.DATA", dual));
+    assert_eq!(active(&case), 60);
+    near(&[case.grid.signed_bulk_volume()], &[7.2e6]);
+    near(&stats(&case, "PORO", 0), &[0.2, 0.2, 0.2]);
+    told(&case, &["matrix", "fractures"]);
+}
+
+#[test]
+fn a_radial_deck_closes_its_circle() {
+    let folder = tempfile::tempdir().unwrap();
+    let deck = "RUNSPEC\nRADIAL\nDIMENS\n 2 4 1 /\nMETRIC\nOIL\nWATER\nGRID\nINRAD\n 100 /\nDRV\n 2*100 /\n\
+                DTHETAV\n 4*90 /\nCOORDSYS\n 1 1 'COMP' /\nDZ\n 8*10 /\nTOPS\n 8*2000 /\nPORO\n 8*0.2 /\n";
+    let case = open(&tiny::write(folder.path(), "A.DATA", deck));
+    assert_eq!(active(&case), 8);
+    // Squares of half diagonals 100, 200 and 300, 10 m high.
+    near(&[case.grid.signed_bulk_volume()], &[1.6e6]);
+    told(&case, &["radial", "36.3 %"]);
+}
+
+#[test]
 fn f09_tables_are_no_properties() {
     let folder = tempfile::tempdir().unwrap();
     let table: String = (0..30)
