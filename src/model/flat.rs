@@ -8,18 +8,10 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3};
 
 use super::depth_lists::DepthList;
-use super::grid::{Found, Grid, Pillar};
+use super::grid::{Flat, Found, Grid, Pillar};
 use super::ids::{CellIndex, Dims, Ijk};
 use super::patches::Patch;
 use super::spaces::{MapAxes, Space};
-
-/// What a grid in index space was made of.
-#[derive(Debug)]
-pub(super) struct Flat {
-    of: Arc<Grid>,
-    /// By number of the patch: true where it has no place here.
-    left_out: Vec<bool>,
-}
 
 /// Where the cells of a patch begin and end along I, J and K: one number more than cells.
 type Edges = [Vec<f64>; 3];

@@ -25,7 +25,6 @@ use super::activity::{Activity, ColumnBits};
 use super::column::{Column, Corner};
 use super::corner_point::{Hexahedron, NO_THICKNESS};
 use super::depth_lists::{DepthList, Lists, UsedDepths};
-use super::flat::Flat;
 use super::ids::{ActiveIndex, CellIndex, Dims, Ijk};
 use super::patches::Patches;
 use super::spaces::MapAxes;
@@ -132,6 +131,14 @@ pub struct Grid {
     /// Of a grid in index space.
     pub(super) flat: Option<Arc<Flat>>,
     pub(super) found: Found,
+}
+
+/// What a grid in index space was made of (`flat.rs`).
+#[derive(Debug)]
+pub(super) struct Flat {
+    pub of: Arc<Grid>,
+    /// By number of the patch: true where it has no place here.
+    pub left_out: Vec<bool>,
 }
 
 /// What was found out of the active cells, at the first question.

@@ -2,7 +2,7 @@
 
 use eframe::egui::{self, Key, Modifiers, vec2};
 use glam::DVec3;
-use strataray::scene::{CameraSpec, Filter, Space};
+use strataray::scene::{CameraSpec, Filter};
 use strataray::view::Camera;
 use strataray::viewer::Action;
 
