@@ -21,9 +21,10 @@
 //! | [`image`] | images as pixels, colors, and how far two images are apart |
 //! | [`model`] | the corner-point grid: cells, topology, faults, fields; models by formula |
 //! | [`transfer`] | values to color and extinction |
-//! | [`mod@case`] | a model with its properties and steps; from files ([`case::load`]) and into them ([`case::save`]) |
+//! | [`mod@case`] | a model with its properties and steps, from files ([`case::load`]) |
 //! | [`scene`] | what a scene file says |
 //! | [`view`] | a scene resolved against a case: what is shown, from where, and how it looks |
+//! | [`export`] | cells, values and surfaces as files of other programs |
 //! | [`render`] | from a view to an image, on the GPU or on the CPU |
 //! | [`mod@reference`] | the same in plain f64 on the CPU: the truth that the others are measured against |
 //! | [`picking`] | what is seen at a place in the image |
@@ -34,6 +35,8 @@
 
 pub mod case;
 pub mod compare;
+mod draft;
+pub mod export;
 pub mod image;
 pub mod model;
 pub mod picking;

@@ -64,13 +64,14 @@ pub struct Values {
 }
 
 impl Values {
-    /// One value for each active cell, I fastest, then J, then K; not a number where a cell has none.
+    /// One value for each active cell, local grids included; not a number where a cell has none. Without local grids I is
+    /// fastest, then J, then K.
     pub fn active(&self) -> &[f32] {
         self.field.values()
     }
 
-    /// The value of a cell by I, J, K from 1; `None` of inactive cells, of those without a value, and outside the
-    /// grid.
+    /// The value of a cell of the main grid by I, J, K from 1; `None` of inactive cells, of those without a value, and
+    /// outside the grid.
     pub fn of_cell(&self, [i, j, k]: [usize; 3]) -> Option<f32> {
         let [ni, nj, nk] = self.dims;
         let is_inside = (1..=ni).contains(&i) && (1..=nj).contains(&j) && (1..=nk).contains(&k);
@@ -83,21 +84,25 @@ impl Values {
         self.field.value(grid, grid.dims().cell(cell))
     }
 
-    /// One value for each cell, active or not, I fastest, then J, then K; not a number where there is none.
+    /// One value for each cell of the main grid, active or not, I fastest, then J, then K; not a number where there is
+    /// none.
     pub fn all(&self) -> Vec<f32> {
         let grid = &self.case.grid;
-        let mut all = vec![f32::NAN; grid.dims().cells()];
-        for (cell, value) in grid.active_cells().iter().zip(self.field.values()) {
-            all[cell.0 as usize] = *value;
+        let dims = grid.main_dims();
+        let mut all = vec![f32::NAN; dims.cells()];
+        for (active, cell) in grid.active_in(0) {
+            all[dims.cell(cell).0 as usize] = self.field.values()[active];
         }
         all
     }
 }
 
 /// Where a point lies.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Location {
-    /// The cell, by I, J, K from 1.
+    /// The local grid that has the cell; empty for the main one.
+    pub grid: String,
+    /// The cell, by I, J, K from 1 in that grid.
     pub cell: [usize; 3],
     /// Parameters in the cell, -1 to 1 along I, J and K.
     pub parameters: [f64; 3],
@@ -122,7 +127,7 @@ impl Session {
         }
     }
 
-    /// The case: its grid, steps, properties, and what was not loaded.
+    /// The case in map space: its grid, steps, properties, and what was not loaded.
     pub fn case(&self) -> &Arc<Case> {
         &self.case
     }
@@ -134,7 +139,7 @@ impl Session {
     /// When the case does not have them, or they cannot be read.
     pub fn values(&self, property: &str, step: &str) -> Result<Values, Error> {
         let field = self.field(property, step)?;
-        let dims = self.case.grid.dims();
+        let dims = self.case.grid.main_dims();
         Ok(Values {
             dims: [dims.ni, dims.nj, dims.nk],
             unit: self.case.unit(property).to_owned(),
@@ -174,10 +179,14 @@ impl Session {
         };
         let points: Vec<DVec3> = points.iter().map(in_grid).collect();
         let found = reference::values_at(grid, &field, interpolation, &points);
-        let location = |(located, value): (Located, f64)| Location {
-            cell: located.ijk.one_based(),
-            parameters: located.str.to_array(),
-            value,
+        let location = |(located, value): (Located, f64)| {
+            let cell = grid.cell_name(located.ijk);
+            Location {
+                grid: cell.grid.to_owned(),
+                cell: cell.ijk,
+                parameters: located.str.to_array(),
+                value,
+            }
         };
         Ok(found.into_iter().map(|f| f.map(location)).collect())
     }
@@ -197,9 +206,10 @@ impl Session {
     /// # Errors
     /// When the scene cannot be shown, or there is no device that makes images.
     pub fn picture(&mut self, scene: &Scene) -> Result<Rgb8, Error> {
-        let shot = Shot::of(scene, &self.case, false)?;
-        let image = self.rendered(&shot)?;
-        Ok(shot.finished(&image, &self.case))
+        let case = self.case.in_space(scene.space);
+        let shot = Shot::of(scene, &case, false)?;
+        let image = self.rendered(&shot, &case)?;
+        Ok(shot.finished(&image, &case))
     }
 
     /// The model alone, without a background: red, green and blue times alpha, and alpha.
@@ -207,17 +217,18 @@ impl Session {
     /// # Errors
     /// As [`Self::picture`].
     pub fn image(&mut self, scene: &Scene) -> Result<Image, Error> {
-        let shot = Shot::of(scene, &self.case, true)?;
-        self.rendered(&shot)
+        let case = self.case.in_space(scene.space);
+        let shot = Shot::of(scene, &case, true)?;
+        self.rendered(&shot, &case)
     }
 
-    fn rendered(&mut self, shot: &Shot) -> Result<Image, Error> {
-        let renderer = match &mut self.renderer {
-            Some(renderer) => renderer,
-            None => self
-                .renderer
-                .insert(render::executor(None)?.renderer(&self.case.grid)?),
+    fn rendered(&mut self, shot: &Shot, case: &Case) -> Result<Image, Error> {
+        let kept = self.renderer.take();
+        let kept = match kept.filter(|kept| Arc::ptr_eq(kept.grid(), &case.grid)) {
+            Some(kept) => kept,
+            None => render::executor(None)?.renderer(&case.grid)?,
         };
+        let renderer = self.renderer.insert(kept);
         Ok(renderer.render(&shot.view, &|_| true)?.image)
     }
 }
@@ -274,7 +285,7 @@ mod tests {
                 &[middle, [x, y, depth + 1e6]],
             )
             .unwrap();
-        let at = found[0].unwrap();
+        let at = found[0].clone().unwrap();
         assert_eq!(at.cell, cell.one_based());
         assert!(at.parameters.iter().all(|p| p.abs() < 0.2), "{at:?}");
         let poro = session.values("PORO", "last").unwrap();

@@ -6,13 +6,15 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 /// The rooms from the ground up. `cli` is the command, which imports the library by its name.
-const ROOMS: [&str; 14] = [
+const ROOMS: [&str; 16] = [
+    "draft",
     "image",
     "model",
     "transfer",
     "case",
     "scene",
     "view",
+    "export",
     "render",
     "reference",
     "picking",
@@ -32,8 +34,9 @@ const STRANGERS: [(&str, &[&str]); 4] = [
 ];
 
 /// Crates, and the only rooms that know them; `cli` is the command.
-const CRATES: [(&str, &[&str]); 6] = [
-    ("strataray_parsers", &["case", "lib.rs"]),
+const CRATES: [(&str, &[&str]); 7] = [
+    ("strataray_parsers", &["case", "export", "lib.rs"]),
+    ("parquet", &["export"]),
     ("wgpu", &["render/gpu"]),
     ("eframe", &["viewer"]),
     ("rfd", &["viewer"]),

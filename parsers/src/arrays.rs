@@ -64,13 +64,25 @@ pub fn is_table(name: &str) -> bool {
     TABLES.contains(&name)
 }
 
+/// True of numbers of regions, which files have as whole numbers. FIPOIL and the like are amounts of restarts.
+pub fn is_region(name: &str) -> bool {
+    let is_amount = ["FIPOIL", "FIPWAT", "FIPGAS"].contains(&name);
+    is_cell_array(name) && !is_amount && (name.starts_with("FIP") || name.contains("NUM"))
+}
+
 /// What a cell has where a deck gives an array only in part; `None` where nothing is agreed on.
 pub fn default_value(name: &str) -> Option<f64> {
     match name {
-        "ACTNUM" | "NTG" | "SATNUM" | "PVTNUM" | "EQLNUM" | "FIPNUM" | "ROCKNUM" => Some(1.0),
-        "MULTNUM" => None,
-        _ => name.starts_with("MULT").then_some(1.0),
+        "ACTNUM" | "NTG" | "SATNUM" | "PVTNUM" | "EQLNUM" | "FIPNUM" | "ROCKNUM" | "MULTNUM" => {
+            Some(1.0)
+        }
+        _ => is_multiplier(name).then_some(1.0),
     }
+}
+
+/// True of factors on transmissibilities and pore volumes.
+pub fn is_multiplier(name: &str) -> bool {
+    name.starts_with("MULT") && name != "MULTNUM"
 }
 
 #[cfg(test)]
@@ -86,10 +98,19 @@ mod tests {
             assert!(is_table(name) && !is_cell_array(name), "{name}");
         }
         assert!(!is_cell_array("MYPROP") && !is_cell_array("FIP"));
+        for (name, expected) in [
+            ("SATNUM", true),
+            ("FIPNUM", true),
+            ("FIPZON", true),
+            ("KRNUMX-", true),
+            ("FIPOIL", false),
+            ("PORO", false),
+            ("AQUNUM", false),
+        ] {
+            assert_eq!(is_region(name), expected, "{name}");
+        }
         assert_eq!(default_value("MULTZ-"), Some(1.0));
-        assert_eq!(
-            (default_value("MULTNUM"), default_value("PORO")),
-            (None, None)
-        );
+        assert_eq!(default_value("PORO"), None);
+        assert!(is_multiplier("MULTPV") && !is_multiplier("MULTNUM"));
     }
 }

@@ -1,6 +1,7 @@
 //! The bytes of a file with the name that errors give it: from disk or from memory.
 
 use std::fmt;
+use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -32,19 +33,43 @@ enum Content {
     Memory(Arc<dyn AsRef<[u8]> + Send + Sync>),
 }
 
+/// Files up to this many bytes are read into memory: that takes some hundredths of a second, and what another process
+/// does to them afterwards does not matter (see `mapped`).
+const SMALL: u64 = 64 << 20;
+
+fn content(path: &Path, small: u64) -> io::Result<Content> {
+    // Opening a pipe waits for a writer, and a device has no end.
+    let metadata = std::fs::metadata(path)?;
+    if metadata.is_dir() {
+        return Err(io::ErrorKind::IsADirectory.into());
+    }
+    if !metadata.is_file() {
+        return Err(io::Error::other("not a regular file"));
+    }
+    #[cfg(feature = "mmap")]
+    if metadata.len() > small {
+        return Map::open(path).map(|map| Content::Mapped(Arc::new(map)));
+    }
+    #[cfg(not(feature = "mmap"))]
+    let _ = small;
+    std::fs::read(path).map(|bytes| Content::Memory(Arc::new(bytes)))
+}
+
 impl FileBytes {
-    /// Maps the file at `path`; without the feature `mmap`, reads all of it into memory.
+    /// Reads the file at `path` into memory, or maps it where it is large; without the feature `mmap` it is always read.
     ///
     /// # Errors
-    /// When the file cannot be opened, mapped or read, or is a directory.
+    /// When the file cannot be opened, mapped or read, or is none: a directory, a pipe, a device.
     pub fn open(path: &Path) -> Result<Self, ParseError> {
-        #[cfg(feature = "mmap")]
-        let content = Map::open(path).map(|map| Content::Mapped(Arc::new(map)));
-        #[cfg(not(feature = "mmap"))]
-        let content = std::fs::read(path).map(|bytes| Content::Memory(Arc::new(bytes)));
+        Self::open_mapping(path, SMALL)
+    }
+
+    /// As [`Self::open`]; files of more bytes than `small` are mapped.
+    pub(crate) fn open_mapping(path: &Path, small: u64) -> Result<Self, ParseError> {
         Ok(Self {
             path: path.to_owned(),
-            content: content.map_err(|cause| ParseError::io(path, "cannot open", cause))?,
+            content: content(path, small)
+                .map_err(|cause| ParseError::io(path, "cannot open", cause))?,
         })
     }
 
@@ -62,7 +87,7 @@ impl FileBytes {
         &self.path
     }
 
-    /// False where the file on disk has become shorter since it was mapped.
+    /// False where the file on disk has become shorter since it was mapped; what was read into memory stays whole.
     pub fn is_whole(&self) -> bool {
         match &self.content {
             #[cfg(feature = "mmap")]

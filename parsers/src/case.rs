@@ -12,6 +12,8 @@ pub enum GridSource {
     Egrid(PathBuf),
     /// A text deck or grid file: corner-point or block-centered.
     Deck(PathBuf),
+    /// A ROFF file, binary or text.
+    Roff(PathBuf),
 }
 
 /// Where the time steps are.
@@ -58,6 +60,8 @@ pub struct CaseFiles {
     pub deck: Option<PathBuf>,
     /// Text files that were added by hand: properties, faults and what else goes on where the grid's text ends.
     pub added: Vec<PathBuf>,
+    /// ROFF files of properties: those beside a ROFF grid whose names begin with its own and `--`, and those added by hand.
+    pub roff: Vec<PathBuf>,
     /// Static properties.
     pub init: Option<PathBuf>,
     /// Time steps.
@@ -77,6 +81,7 @@ enum Role {
     Separate(u32),
     Deck,
     Text,
+    Roff,
     /// Curves over time, which [`find_summary`] finds.
     Summary(SummaryPart),
     NotRead(&'static str),
@@ -109,7 +114,7 @@ fn role(path: &Path) -> Option<Role> {
         "UNSMRY" | "FUNSMRY" => Role::Summary(SummaryPart::Unified),
         "ESMRY" => Role::Summary(SummaryPart::Extended),
         "GRDECL" => Role::Text,
-        "ROFF" => Role::NotRead("a ROFF file is not opened as a case"),
+        "ROFF" | "ROFFBIN" | "ROFFASC" => Role::Roff,
         "EPC" => Role::NotRead("RESQML is not read"),
         // Text grids are called .grid too.
         "GRID" if form(path).is_none() => Role::Text,
@@ -135,16 +140,30 @@ fn rank(path: &Path) -> usize {
 
 /// The form of a file of arrays; `None` for other files.
 fn form(path: &Path) -> Option<Form> {
+    Form::of(&start(path)?)
+}
+
+/// The first bytes of a file.
+fn start(path: &Path) -> Option<Vec<u8>> {
     let mut start = Vec::new();
     let file = std::fs::File::open(path).ok()?;
     std::io::Read::read_to_end(&mut std::io::Read::take(file, 64), &mut start).ok()?;
-    Form::of(&start)
+    Some(start)
+}
+
+/// True for a file that begins as ROFF files do.
+fn is_roff(path: &Path) -> bool {
+    start(path).is_some_and(|start| {
+        let text = String::from_utf8_lossy(&start);
+        text.contains("roff-bin") || text.contains("roff-asc")
+    })
 }
 
 /// What the content of the file named by the user shows, where its extension says nothing sure.
 fn sniff(path: &Path) -> Role {
     match role(path) {
         None | Some(Role::Text) if form(path).is_some() => Role::Egrid,
+        None | Some(Role::Text) if is_roff(path) => Role::Roff,
         None => Role::Text,
         Some(role) => role,
     }
@@ -185,10 +204,15 @@ pub fn find(path: &Path) -> Result<CaseFiles, ParseError> {
     let grid = match named {
         Some(Role::Text) => Some(GridSource::Deck(path.to_owned())),
         Some(Role::Egrid) => Some(GridSource::Egrid(path.to_owned())),
+        Some(Role::Roff) => Some(GridSource::Roff(path.to_owned())),
         _ => first(Role::Egrid).map(GridSource::Egrid),
     };
     let deck = first(Role::Deck).or_else(|| first(Role::Text));
-    let Some(grid) = grid.or_else(|| deck.clone().map(GridSource::Deck)) else {
+    let roff = || first(Role::Roff).map(GridSource::Roff);
+    let Some(grid) = grid
+        .or_else(|| deck.clone().map(GridSource::Deck))
+        .or_else(roff)
+    else {
         return Err(no_grid(path, &stem, &files));
     };
     let deck = deck.filter(|_| matches!(grid, GridSource::Egrid(_)));
@@ -216,6 +240,10 @@ pub fn find(path: &Path) -> Result<CaseFiles, ParseError> {
         }
     };
     Ok(CaseFiles {
+        roff: match &grid {
+            GridSource::Roff(grid) => properties_beside(grid),
+            _ => Vec::new(),
+        },
         name: stem,
         grid,
         deck,
@@ -246,6 +274,7 @@ pub fn find_with(path: &Path, with: &[PathBuf]) -> Result<CaseFiles, ParseError>
             |message: &str| ParseError::of(ErrorKind::Unsupported, added, At::File, "", message);
         match sniff(added) {
             Role::Deck | Role::Text => files.added.push(added.clone()),
+            Role::Roff => files.roff.push(added.clone()),
             Role::Init => files.init = Some(added.clone()),
             Role::Unified => files.restart = RestartSource::Unified(added.clone()),
             Role::Separate(report) => separate.push((report, added.clone())),
@@ -337,9 +366,11 @@ fn family(path: &Path, named: Option<Role>) -> Result<(String, Vec<(PathBuf, Rol
         Some(_) => path.file_stem(),
         None => path.file_name(),
     };
-    let stem = stem.and_then(|s| s.to_str()).unwrap_or_default().to_owned();
+    // A name that is not UTF-8 is compared and told by what of it can be read.
+    let stem = stem.map(|s| s.to_string_lossy().into_owned());
+    let stem = stem.unwrap_or_default();
     let mut files = siblings(path, &stem)?;
-    let exact = |p: &Path| p.file_stem().and_then(|s| s.to_str()) == Some(&stem);
+    let exact = |p: &Path| p.file_stem().is_some_and(|s| s.to_string_lossy() == stem);
     files.sort_by_key(|(p, _)| {
         let is_other = p.file_name() != path.file_name();
         (is_other, !exact(p), rank(p), p.clone())
@@ -363,11 +394,30 @@ fn siblings(path: &Path, stem: &str) -> Result<Vec<(PathBuf, Role)>, ParseError>
         }
     };
     let same_stem = |p: &Path| {
-        let this = p.file_stem().and_then(|s| s.to_str());
+        let this = p.file_stem().map(|s| s.to_string_lossy());
         this.is_some_and(|s| s.eq_ignore_ascii_case(stem))
     };
     let files = list.flatten().map(shown).filter(|p| same_stem(p));
     Ok(files.filter_map(|p| role(&p).map(|r| (p, r))).collect())
+}
+
+/// ROFF files of properties beside a ROFF grid: `geogrid--poro.roff` beside `geogrid.roff`.
+fn properties_beside(grid: &Path) -> Vec<PathBuf> {
+    let Some(stem) = grid.file_stem().and_then(|s| s.to_str()) else {
+        return Vec::new();
+    };
+    let start = format!("{stem}--");
+    let folder = grid.parent().filter(|p| !p.as_os_str().is_empty());
+    let files = std::fs::read_dir(folder.unwrap_or_else(|| Path::new(".")));
+    let files = files.into_iter().flatten().flatten();
+    let is_property = |name: &std::ffi::OsString| {
+        let name = name.to_str().unwrap_or_default();
+        name.starts_with(&start) && role(Path::new(name)) == Some(Role::Roff)
+    };
+    let names = files.map(|entry| entry.file_name()).filter(is_property);
+    let mut found: Vec<PathBuf> = names.map(|name| grid.with_file_name(name)).collect();
+    found.sort();
+    found
 }
 
 fn no_grid(path: &Path, stem: &str, files: &[(PathBuf, Role)]) -> ParseError {
@@ -385,7 +435,7 @@ fn no_grid(path: &Path, stem: &str, files: &[(PathBuf, Role)]) -> ParseError {
         "there is no such case"
     };
     let message = format!(
-        "{found}: looked for {stem}.EGRID, {stem}.DATA and {stem}.GRDECL{}",
+        "{found}: looked for {stem}.EGRID, {stem}.DATA, {stem}.GRDECL and {stem}.ROFF{}",
         reason.unwrap_or_default()
     );
     ParseError::of(kind, path, At::File, "", message)

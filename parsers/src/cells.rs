@@ -5,6 +5,7 @@ use std::io::{self, Write};
 use std::ops::Range;
 use std::sync::Arc;
 
+use crate::arrays::is_region;
 use crate::error::ParseError;
 use crate::records::{Entry, RecordFile, RecordWriter, refused};
 use crate::units::UnitSystem;
@@ -243,7 +244,8 @@ pub(crate) fn write_heads<W: Write>(
     out.doub("DOUBHEAD", &[days])
 }
 
-/// Writes arrays of one value per active cell, each made only when its turn comes.
+/// Writes arrays of one value per active cell, or per cell as PORV has, each made only when its turn comes; numbers of
+/// regions as INTE, all others as REAL.
 pub(crate) fn write_arrays<W: Write, N: AsRef<str>>(
     out: &mut RecordWriter<W>,
     head: &Head,
@@ -251,12 +253,22 @@ pub(crate) fn write_arrays<W: Write, N: AsRef<str>>(
 ) -> io::Result<()> {
     for (name, values) in arrays {
         let name = name.as_ref();
-        if usize::try_from(head.active) != Ok(values.len()) {
+        let cells = head.dims.iter().map(|n| i64::from(*n)).product();
+        if ![i64::from(head.active), cells].contains(&(values.len() as i64)) {
             let (expected, found) = (head.active, values.len());
             let message = format!("{name}: expected {expected} values, found {found}");
             return Err(refused(message));
         }
-        out.real(name, &values)?;
+        match whole(&values).filter(|_| is_region(name)) {
+            Some(numbers) => out.inte(name, &numbers)?,
+            None => out.real(name, &values)?,
+        }
     }
     Ok(())
+}
+
+/// Whole numbers, where all are such.
+fn whole(values: &[f32]) -> Option<Vec<i32>> {
+    let number = |v: &f32| (f64::from(*v as i32) == f64::from(*v)).then_some(*v as i32);
+    values.iter().map(number).collect()
 }

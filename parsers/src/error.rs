@@ -98,9 +98,8 @@ impl ParseError {
             kind,
             path: path.to_owned(),
             at,
-            // Names of damaged arrays may hold anything, and an error is one line.
-            keyword: keyword.trim().replace(char::is_control, "?"),
-            message: message.into(),
+            keyword: one_line(keyword.trim().to_owned()),
+            message: one_line(message.into()),
             included_from: Vec::new(),
             cause: None,
         }
@@ -115,6 +114,14 @@ impl ParseError {
         let mut error = Self::of(kind, path, At::File, "", format!("{what}: {cause}"));
         error.cause = Some(cause);
         error
+    }
+}
+
+/// Names and tokens of damaged files may hold anything, and what people are told is one line.
+fn one_line(text: String) -> String {
+    match text.contains(char::is_control) {
+        true => text.replace(char::is_control, "?"),
+        false => text,
     }
 }
 
@@ -168,7 +175,7 @@ impl Warnings {
         self.0.push(Warning {
             path: path.to_owned(),
             at,
-            message: message.into(),
+            message: one_line(message.into()),
         });
     }
 

@@ -31,10 +31,11 @@ pub fn from_bytes(
     Ok(CellArrays::new(&file, all))
 }
 
-/// Writes an INIT file; each of `arrays` has one value per active cell and is made when its turn comes.
+/// Writes an INIT file; each of `arrays` has one value per active cell, or per cell as PORV has, and is made when its
+/// turn comes.
 ///
 /// # Errors
-/// When writing fails, an array has not `head.active` values, or a name or the date is none.
+/// When writing fails, an array has another number of values, or a name or the date is none.
 pub fn write<W: Write, N: AsRef<str>>(
     out: W,
     head: &Head,

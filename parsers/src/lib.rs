@@ -91,7 +91,7 @@
 //!
 //! Both are on by default; the crate builds without them, as for a browser.
 //!
-//! - `mmap`: files on disk are mapped. Without it they are read into memory, all at once.
+//! - `mmap`: large files on disk are mapped. Without it they are read into memory, all at once, as small ones always are.
 //! - `parallel`: arrays are converted in several threads. Without it, in the one that asks.
 
 pub mod arrays;
@@ -107,6 +107,7 @@ pub mod init;
 #[cfg(feature = "mmap")]
 mod mapped;
 mod parallel;
+mod radial;
 pub mod records;
 pub mod restart;
 pub mod roff;

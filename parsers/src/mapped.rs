@@ -1,9 +1,17 @@
 //! A read-only memory map of a whole file: the only unsafe code of the project.
 //!
 //! Hazard: when another process truncates the file while it is mapped, touching the lost
-//! pages raises SIGBUS. A simulator only appends to its result files while it runs, which is
-//! harmless, but it begins them anew when it is run again: who reads a file that has been open
-//! for a while asks [`Map::is_whole`] before, which leaves a moment, not hours.
+//! pages raises SIGBUS, which ends this one. What lowers it:
+//!
+//! - Only files above 64 MiB are mapped; others are read into memory.
+//! - A simulator only appends to its result files while it runs, which is harmless, but it begins them anew
+//!   when it is run again: whoever reads an array asks [`Map::is_whole`] before, which leaves the moment of decoding
+//!   an array, not the hours that a file is open.
+//!
+//! What is left is that moment, for large files. Nothing closes it while memory is mapped: no file lock on
+//! Linux keeps others from truncating, a private mapping follows the file all the same, and a handler of the signal is
+//! unsafe code that a library must not install. The full cure is to read each array by its place in the file, into memory
+//! of its own, instead of lending slices of the whole file ([`crate::FileBytes::bytes`]).
 
 use std::fs::File;
 use std::io;
@@ -21,14 +29,10 @@ impl Map {
     /// Maps the file at `path`.
     ///
     /// # Errors
-    /// When the file cannot be opened or mapped, or is a directory.
+    /// When the file cannot be opened or mapped.
     pub(crate) fn open(path: &Path) -> io::Result<Self> {
         let file = File::open(path)?;
-        let metadata = file.metadata()?;
-        if metadata.is_dir() {
-            return Err(io::ErrorKind::IsADirectory.into());
-        }
-        let map = match metadata.len() {
+        let map = match file.metadata()?.len() {
             0 => None,
             _ => Some(map_read_only(&file)?),
         };

@@ -11,6 +11,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use strataray_parsers::deck::{Grdecl, MemoryFiles, UnitSystem};
+use strataray_parsers::egrid::PorosityModel;
+use strataray_parsers::records::RecordWriter;
 use strataray_parsers::{ParseError, Warnings};
 
 /// One cell, with all corners at depth 0 or 1.
@@ -354,9 +356,9 @@ fn ok_what_is_not_applied_is_said_and_doubted() {
          COPY\n PORO PERMY /\n NOSUCH PERMX /\n/\nMULTIPLY\n TRANX 0.5 /\n/\nCOPY\n PERMX PERMZ /\n/\n",
     ));
     for expected in [
-        "EQUALREG was not applied to PORO, NTG: this keyword is not evaluated",
+        "EQUALREG was not applied to PORO, NTG: the array of its regions is not in the deck",
         "EQUALS was not applied to PERMX: its box is outside the grid",
-        "COPY was not applied to PERMX: the array to copy is not in the deck",
+        "COPY was not applied to PERMX: the array that it reads is not in the deck",
         "MULTIPLY was not applied to TRANX, which the deck does not give",
     ] {
         assert!(warning.contains(expected), "{expected}\n{warning}");
@@ -377,6 +379,190 @@ fn ok_what_is_not_applied_is_said_and_doubted() {
     assert_eq!(doubt("PERMZ"), doubt("PERMX"));
     // What is set anew for all cells is as the deck says.
     assert_eq!(doubt("NTG"), None);
+}
+
+/// Regions 1 and 2 side by side along i, and 3 instead of both in the lower layer.
+const REGIONS: &str =
+    "8*3 /\nBOX\n1 1 1 2 1 1 /\nNAME\n2*1 /\nBOX\n2 2 1 2 1 1 /\nNAME\n2*2 /\nENDBOX\n";
+
+fn regions(name: &str) -> String {
+    format!("{name}\n{}", REGIONS.replace("NAME", name))
+}
+
+#[test]
+fn ok_operations_on_regions() {
+    let poro = "PORO\n8*0.5 /\nPERMX\n1 2 3 4 5 6 7 8 /\n";
+    let with = |text: &str| {
+        let grid = ok(&cube(&format!("{}{poro}{text}", regions("MULTNUM"))));
+        property(&grid, "PORO").to_vec()
+    };
+    let (a, b) = (0.25, 0.5);
+    let first = [a, b, a, b, b, b, b, b];
+    assert_eq!(with("EQUALREG\n PORO 0.25 1 M /\n/\n"), first);
+    assert_eq!(with("EQUALREG\n PORO 0.25 1 /\n/\n"), first);
+    assert_eq!(with("MULTIREG\n PORO 0.5 1 M /\n/\n"), first);
+    assert_eq!(with("ADDREG\n PORO -0.25 1 /\n/\n"), first);
+    // Another region, other cells.
+    let second = [b, a, b, a, b, b, b, b];
+    assert_eq!(with("EQUALREG\n PORO 0.25 2 M /\n/\n"), second);
+    // Regions as they are when the record is read.
+    assert_eq!(
+        with("EQUALS\n MULTNUM 2 1 1 1 1 1 1 /\n/\nEQUALREG\n PORO 0.25 2 /\n/\n"),
+        [a, a, b, a, b, b, b, b]
+    );
+    assert_eq!(
+        with("COPYREG\n PERMX PORO 3 /\n/\n"),
+        [b, b, b, b, 5.0, 6.0, 7.0, 8.0]
+    );
+    let (grid, warning) = warned(&cube(&format!(
+        "{}{poro}EQUALREG\n PORO 0.25 7 /\n PORO 0.1 1 O /\n/\n",
+        regions("MULTNUM")
+    )));
+    assert_eq!(property(&grid, "PORO"), [0.5; 8]);
+    for expected in [
+        "EQUALREG was not applied to PORO: no cell is in its region",
+        "EQUALREG was not applied to PORO: the array of its regions is not in the deck",
+    ] {
+        assert!(warning.contains(expected), "{warning}");
+    }
+}
+
+#[test]
+fn ok_the_array_of_regions_that_is_meant() {
+    let both = format!("{}FLUXNUM\n4*1 4*2 /\nPORO\n8*0.5 /\n", regions("MULTNUM"));
+    let record = "EQUALREG\n PORO 0 1 LETTER /\n/\n";
+    let zeros = |options: &str, letter: &str| {
+        let grid = ok(&cube(&format!(
+            "{options}{both}{}",
+            record.replace("LETTER", letter)
+        )));
+        let values = property(&grid, "PORO").to_vec();
+        (0..8)
+            .filter(|cell| values[*cell] == 0.0)
+            .collect::<Vec<_>>()
+    };
+    let (flux, multiplier) = (vec![0, 1, 2, 3], vec![0, 2]);
+    assert_eq!(zeros("", "F"), flux);
+    assert_eq!(zeros("", "M"), multiplier);
+    // Where none is named: as GRIDOPTS has it.
+    assert_eq!(zeros("", ""), flux);
+    assert_eq!(zeros("GRIDOPTS\n 'YES' 0 /\n", ""), flux);
+    assert_eq!(zeros("GRIDOPTS\n 'YES' 3 /\n", ""), multiplier);
+}
+
+#[test]
+fn ok_formulas() {
+    let deck = "PORO\n8*0.5 /\nPERMX\n10 100 4*10 -3 10 /\n";
+    let target = |record: &str| {
+        let (grid, warning) = warned(&cube(&format!("{deck}OPERATE\n PORO 6* {record} /\n/\n")));
+        (property(&grid, "PORO").to_vec(), warning)
+    };
+    // By hand, for x = 10, 100 and -3, and r = 0.5.
+    for (record, expected) in [
+        ("MULTA PERMX 2 1", [21.0, 201.0, -5.0]),
+        ("POLY PERMX 2 2", [200.5, 20000.5, 18.5]),
+        ("SLOG PERMX 1 0.1", [100.0, 1e11, 10_f64.powf(0.7)]),
+        ("MULTX PERMX 3", [30.0, 300.0, -9.0]),
+        ("ADDX PERMX 3", [13.0, 103.0, 0.0]),
+        ("COPY PERMX", [10.0, 100.0, -3.0]),
+        ("MAXLIM PERMX 20", [10.0, 20.0, -3.0]),
+        ("MINLIM PERMX 20", [20.0, 100.0, 20.0]),
+        ("MULTP PERMX 2 2", [200.0, 20000.0, 18.0]),
+        ("ABS PERMX", [10.0, 100.0, 3.0]),
+        ("MULTIPLY PERMX", [5.0, 50.0, -1.5]),
+        ("INV PERMX", [0.1, 0.01, -1.0 / 3.0]),
+    ] {
+        let (values, warning) = target(record);
+        for (cell, expected) in [0, 1, 6].into_iter().zip(expected) {
+            let difference = (values[cell] - expected).abs();
+            assert!(difference <= 1e-12 * expected.abs(), "{record}: {values:?}");
+        }
+        assert!(warning.is_empty(), "{warning}");
+    }
+    for (record, first) in [("LOG10 PERMX", 1.0), ("LOGE PERMX", 10_f64.ln())] {
+        let (values, warning) = target(record);
+        assert_eq!(values[0], first);
+        assert!(values[6].is_nan() && !values[7].is_nan());
+        assert!(
+            warning.contains("PORO becomes undefined in 1 cell"),
+            "{warning}"
+        );
+    }
+    let (values, warning) = target("NOSUCH PERMX");
+    assert_eq!(values, [0.5; 8]);
+    assert!(warning.contains("OPERATE was not applied to PORO: its formula is not known"));
+}
+
+#[test]
+fn ok_formulas_in_boxes_and_regions() {
+    let deck = format!(
+        "PORO\n8*0.5 /\nPERMX\n1 2 3 4 5 6 7 8 /\n{}",
+        regions("OPERNUM")
+    );
+    let grid = ok(&cube(&format!(
+        "{deck}OPERATE\n PORO 1 1 1 1 2 2 MULTX PERMX 10 /\n PERMY 6* COPY PERMX /\n/\n\
+         OPERATER\n PORO 1 ADDX PERMX 100 /\n PERMY 3 MULTA PORO 2 1 1* O /\n/\n"
+    )));
+    assert_eq!(
+        property(&grid, "PORO"),
+        [101.0, 0.5, 103.0, 0.5, 50.0, 0.5, 0.5, 0.5]
+    );
+    let defined: Vec<f64> = property(&grid, "PERMY").to_vec();
+    // A box that is named holds for the records behind it, so the copy is of one cell.
+    assert!(defined[..4].iter().all(|value| value.is_nan()));
+    assert_eq!(defined[4..], [101.0, 2.0, 2.0, 2.0]);
+}
+
+#[test]
+fn ok_the_section_edit_has_factors_of_its_own() {
+    let grid = ok(&cube(
+        "GRID\nMULTX\n8*0.5 /\nMULTPV\n8*2 /\nPORO\n8*0.1 /\nEDIT\n\
+         MULTX\n4*0.5 4*1 /\nEQUALS\n MULTPV 3 1 1 1 1 1 1 /\n MULTY 0.1 /\n/\n\
+         BOX\n1 2 1 1 1 1 /\nPORV\n100 200 /\nENDBOX\nMULTIPLY\n PORV 10 1 2 1 2 1 1 /\n/\n",
+    ));
+    let half = 0.25;
+    assert_eq!(
+        property(&grid, "MULTX"),
+        [half, half, half, half, 0.5, 0.5, 0.5, 0.5]
+    );
+    let mut thinner = [1.0; 8];
+    thinner[0] = 0.1;
+    assert_eq!(property(&grid, "MULTY"), thinner);
+    // Given pore volumes: 100 and 200, times 10, the first times the factor of its cell in EDIT.
+    let volumes = property(&grid, "PORV");
+    assert_eq!(volumes[..2], [3000.0, 2000.0]);
+    assert!(volumes[2..].iter().all(|volume| volume.is_nan()));
+    // Others follow from the geometry, times the factors of both sections and those on PORV.
+    assert_eq!(
+        property(&grid, "MULTPV")[1..],
+        [2.0, 20.0, 20.0, 2.0, 2.0, 2.0, 2.0]
+    );
+    // In one section the last one holds.
+    let (grid, _) = warned(&cube("GRID\nMULTX\n8*0.5 /\nMULTX\n8*0.25 /\n"));
+    assert_eq!(property(&grid, "MULTX"), [0.25; 8]);
+}
+
+#[test]
+fn ok_changes_of_pore_volumes_that_are_not_known() {
+    let (grid, warning) = warned(&cube(
+        "GRID\nPORO\n8*0.1 /\nEDIT\nEQUALS\n PORV 5 1 1 1 1 1 1 /\n/\nADD\n PORV 1 /\n/\n",
+    ));
+    assert_eq!(property(&grid, "PORV")[0], 6.0);
+    assert!(
+        warning.contains("ADD was not applied to PORV where it follows from the geometry"),
+        "{warning}"
+    );
+    let (grid, _) = warned(&cube("EDIT\nADD\n PORV 1 /\n/\n"));
+    assert!(names(&grid).is_empty());
+}
+
+#[test]
+fn ok_cells_are_made_inactive_by_operations() {
+    let grid = ok(&cube(
+        "EQUALS\n ACTNUM 0 1 1 1 2 1 1 /\n/\nBOX\n2 2 2 2 2 2 /\nACTNUM\n0 /\nENDBOX\n\
+         FLUXNUM\n7*1 2 /\nEQUALREG\n ACTNUM 1 2 F /\n/\n",
+    ));
+    assert_eq!(grid.actnum.unwrap(), [0, 1, 0, 1, 1, 1, 1, 1]);
 }
 
 #[test]
@@ -431,6 +617,125 @@ fn ok_block_centered_grids() {
     );
 }
 
+/// A ring of two cells along the radius, four around and two layers, with `sizes`.
+fn ring(sizes: &str) -> (Grdecl, String) {
+    warned(&format!(
+        "RUNSPEC\nRADIAL\nDIMENS\n2 4 2 /\nGRID\nINRAD\n1 /\n{sizes}DZ\n8*5 8*10 /\nTOPS\n8*1000 /\nPORO\n16*0.2 /\n"
+    ))
+}
+
+#[test]
+fn ok_radial_grids() {
+    let near = |values: &[f64], expected: &[f64]| {
+        let pairs = values.iter().zip(expected);
+        assert_eq!(values.len(), expected.len());
+        assert!(
+            pairs.clone().all(|(a, b)| (a - b).abs() < 1e-9),
+            "{values:?} {expected:?}"
+        );
+    };
+    let (grid, warning) = ring("DRV\n2 4 /\nDTHETAV\n4*90 /\n");
+    assert!(warning.contains("the grid is radial"), "{warning}");
+    // Radii 1, 3, 7; the second row of pillars is a quarter of a turn on.
+    near(&grid.coord[..6], &[1.0, 0.0, 1000.0, 1.0, 0.0, 1015.0]);
+    near(&grid.coord[12..15], &[7.0, 0.0, 1000.0]);
+    near(&grid.coord[30..33], &[0.0, 7.0, 1000.0]);
+    assert_eq!(grid.coord[..18], grid.coord[72..]);
+    assert_eq!([grid.zcorn[0], grid.zcorn[127]], [1000.0, 1015.0]);
+    assert_eq!(property(&grid, "PORO").len(), 16);
+    // The same by cells, and by an operation.
+    let arrays = "DR\n2 4 2 4 2 4 2 4 2 4 2 4 2 4 2 4 /\nEQUALS\n DTHETA 90 /\n/\n";
+    assert_eq!(ring(arrays).0.coord, grid.coord);
+    // Other sizes, other pillars.
+    let (other, _) = ring("DRV\n2 5 /\nDTHETAV\n4*45 /\n");
+    near(&other.coord[12..14], &[8.0, 0.0]);
+    near(
+        &other.coord[66..68],
+        &[-8.0 * 0.5_f64.sqrt(), 8.0 * 0.5_f64.sqrt()],
+    );
+    near(&other.coord[84..86], &[-8.0, 0.0]);
+    // Radii between two ends grow by the same factor: 1, 4, 16.
+    let (grown, _) = ring("OUTRAD\n16 /\nDTHETAV\n4*90 /\n");
+    near(&[grown.coord[6], grown.coord[12]], &[4.0, 16.0]);
+    let lacking = "RUNSPEC\nRADIAL\nDIMENS\n1 1 1 /\nDR\n1 /\nDTHETA\n360 /\nDZ\n1 /\nTOPS\n1 /\n";
+    err(lacking, "a radial one needs DIMENS, INRAD");
+}
+
+#[test]
+fn ok_radial_corner_points() {
+    // One cell from radius 1 to 2 and from 0 to 90 degrees.
+    let pillars = "1 0 0 1 0 1  2 0 0 2 0 1  1 90 0 1 90 1  2 90 0 2 90 1";
+    let start = CELL.find("0 0 0 0 0 1").unwrap();
+    let end = CELL.find(" /\nZCORN").unwrap();
+    let deck = format!("{}{pillars}{}", &CELL[..start], &CELL[end..]);
+    let (grid, warning) = warned(&deck.replace("1 1 1 1 F", "1 1 1 1 T"));
+    assert!(warning.contains("radial"), "{warning}");
+    assert!(grid.coord[18].abs() < 1e-15 && grid.coord[19] == 2.0);
+    assert_eq!(ok(&deck).coord[18..20], [2.0, 90.0]);
+}
+
+/// A deck of dual porosity, 1 x 1 cells in two layers of matrix and two of fractures.
+fn dual(text: &str) -> String {
+    format!("RUNSPEC\nDUALPORO\nOIL\nDIMENS\n1 1 4 /\nGRID\n{text}")
+}
+
+#[test]
+fn ok_dual_porosity_shows_the_matrix() {
+    let corners = |zcorn: &str| {
+        format!(
+            "SPECGRID\n1 1 4 1 F /\nCOORD\n0 0 0 0 0 1  1 0 0 1 0 1  0 1 0 0 1 1  1 1 0 1 1 1 /\nZCORN\n{zcorn} /\n"
+        )
+    };
+    let both = "4*0 8*1 4*2 4*0 8*1 4*2";
+    for zcorn in [both, "4*0 8*1 4*2"] {
+        let grid = ok(&dual(&format!(
+            "{}PORO\n0.1 0.2 0.3 0.4 /\nPERMX\n2*5 2*500 /\nACTNUM\n1 0 1 1 /\nFAULTS\n F 1 1 1 1 1 4 X /\n G 1 1 1 1 3 4 X /\n/\n",
+            corners(zcorn)
+        )));
+        assert_eq!(grid.porosity_model, PorosityModel::Dual);
+        assert_eq!(grid.dims, [1, 1, 2]);
+        assert_eq!(grid.zcorn.len(), 16);
+        assert_eq!(property(&grid, "PORO"), [0.1, 0.2]);
+        assert_eq!(property(&grid, "PERMX"), [5.0, 5.0]);
+        // Both, and the fracture alone.
+        assert_eq!(grid.actnum, Some(vec![3, 2]));
+        assert_eq!((grid.faults.len(), grid.faults[0].k), (1, [1, 2]));
+    }
+    // Without the word the same text is four layers.
+    let single = ok(&dual(&corners(both)).replace("DUALPORO\n", ""));
+    assert_eq!((single.dims, single.actnum), ([1, 1, 4], None));
+    // Sizes of the matrix alone.
+    let blocks = dual(
+        "DPGRID\nDX\n2*10 /\nDY\n2*10 /\nDZ\n5 6 /\nTOPS\n100 /\nBOX\n1 1 1 1 3 4 /\nPERMX\n7 8 /\nENDBOX\n",
+    );
+    let grid = ok(&blocks);
+    assert_eq!(grid.zcorn[12..], [111.0; 4]);
+    assert_eq!(grid.actnum, Some(vec![3, 3]));
+    let odd = blocks.replace("1 1 4 /", "1 1 3 /");
+    err(&odd, "DIMENS: 3 layers of dual porosity");
+}
+
+#[test]
+fn ok_activity_of_a_grid_file_is_changed() {
+    let mut out = RecordWriter::new(Vec::new());
+    out.inte("GRIDHEAD", &[1, 2, 1, 1]).unwrap();
+    out.real("COORD", &[0.5; 36]).unwrap();
+    out.real("ZCORN", &[1.5; 16]).unwrap();
+    out.inte("ACTNUM", &[0, 1]).unwrap();
+    let egrid = out.finish().unwrap();
+    let read = |text: &str| {
+        let deck = format!("GDFILE\n 'A.EGRID' /\n{text}");
+        let files = [("A.DATA", deck.into_bytes()), ("A.EGRID", egrid.clone())];
+        let files = MemoryFiles::from_iter(files);
+        let mut warnings = Warnings::default();
+        let grid = Grdecl::read_from(&files, Path::new("A.DATA"), &[], &mut warnings);
+        grid.unwrap().actnum.unwrap()
+    };
+    assert_eq!(read(""), [0, 1]);
+    assert_eq!(read("EQUALS\n ACTNUM 0 2 2 1 1 1 1 /\n/\n"), [0, 0]);
+    assert_eq!(read("ACTNUM\n2*1 /\n"), [1, 1]);
+}
+
 #[test]
 fn ok_depths_are_shifted() {
     let grid = ok(&cube(
@@ -478,7 +783,6 @@ fn ok_dimensions_without_the_number_of_coordinate_systems() {
     ] {
         assert_eq!(ok(&CELL.replace("1 1 1 1 F", dims)).dims, [1; 3], "{dims}");
     }
-    err(&CELL.replace("1 1 1 1 F", "1 1 1 T"), "radial");
 }
 
 #[test]
@@ -491,7 +795,10 @@ fn ok_odd_decks_are_warned_about() {
             "GDFILE\n'X.EGRID' U /\n",
             "GDFILE is not read: the deck has COORD",
         ),
-        ("IMPORT\n'X.GRDECL' /\n", "IMPORT names is not read"),
+        (
+            "IMPORT\n'X.GRDECL' /\n",
+            "IMPORT was not read, so its arrays are missing: X.GRDECL: cannot open",
+        ),
         ("some text at the end", "no closing /"),
         ("DIMENS\n2 2 2 /\n", "SPECGRID is followed"),
     ] {
@@ -598,13 +905,13 @@ fn err_missing_keywords() {
     err("", "SPECGRID (or DIMENS) and COORD and ZCORN missing");
     err(
         "DIMENS\n1 1 1 /\nDX\n100 /\nDY\n100 /\nDZ\n1 /\n",
-        "no grid: COORD and ZCORN missing",
+        "no grid: a block-centered one needs DIMENS, DX (or DXV)",
     );
     err("PORO\n0.5 /\n", "has PORO but no grid");
     err("FAULTS\nA 1 1 1 1 1 1 X /\n/\n", "has FAULTS but no grid");
     err(
         "DIMENS\n1 1 1 /\nDR\n1 /\nDTHETA\n360 /\nDZ\n1 /\nTOPS\n1 /\n",
-        "radial",
+        "no grid: a radial one needs DIMENS, INRAD, DR",
     );
 }
 
@@ -619,7 +926,6 @@ fn err_dimensions() {
     err(&with("1 1"), "expected three numbers of cells");
     err(&with("1* 1 1"), "found '*'");
     err(&with("1 1 1 2 F"), "NUMRES");
-    err(&with("1 1 1 1 T"), "radial");
     err(&with("99999 99999 99999"), "more than a grid can have");
     err(
         &with("18446744073709551615 2 2"),
@@ -676,6 +982,70 @@ fn ok_includes_quoted_bare_aliased_and_nested() {
             "ntg.inc"
         ]
     );
+}
+
+#[test]
+fn ok_imported_files() {
+    let values = |out: &mut RecordWriter<Vec<u8>>| {
+        out.real("PORO", &[0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8])?;
+        out.inte("SATNUM", &[1, 1, 1, 1, 2, 2, 2, 2])?;
+        out.chars("NAMES", &["A"])
+    };
+    let written = |mut out: RecordWriter<Vec<u8>>| {
+        values(&mut out).unwrap();
+        out.finish().unwrap()
+    };
+    let (binary, text) = (
+        written(RecordWriter::new(Vec::new())),
+        written(RecordWriter::formatted(Vec::new())),
+    );
+    let read = |text: &str, files: Vec<(&str, Vec<u8>)>| {
+        let deck = ("model/A.DATA", cube(text).into_bytes());
+        let files = MemoryFiles::from_iter(files.into_iter().chain([deck]));
+        let mut warnings = Warnings::default();
+        let grid = Grdecl::read_from(&files, Path::new("model/A.DATA"), &[], &mut warnings);
+        let said: Vec<_> = warnings.iter().map(ToString::to_string).collect();
+        (grid.unwrap(), said.join("\n"))
+    };
+    let deck = "PATHS\n'P' '..\\Props' /\n/\nIMPORT\n '$P\\arrays.bin' FORM /\nEQUALS\n PORO 0.9 1 1 1 1 1 1 /\n/\n";
+    for (form, bytes) in [("UNFORMATTED", &binary), ("FORMATTED", &text)] {
+        let deck = deck.replace("FORM", form);
+        let (grid, warning) = read(&deck, vec![("props/ARRAYS.BIN", bytes.clone())]);
+        assert_eq!(warning, "");
+        let poro: Vec<_> = property(&grid, "PORO").iter().map(|v| *v as f32).collect();
+        assert_eq!(poro, [0.9, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8]);
+        assert_eq!(property(&grid, "SATNUM")[3..5], [1.0, 2.0]);
+        assert_eq!(names(&grid), ["PORO", "SATNUM"]);
+        assert_eq!(grid.files.len(), 2);
+    }
+    // One that ends within an array, one of another number of cells, and one of text.
+    let cut = binary[..binary.len() - 9].to_vec();
+    let (grid, warning) = read(deck, vec![("props/arrays.bin", cut)]);
+    assert_eq!(names(&grid), ["PORO"]);
+    assert!(warning.contains("IMPORT was not read"), "{warning}");
+    let mut out = RecordWriter::new(Vec::new());
+    out.real("PORO", &[0.5; 7]).unwrap();
+    let (_, warning) = read(deck, vec![("props/arrays.bin", out.finish().unwrap())]);
+    assert!(
+        warning.contains("PORO has 7 values for 8 cells"),
+        "{warning}"
+    );
+    let (grid, _) = read(deck, vec![("props/arrays.bin", b"NTG\n8*0.5 /\n".to_vec())]);
+    assert_eq!(names(&grid), ["NTG", "PORO"]);
+    // A grid in a file.
+    let mut out = RecordWriter::new(Vec::new());
+    let pillars = [[0.0_f32, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]];
+    let coord = pillars.map(|[x, y]| [x, y, 0.0, x, y, 1.0]).concat();
+    out.real("COORD", &coord).unwrap();
+    out.real("ZCORN", &[0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0])
+        .unwrap();
+    let files = [
+        ("A", b"DIMENS\n1 1 1 /\nIMPORT\n 'G' /\n".to_vec()),
+        ("G", out.finish().unwrap()),
+    ];
+    let files = MemoryFiles::from_iter(files);
+    let grid = Grdecl::read_from(&files, Path::new("A"), &[], &mut Warnings::default());
+    assert_eq!(grid.unwrap().coord, ok(CELL).coord);
 }
 
 #[test]

@@ -13,6 +13,7 @@ use std::{fs, io};
 use strataray_parsers::cells::Head;
 use strataray_parsers::deck::{DeckWriter, Grdecl, GridText, GridUnit};
 use strataray_parsers::egrid::{self, Egrid, LocalGrid, PorosityModel};
+use strataray_parsers::records::Kind;
 use strataray_parsers::restart::{self, RestartWriter};
 use strataray_parsers::units::UnitSystem;
 use strataray_parsers::{Warnings, init};
@@ -187,6 +188,31 @@ fn ok_restart_reads_back_equal() {
     assert_eq!(read(0, "SWAT"), Some(values(1)));
     assert_eq!(read(1, "PRESSURE"), None);
     assert_eq!(read(1, "SWAT"), Some(values(2)));
+}
+
+#[test]
+fn ok_regions_are_whole_numbers_and_porv_has_all_cells() {
+    let head = Head {
+        dims: [5, 1, 1],
+        active: 2,
+        ..head()
+    };
+    let arrays = [
+        ("SATNUM", vec![1.0, 2.0]),
+        ("FIPNUM", vec![1.0, 1e20]),
+        ("NTG", vec![1.0, 1.0]),
+        ("PORV", vec![0.0, 7.5, 0.0, 2.5, 0.0]),
+    ];
+    let bytes = init::write(Vec::new(), &head, arrays.clone()).unwrap();
+    let read = init::from_bytes(("A.INIT", bytes), &mut Warnings::default()).unwrap();
+    for ((name, values), kind) in
+        arrays
+            .iter()
+            .zip([Kind::Inte, Kind::Real, Kind::Real, Kind::Real])
+    {
+        let entry = read.find(name).unwrap();
+        assert_eq!((entry.kind, &read.values(entry).unwrap()), (kind, values));
+    }
 }
 
 #[test]

@@ -196,16 +196,17 @@ pub fn minus(
         connections: a.connections.clone(),
         steps: dated(a, b, &steps),
         properties: a.properties.iter().cloned().chain([property]).collect(),
-        source: Box::new(Subtracted {
+        source: Arc::new(Subtracted {
             of: [a.clone(), b.clone()],
             names: [now, base].map(str::to_owned),
             own: name.to_owned(),
             places: places(a, b),
             steps,
         }),
-        cache: FieldCache::default(),
-        over_steps: OverSteps::default(),
-        wells: WellsOfSteps::default(),
+        cache: Arc::new(FieldCache::default()),
+        over_steps: Arc::new(OverSteps::default()),
+        wells: Arc::new(WellsOfSteps::default()),
+        simbox: a.simbox.of_same_grid(),
         minus: Some(Minus {
             name: name.to_owned(),
             now: now.to_owned(),

@@ -4,7 +4,8 @@ mod cache;
 mod difference;
 pub mod load;
 mod over_steps;
-pub mod save;
+mod pores;
+mod simbox;
 mod vectors;
 mod weights;
 mod wells;
@@ -20,6 +21,7 @@ use crate::model::{CellField, FaultFaces, Grid, Ijk};
 
 pub use difference::{Difference, Minus, difference_name, minus, nearest};
 pub use over_steps::{Categories, MAX_CATEGORIES, OverSteps, ValueRange};
+pub use simbox::Simbox;
 pub use vectors::{Vector, VectorKind, VectorSource, Vectors};
 pub use weights::{Extent, Weighting, Weights};
 pub use wells::{Connection, ConnectionAxis, Well, WellKind, WellsOfSteps};
@@ -103,17 +105,6 @@ pub struct NamedFault {
     pub multiplier: Option<f64>,
 }
 
-/// A local grid refinement, which is known of but not shown.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct LocalGrid {
-    /// Name.
-    pub name: String,
-    /// Cells along i, j and k.
-    pub dims: [usize; 3],
-    /// Active cells.
-    pub active: usize,
-}
-
 /// What the files say of the case beside grid and values.
 #[derive(Debug, Clone, Default)]
 pub struct About {
@@ -127,12 +118,11 @@ pub struct About {
     pub map_axes: Option<[f64; 6]>,
     /// Length unit of map coordinates: METRES, FEET or CM.
     pub map_unit: String,
-    /// `single`, `dual porosity` or `dual permeability`.
+    /// `single`, `dual` or `dual_permeability`. With fractures, properties such as `SWAT` are of the matrix,
+    /// `SWAT.FRACTURE` of the fractures, and `SWAT.TOTAL` of both by pore volume.
     pub porosity_model: String,
     /// Non-neighbor connections of the global grid, as the file counts them.
     pub nnc: usize,
-    /// Local grids.
-    pub local_grids: Vec<LocalGrid>,
     /// Faults that have a name.
     pub named_faults: Vec<NamedFault>,
     /// Wells by name.
@@ -233,15 +223,17 @@ pub struct Case {
     /// Properties that can be shown.
     pub properties: Vec<Property>,
     /// Gives the values.
-    pub source: Box<dyn Source>,
+    pub source: Arc<dyn Source>,
     /// Fields used last.
-    pub cache: FieldCache,
+    pub cache: Arc<FieldCache>,
     /// Wells of steps, once read.
-    pub wells: WellsOfSteps,
+    pub wells: Arc<WellsOfSteps>,
     /// What was found out of properties over all steps.
-    pub over_steps: OverSteps,
+    pub over_steps: Arc<OverSteps>,
     /// The property that is a difference to another case, of a case made by [`minus`].
     pub minus: Option<Minus>,
+    /// The same case in index space.
+    pub simbox: Simbox,
 }
 
 impl Case {
@@ -406,7 +398,7 @@ impl Case {
 
     fn derived(&self, property: &Property, step: usize) -> Result<CellField, CaseError> {
         if let Some((_, derived)) = Derived::ALL.iter().find(|(n, _)| *n == property.name) {
-            return Ok(derived.field(&self.grid));
+            return Ok(derived.field(self.grid.in_map_space()));
         }
         let values = match property.name.as_str() {
             _ if !property.rest_of.is_empty() => self.rest_of(&property.rest_of, step)?,
@@ -462,7 +454,10 @@ impl Case {
     fn derived_thickness(&self) -> Result<Vec<f32>, CaseError> {
         Ok(match self.source.values("DZ", 0)? {
             Some(dz) => CellField::new(dz).values().to_vec(),
-            None => Derived::Thickness.field(&self.grid).values().to_vec(),
+            None => {
+                let grid = self.grid.in_map_space();
+                Derived::Thickness.field(grid).values().to_vec()
+            }
         })
     }
 }

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 use super::weights::{Extent, Weights};
 use super::{Case, CaseError};
-use crate::model::{CellField, derivatives};
+use crate::model::{CellField, Space, derivatives};
 use crate::transfer::Scale;
 use crate::transfer::boundaries::{self, Boundary};
 use crate::transfer::opacity::Opacity;
@@ -102,7 +102,7 @@ impl Categories {
     }
 }
 
-/// What was found out, by property; and of faults.
+/// What was found out, by property; and of cells and faults.
 #[derive(Default)]
 pub struct OverSteps {
     ranges: Kept<Option<ValueRange>>,
@@ -110,8 +110,8 @@ pub struct OverSteps {
     boundaries: Kept<Arc<[Boundary]>>,
     opacities: Kept<Option<Opacity>>,
     weights: OnceLock<Weights>,
-    extents: OnceLock<Arc<Vec<Extent>>>,
-    /// By exaggeration.
+    /// By space, and the mean edges by exaggeration too.
+    extents: Kept<Arc<Vec<Extent>>>,
     mean_edges: Kept<DVec3>,
     throws: OnceLock<Arc<[Option<f64>]>>,
 }
@@ -121,13 +121,25 @@ impl OverSteps {
         self.weights.get_or_init(find).clone()
     }
 
-    pub(super) fn extents(&self, find: impl FnOnce() -> Arc<Vec<Extent>>) -> Arc<Vec<Extent>> {
-        self.extents.get_or_init(find).clone()
+    pub(super) fn extents(
+        &self,
+        space: Space,
+        find: impl FnOnce() -> Arc<Vec<Extent>>,
+    ) -> Arc<Vec<Extent>> {
+        let find = || Ok::<_, Infallible>(find());
+        let Ok(extents) = self.extents.get(&format!("{space:?}"), find);
+        extents
     }
 
-    pub(super) fn mean_edges(&self, exaggeration: f64, find: impl FnOnce() -> DVec3) -> DVec3 {
+    pub(super) fn mean_edges(
+        &self,
+        space: Space,
+        exaggeration: f64,
+        find: impl FnOnce() -> DVec3,
+    ) -> DVec3 {
         let find = || Ok::<_, Infallible>(find());
-        let Ok(edges) = self.mean_edges.get(&exaggeration.to_string(), find);
+        let key = format!("{space:?} {exaggeration}");
+        let Ok(edges) = self.mean_edges.get(&key, find);
         edges
     }
 
@@ -224,7 +236,8 @@ impl Case {
                 return Ok(Arc::default());
             };
             let field = scale.field(&field, f64::NAN);
-            Ok(boundaries::find(&derivatives::samples(&self.grid, &field, None)).into())
+            let samples = derivatives::samples(self.grid.in_map_space(), &field, None);
+            Ok(boundaries::find(&samples).into())
         })
     }
 
@@ -233,8 +246,9 @@ impl Case {
     pub fn largest_throws(&self) -> Arc<[Option<f64>]> {
         let find = || {
             let mut largest = vec![None; self.about.named_faults.len()];
-            for (fault, ijk, face) in self.fault_faces.faces(self.grid.dims().nk) {
-                let throw = self.grid.throw(ijk, face).map(f64::abs);
+            let grid = self.grid.in_map_space();
+            for (fault, ijk, face) in self.fault_faces.faces(grid.dims().nk) {
+                let throw = grid.throw(ijk, face).map(f64::abs);
                 if let (Some(throw), Some(largest)) = (throw, largest.get_mut(fault)) {
                     *largest = Some(largest.map_or(throw, |known: f64| known.max(throw)));
                 }

@@ -5,9 +5,22 @@ use std::sync::Arc;
 use glam::{DVec3, DVec4};
 use rayon::prelude::*;
 
+use super::pores::Pores;
 use super::{Case, Kind};
 use crate::model::Column;
 use crate::model::derived::Derived;
+
+/// The array of pore volumes.
+const PORE_VOLUME: &str = "PORV";
+
+/// A volume, 0 where unknown.
+fn kept(volume: f32) -> f32 {
+    if volume.is_finite() && volume > 0.0 {
+        volume
+    } else {
+        0.0
+    }
+}
 
 /// What cells are weighted by.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -44,6 +57,29 @@ impl Case {
         self.over_steps.weights(|| self.found_weights())
     }
 
+    /// The weights for the values of a property: with dual porosity those of the fractures, or of matrix and fractures.
+    pub fn weights_of(&self, property: &str) -> Weights {
+        let (_, pores) = Pores::of(property);
+        let volumes = |pores: Pores| self.field(&pores.name(PORE_VOLUME), 0).ok();
+        let matrix = || self.weights();
+        if pores == Pores::Matrix {
+            return matrix();
+        }
+        let Some(fractures) = volumes(Pores::Fracture) else {
+            return matrix();
+        };
+        let mut values: Vec<f32> = fractures.values().iter().map(|v| kept(*v)).collect();
+        if pores == Pores::Total {
+            let matrix = matrix().values;
+            let both = values.iter_mut().zip(&*matrix);
+            both.for_each(|(value, of_matrix)| *value += of_matrix);
+        }
+        Weights {
+            weighting: Weighting::PoreVolume,
+            values: Arc::new(values),
+        }
+    }
+
     fn found_weights(&self) -> Weights {
         let field = |name: &str| {
             let known = self
@@ -53,14 +89,15 @@ impl Case {
             let field = known.then(|| self.field(name, 0).ok()).flatten()?;
             field.values().iter().any(|v| *v > 0.0).then_some(field)
         };
-        let kept = |v: f32| if v.is_finite() && v > 0.0 { v } else { 0.0 };
-        if let Some(porv) = field("PORV") {
+        if let Some(porv) = field(PORE_VOLUME) {
+            let mut values: Vec<f32> = porv.values().par_iter().map(|v| kept(*v)).collect();
+            self.grid.share_out(&mut values);
             return Weights {
                 weighting: Weighting::PoreVolume,
-                values: Arc::new(porv.values().par_iter().map(|v| kept(*v)).collect()),
+                values: Arc::new(values),
             };
         }
-        let bulk = Derived::Volume.field(&self.grid);
+        let bulk = Derived::Volume.field(self.grid.in_map_space());
         let mut values: Vec<f32> = bulk.values().iter().map(|v| kept(*v)).collect();
         let mut weighting = Weighting::BulkVolume;
         if let Some(porosity) = field("PORO") {
@@ -79,7 +116,7 @@ impl Case {
 
     /// The extents of each active cell. Found at the first call.
     pub fn extents(&self) -> Arc<Vec<Extent>> {
-        self.over_steps.extents(|| {
+        self.over_steps.extents(self.grid.space(), || {
             let extent = |column: &Column<'_>, k: usize| {
                 let edges = column.hexahedron(k).mean_edges();
                 Extent {
@@ -94,7 +131,8 @@ impl Case {
     /// Mean edge lengths along i, j and k of the cells with a thickness, in world space. Found at the first call for
     /// an exaggeration.
     pub fn mean_edges(&self, exaggeration: f64) -> DVec3 {
-        self.over_steps.mean_edges(exaggeration, || {
+        let space = self.grid.space();
+        self.over_steps.mean_edges(space, exaggeration, || {
             let edges_and_one = |column: &Column<'_>, k: usize| {
                 if !column.has_thickness(k) {
                     return DVec4::ZERO;
@@ -113,7 +151,7 @@ impl Case {
     /// The thinnest extent of the whole model in world space, of its active cells alone: mean thickness of its
     /// columns, or cells along i or j times their mean edge.
     pub fn thinnest_extent(&self, exaggeration: f64) -> f64 {
-        let dims = self.grid.dims();
+        let dims = self.grid.main_dims();
         let extents = self.extents();
         let sum =
             |of: &dyn Fn(&Extent) -> f32| extents.iter().map(|e| f64::from(of(e))).sum::<f64>();

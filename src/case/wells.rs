@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use super::CaseError;
-use crate::model::{Dims, Ijk};
+use crate::model::{Grid, Ijk};
 
 /// What a well does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -72,11 +72,38 @@ pub struct Well {
 }
 
 impl Well {
-    /// The cells of the global grid that it is connected to, in the order of the file.
-    pub fn global_cells(&self, dims: Dims) -> impl Iterator<Item = Ijk> {
-        let of_global = self.connections.iter().filter(|c| c.grid.is_none());
-        let cells = of_global.map(|c| c.cell);
-        cells.filter(move |c| c.i < dims.ni && c.j < dims.nj && c.k < dims.nk)
+    /// The cells of a case's grids that it is connected to, in the order of the file.
+    pub fn cells(&self, grid: &Grid) -> impl Iterator<Item = Ijk> {
+        self.connections.iter().filter_map(|c| c.cell_in(grid))
+    }
+
+    /// The cells of [`Self::finest_connections`].
+    pub fn finest_cells<'a>(&'a self, grid: &'a Grid) -> impl Iterator<Item = Ijk> + use<'a> {
+        self.finest_connections(grid)
+            .filter_map(|c| c.cell_in(grid))
+    }
+
+    /// Its connections, of which one whose cell a local grid refines is left out where others are in that grid.
+    pub fn finest_connections<'a>(
+        &'a self,
+        grid: &'a Grid,
+    ) -> impl Iterator<Item = &'a Connection> + use<'a> {
+        let refined = |connection: &Connection| grid.host(connection.cell_in(grid)?);
+        let refined: Vec<Ijk> = self.connections.iter().filter_map(refined).collect();
+        let is_refined = move |cell: Ijk| refined.contains(&cell);
+        let connections = self.connections.iter();
+        connections.filter(move |c| !c.cell_in(grid).is_some_and(&is_refined))
+    }
+}
+
+impl Connection {
+    /// Its cell in the lattice of a case's grids; `None` where its grid is not there, or does not have the cell.
+    pub fn cell_in(&self, grid: &Grid) -> Option<Ijk> {
+        let patch = match &self.grid {
+            None => 0,
+            Some(name) => grid.patch_named(name)?,
+        };
+        grid.in_lattice(patch, self.cell)
     }
 }
 

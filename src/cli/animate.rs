@@ -81,7 +81,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
     check(arguments)?;
     arguments.options.set_threads()?;
     let case = arguments.options.open_case(&arguments.case, &reporter)?;
-    let scene = arguments.options.scene(&case, &reporter)?;
+    let (scene, case) = arguments.options.scene_in_space(case, &reporter)?;
     let sequence = sequence(arguments, &scene, &case, &reporter)?;
     for sentence in sequence.left_out() {
         reporter.note(sentence);

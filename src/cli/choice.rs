@@ -1,7 +1,7 @@
 //! Choices by name, as scene files have them, with a sentence for each.
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use strataray::scene::{Interpolation, LightMode, Mode, Storage, StrategyKind};
+use strataray::scene::{Interpolation, LightMode, Mode, Space, Storage, StrategyKind};
 use strataray::view::TurnAxis;
 
 /// A name, what it stands for, and what that is in one sentence.
@@ -17,6 +17,15 @@ pub const MODES: [NamedChoice<Mode>; 2] = [
         "cells",
         Mode::Cells,
         "Opaque cells: their outer faces and the sections of clip planes, each cell in the color of its value",
+    ),
+];
+
+pub const SPACES: [NamedChoice<Space>; 2] = [
+    ("map", Space::Map, "The true geometry"),
+    (
+        "ijk",
+        Space::Ijk,
+        "Flat layers and square columns by I, J and K (simbox), values unchanged",
     ),
 ];
 

@@ -75,7 +75,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
     arguments.options.set_threads()?;
     let strategies = strategies(arguments);
     let case = arguments.options.open_case(&arguments.case, &reporter)?;
-    let scene = arguments.options.scene(&case, &reporter)?;
+    let (scene, case) = arguments.options.scene_in_space(case, &reporter)?;
     let executor = arguments.options.open_executor(&reporter)?;
     let plan = Plan {
         strategies,

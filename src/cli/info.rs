@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use rayon::prelude::*;
 use serde_json::{Value, json};
 use strataray::case::{Case, Connection, Kind, NamedFault, Property, Vector, VectorKind};
-use strataray::model::{MapAxes, Spaces};
+use strataray::model::{CellField, Grid, Ijk, MapAxes, Spaces, Statistics};
 
 use super::Verbosity;
 use super::progress::Reporter;
@@ -136,29 +136,33 @@ fn print_wells(case: &Case) -> anyhow::Result<()> {
 
 fn facts(case: &Case, stats: &[String]) -> anyhow::Result<Value> {
     let grid = &case.grid;
-    let dims = grid.dims();
+    let dims = grid.main_dims();
     let faults = grid.fault_faces();
-    let signed = grid.signed_bulk_volume();
-    let thin = grid.active_by_column().filter(|&c| !grid.has_thickness(c));
+    let Shape {
+        active,
+        bounds,
+        volume: signed,
+        thin,
+    } = Shape::of(grid, 0);
     let mut facts = json!({
         "case": case.about.name,
         "files": case.about.files.iter().map(|f| f.display().to_string()).collect::<Vec<_>>(),
         "dims": [dims.ni, dims.nj, dims.nk],
         "cells": dims.cells(),
-        "active": grid.active_cells().len(),
+        "active": active,
         "units": case.about.length_unit,
         "map_axes": case.about.map_axes,
         "handedness": if signed < 0.0 { "left" } else { "right" },
-        "bounds": grid.bounds().map(|[a, b]| json!({"min": a.to_array(), "max": b.to_array()})),
+        "bounds": bounds,
         "bulk_volume": signed.abs(),
-        "thin_cells": thin.count(),
+        "thin_cells": thin,
         "fault_faces": {
             "i": faults[0],
             "j": faults[1],
             "named": case.about.named_faults.iter().map(named_fault).collect::<Vec<_>>(),
         },
         "nnc": case.about.nnc,
-        "lgr": case.about.local_grids.iter().map(|g| json!({"name": g.name, "dims": g.dims, "active": g.active})).collect::<Vec<_>>(),
+        "lgr": (1..grid.patches().len()).map(|n| local_grid(grid, n)).collect::<Vec<_>>(),
         "porosity_model": case.about.porosity_model,
         "properties": case.properties.iter().map(property).collect::<Vec<_>>(),
         "steps": case.steps.iter().enumerate().map(|(index, s)| {
@@ -171,7 +175,7 @@ fn facts(case: &Case, stats: &[String]) -> anyhow::Result<Value> {
         facts["map_units"] = json!(case.about.map_unit);
         facts["map_bounds"] = map_bounds(case, axes);
     }
-    let mut statistics = serde_json::Map::new();
+    let mut statistics = vec![serde_json::Map::new(); grid.patches().len()];
     for asked in stats {
         // A difference has a step of its own in its name.
         let at_step = asked
@@ -181,12 +185,86 @@ fn facts(case: &Case, stats: &[String]) -> anyhow::Result<Value> {
             Some((name, step)) => (name, case.step(step)?),
             None => (asked.as_str(), case.step("last")?),
         };
-        statistics.insert(asked.clone(), json!(case.field(name, step)?.statistics()));
+        let field = case.field(name, step)?;
+        for (patch, statistics) in statistics.iter_mut().enumerate() {
+            statistics.insert(asked.clone(), json!(statistics_in(grid, patch, &field)));
+        }
     }
-    if !statistics.is_empty() {
-        facts["stats"] = Value::Object(statistics);
+    for (patch, statistics) in statistics.into_iter().enumerate() {
+        if !stats.is_empty() {
+            let of = match patch {
+                0 => &mut facts,
+                local => &mut facts["lgr"][local - 1],
+            };
+            of["stats"] = Value::Object(statistics);
+        }
     }
     Ok(facts)
+}
+
+/// Statistics of a property in the active cells of a grid.
+fn statistics_in(grid: &Grid, patch: usize, field: &CellField) -> Option<Statistics> {
+    if grid.patches().len() == 1 {
+        return field.statistics();
+    }
+    let mut is_in = vec![false; field.values().len()];
+    grid.active_in(patch)
+        .for_each(|(active, _)| is_in[active] = true);
+    field.statistics_of(Some(&is_in))
+}
+
+/// What the active cells of a grid span.
+struct Shape {
+    active: usize,
+    bounds: Value,
+    volume: f64,
+    thin: usize,
+}
+
+impl Shape {
+    fn of(grid: &Grid, patch: usize) -> Self {
+        let is_one = grid.patches().len() == 1;
+        let cells = grid.active_by_column();
+        let cells: Vec<Ijk> = cells
+            .filter(|c| is_one || grid.patch_of(*c) == Some(patch))
+            .collect();
+        let volume = match is_one {
+            true => grid.signed_bulk_volume(),
+            false => cells
+                .iter()
+                .map(|c| grid.hexahedron(*c).signed_volume())
+                .sum(),
+        };
+        let bounds = grid.bounds_of(cells.par_iter().copied());
+        Self {
+            active: grid.active_in(patch).count(),
+            bounds: json!(bounds.map(|[a, b]| json!({"min": a.to_array(), "max": b.to_array()}))),
+            volume,
+            thin: cells
+                .par_iter()
+                .filter(|c| !grid.has_thickness(**c))
+                .count(),
+        }
+    }
+}
+
+/// A local grid; its bounds and volume are those of the cells that are drawn.
+fn local_grid(grid: &Grid, number: usize) -> Value {
+    let patch = &grid.patches()[number];
+    let dims = patch.file_dims();
+    let shape = Shape::of(grid, number);
+    let mut hosts: Vec<Ijk> = grid.hosts_of(number).map(|(_, host)| host).collect();
+    hosts.sort_unstable_by_key(|host| grid.dims().cell(*host));
+    hosts.dedup();
+    json!({
+        "name": patch.name,
+        "parent": grid.patches()[patch.parent].name,
+        "dims": [dims.ni, dims.nj, dims.nk],
+        "active": shape.active,
+        "bounds": shape.bounds,
+        "bulk_volume": shape.volume.abs(),
+        "cells_replaced": hosts.len(),
+    })
 }
 
 fn named_fault(fault: &NamedFault) -> Value {
@@ -220,13 +298,16 @@ fn property(property: &Property) -> Value {
 fn map_bounds(case: &Case, axes: MapAxes) -> Value {
     let spaces = Spaces::new(Some(axes), 1.0);
     let grid = &case.grid;
-    let corners = grid.active_cells().par_iter().flat_map_iter(|&cell| {
-        let corners = grid.hexahedron(grid.dims().ijk(cell)).0;
-        corners.map(|c| {
-            let world = spaces.world_from_grid.transform_point3(c);
-            spaces.map_from_world(world).to_array()
-        })
-    });
+    let cells = grid.active_by_column();
+    let corners = cells
+        .filter(|c| grid.patch_of(*c) == Some(0))
+        .flat_map_iter(|cell| {
+            let corners = grid.hexahedron(cell).0;
+            corners.map(|c| {
+                let world = spaces.world_from_grid.transform_point3(c);
+                spaces.map_from_world(world).to_array()
+            })
+        });
     let bounds = corners.map(|c| [c, c]).reduce_with(|a, b| {
         [
             std::array::from_fn(|n| a[0][n].min(b[0][n])),
@@ -237,7 +318,7 @@ fn map_bounds(case: &Case, axes: MapAxes) -> Value {
 }
 
 fn print_text(case: &Case, facts: &Value) {
-    let dims = case.grid.dims();
+    let dims = case.grid.main_dims();
     say_line!("{}", case.about.name);
     say_line!(
         "  {} x {} x {} = {} cells, {} active",
@@ -265,12 +346,27 @@ fn print_text(case: &Case, facts: &Value) {
         );
     }
     say_line!(
-        "  fault faces {} along i, {} along j; {} non-neighbor connections; {} local grids",
+        "  fault faces {} along i, {} along j; {} non-neighbor connections",
         facts["fault_faces"]["i"],
         facts["fault_faces"]["j"],
-        case.about.nnc,
-        case.about.local_grids.len()
+        case.about.nnc
     );
+    for grid in facts["lgr"].as_array().into_iter().flatten() {
+        let text = |key: &str| grid[key].as_str().unwrap_or_default();
+        let parent = match text("parent") {
+            "" => "the main grid",
+            name => name,
+        };
+        say_line!(
+            "  local grid {}: {} x {} x {}, {} active, in place of {} cells of {parent}",
+            text("name"),
+            grid["dims"][0],
+            grid["dims"][1],
+            grid["dims"][2],
+            grid["active"],
+            grid["cells_replaced"]
+        );
+    }
     for kind in [Kind::Static, Kind::Dynamic, Kind::Derived] {
         let names: Vec<_> = case
             .properties

@@ -9,6 +9,7 @@ mod cancel;
 mod choice;
 mod compare;
 mod doctor;
+mod export;
 mod info;
 mod pick;
 mod probe;
@@ -29,6 +30,7 @@ const EXAMPLES: &str = "Examples:
   strataray render samples/scissor/SCISSOR.EGRID --property SWAT --step last -o swat.png
   strataray animate samples/scissor/SCISSOR.EGRID --property SWAT --over steps -o flood.png
   strataray compare samples/scissor/SCISSOR.EGRID --views 6 -o compared
+  strataray export samples/scissor/SCISSOR.EGRID --property PORO SWAT -o swat.vtu
   strataray sample faulted -o models
   strataray bench R1 samples/scissor/SCISSOR.EGRID
   strataray pick samples/scissor/SCISSOR.EGRID --at 500,500
@@ -62,6 +64,8 @@ enum Command {
     Probe(probe::Arguments),
     /// Compares strategies side by side: images, difference maps, figures.
     Compare(compare::Arguments),
+    /// Writes cells, values and surfaces to files of other programs.
+    Export(export::Arguments),
     /// Times loading and rendering on this machine.
     Bench(bench::Arguments),
     /// Writes a synthetic faulted model with time steps.
@@ -115,6 +119,7 @@ pub fn run() -> ExitCode {
         Some(Command::Pick(a)) => pick::run(&a),
         Some(Command::Probe(a)) => probe::run(&a),
         Some(Command::Compare(a)) => compare::run(&a),
+        Some(Command::Export(a)) => export::run(&a),
         Some(Command::Bench(a)) => bench::run(&a),
         Some(Command::Sample(a)) => sample::run(&a),
         Some(Command::Doctor(a)) => doctor::run(&a),

@@ -6,6 +6,7 @@ use anyhow::Context;
 use glam::DVec2;
 use serde_json::{Value, json};
 use strataray::case::Case;
+use strataray::model::{GridCell, Ijk};
 use strataray::picking::{self, CellOnRay, Fault, Hit, Part, Pick};
 use strataray::picture::{Shot, short_unit};
 
@@ -43,7 +44,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let pixel = pixel(&arguments.at)?;
     arguments.options.set_threads()?;
     let case = arguments.options.open_case(&arguments.case, &reporter)?;
-    let scene = arguments.options.scene(&case, &reporter)?;
+    let (scene, case) = arguments.options.scene_in_space(case, &reporter)?;
     let shot = Shot::of(&scene, &case, arguments.plain)?;
     let at = place(&shot, scene.size, pixel)?;
     let executor = arguments.options.open_executor(&reporter)?;
@@ -98,26 +99,29 @@ fn facts(case: &Case, pixel: [i64; 2], pick: &Pick) -> Value {
         "property": pick.property,
         "step": is_dynamic.then_some(pick.step),
         "unit": case.unit(&pick.property),
-        "hit": pick.hit.as_ref().map(fact_of_hit),
+        "hit": pick.hit.as_ref().map(|hit| fact_of_hit(case, hit)),
         "well": pick.well.as_ref().map(|well| {
             json!({"name": well.name, "type": well.kind.name(), "open": well.is_open})
         }),
-        "ray": pick.cells.iter().map(fact_of_cell).collect::<Vec<_>>(),
+        "ray": pick.cells.iter().map(|cell| fact_of_cell(case, cell)).collect::<Vec<_>>(),
         "before": before,
         "behind": behind,
     })
 }
 
-fn fact_of_hit(hit: &Hit) -> Value {
-    let [i, j, k] = hit.ijk.one_based();
+fn fact_of_hit(case: &Case, hit: &Hit) -> Value {
+    let GridCell {
+        grid,
+        ijk: [i, j, k],
+    } = case.grid.cell_name(hit.ijk);
     let (part, fault) = match &hit.part {
         Part::Inside => ("inside", None),
         Part::Section => ("section", None),
         Part::Face(_) => ("face", None),
-        Part::Fault(fault) => ("fault", Some(fact_of_fault(fault))),
+        Part::Fault(fault) => ("fault", Some(fact_of_fault(case, fault))),
     };
     json!({
-        "grid": "",
+        "grid": grid,
         "i": i,
         "j": j,
         "k": k,
@@ -130,19 +134,23 @@ fn fact_of_hit(hit: &Hit) -> Value {
     })
 }
 
-fn fact_of_fault(fault: &Fault) -> Value {
+fn fact_of_fault(case: &Case, fault: &Fault) -> Value {
+    let name = |cell: Ijk| case.grid.cell_name(cell).ijk;
     json!({
         "name": fault.name,
         "throw": fault.throw,
-        "near": fault.near.one_based(),
-        "far": fault.far.one_based(),
+        "near": name(fault.near),
+        "far": name(fault.far),
     })
 }
 
-fn fact_of_cell(cell: &CellOnRay) -> Value {
-    let [i, j, k] = cell.ijk.one_based();
+fn fact_of_cell(case: &Case, cell: &CellOnRay) -> Value {
+    let GridCell {
+        grid,
+        ijk: [i, j, k],
+    } = case.grid.cell_name(cell.ijk);
     json!({
-        "grid": "",
+        "grid": grid,
         "i": i,
         "j": j,
         "k": k,
@@ -173,7 +181,11 @@ fn text(case: &Case, [x, y]: [i64; 2], pick: &Pick) -> String {
     };
     let unit = case.unit(&pick.property);
     let value = |value: f64| format!("{} {} {unit}", pick.property, single(value));
-    let mut lines = vec![format!("{}   {}", named(hit), value(hit.value).trim_end())];
+    let mut lines = vec![format!(
+        "{}   {}",
+        case.grid.cell_name(hit.ijk),
+        value(hit.value).trim_end()
+    )];
     if hit.is_between {
         let shown = value(hit.shown);
         lines.push(format!("{} at this point (interpolated)", shown.trim_end()));
@@ -194,17 +206,12 @@ fn text(case: &Case, [x, y]: [i64; 2], pick: &Pick) -> String {
         "{before} in front, {behind} behind along the line of sight:"
     ));
     lines.push(String::new());
-    lines.extend(table(pick, before));
+    lines.extend(table(case, pick, before));
     lines.join("\n") + "\n"
 }
 
-fn named(hit: &Hit) -> String {
-    let [i, j, k] = hit.ijk.one_based();
-    format!("I {i}  J {j}  K {k}")
-}
-
 /// The cells around the one that is taken, which has a mark.
-fn table(pick: &Pick, taken: usize) -> Vec<String> {
+fn table(case: &Case, pick: &Pick, taken: usize) -> Vec<String> {
     let first = taken.saturating_sub(LISTED);
     let last = (taken + LISTED + 1).min(pick.cells.len());
     let heading = format!(
@@ -215,13 +222,17 @@ fn table(pick: &Pick, taken: usize) -> Vec<String> {
     let more = |n: usize| (n > 0).then(|| format!("  ... {n} more"));
     lines.extend(more(first));
     for (n, cell) in pick.cells.iter().enumerate().take(last).skip(first) {
-        let [i, j, k] = cell.ijk.one_based();
+        let GridCell {
+            grid,
+            ijk: [i, j, k],
+        } = case.grid.cell_name(cell.ijk);
         let mark = if n == taken { '>' } else { ' ' };
-        lines.push(format!(
-            "{mark} {i:>5} {j:>5} {k:>5} {:>14} {:>11.1}",
+        let line = format!(
+            "{mark} {i:>5} {j:>5} {k:>5} {:>14} {:>11.1}  {grid}",
             single(cell.value),
             100.0 * cell.contribution
-        ));
+        );
+        lines.push(line.trim_end().to_owned());
     }
     lines.extend(more(pick.cells.len() - last));
     lines

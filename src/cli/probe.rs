@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use anyhow::Context;
 use glam::DVec3;
 use strataray::case::Case;
-use strataray::model::{Ijk, Spaces};
+use strataray::model::{Grid, Ijk, Spaces};
 use strataray::reference::{self, Located};
 use strataray::scene::{Interpolation, Scene, StepSpec};
 use strataray::{render, view};
@@ -92,9 +92,9 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
         Some(path) => {
             let file = std::fs::File::create(path)
                 .with_context(|| format!("cannot write {}", path.display()))?;
-            write_answers(std::io::BufWriter::new(file), &given, &answers)
+            write_answers(std::io::BufWriter::new(file), &case.grid, &given, &answers)
         }
-        None => write_answers(std::io::stdout().lock(), &given, &answers),
+        None => write_answers(std::io::stdout().lock(), &case.grid, &given, &answers),
     }
 }
 
@@ -156,20 +156,30 @@ fn read_points(arguments: &Arguments) -> anyhow::Result<Vec<DVec3>> {
     Ok(points)
 }
 
-fn write_answers(mut out: impl Write, points: &[DVec3], answers: &[Probed]) -> anyhow::Result<()> {
-    writeln!(out, "x,y,depth,i,j,k,s,t,r,value")?;
+/// A row for each point; a last column names the local grid, where the case has some.
+fn write_answers(
+    mut out: impl Write,
+    grid: &Grid,
+    points: &[DVec3],
+    answers: &[Probed],
+) -> anyhow::Result<()> {
+    let has_local = grid.patches().len() > 1;
+    let last = if has_local { ",grid" } else { "" };
+    writeln!(out, "x,y,depth,i,j,k,s,t,r,value{last}")?;
     for (p, answer) in points.iter().zip(answers) {
+        let point = format!("{},{},{}", p.x, p.y, p.z);
         match answer {
-            Some((ijk, parameters, value)) => {
-                let [i, j, k] = ijk.one_based();
+            Some((cell, parameters, value)) => {
+                let cell = grid.cell_name(*cell);
+                let [i, j, k] = cell.ijk;
                 let [s, t, r] = parameters.to_array();
-                writeln!(
-                    out,
-                    "{},{},{},{i},{j},{k},{s},{t},{r},{value}",
-                    p.x, p.y, p.z
-                )?;
+                write!(out, "{point},{i},{j},{k},{s},{t},{r},{value}")?;
+                if has_local {
+                    write!(out, ",{}", cell.grid)?;
+                }
+                writeln!(out)?;
             }
-            None => writeln!(out, "{},{},{},,,,,,,", p.x, p.y, p.z)?,
+            None => writeln!(out, "{point},,,,,,,{}", if has_local { "," } else { "" })?,
         }
     }
     Ok(out.flush()?)

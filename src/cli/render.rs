@@ -64,7 +64,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let case = arguments.options.open_case(&arguments.case, &reporter)?;
     stages.open = start.elapsed();
     let start = Instant::now();
-    let scene = arguments.options.scene(&case, &reporter)?;
+    let (scene, case) = arguments.options.scene_in_space(case, &reporter)?;
     let plain = arguments.plain || format == picture::Format::Exr;
     let shot = Shot::of(&scene, &case, plain)?;
     stages.read = start.elapsed();
@@ -176,7 +176,7 @@ fn statistics(
         "point_locations": stats.point_locations,
         "cell_crossings": stats.cell_crossings,
         "lost_samples": stats.lost_samples,
-        "cells": {"total": case.grid.dims().cells(), "active": case.grid.active_cells().len()},
+        "cells": {"total": cells(case), "active": case.grid.active_cells().len()},
         "gpu_bytes": frame.bytes,
         "storage_error": frame.storage_error,
         "stages_ms": {
@@ -191,4 +191,10 @@ fn statistics(
             "first_frame": ms(stages.first_frame),
         },
     })
+}
+
+/// Cells of all grids.
+fn cells(case: &Case) -> usize {
+    let patches = case.grid.patches().iter();
+    patches.map(|patch| patch.file_dims().cells()).sum()
 }

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use anyhow::Context;
-use strataray::case::save;
+use strataray::export::synthetic;
 use strataray::model::Dims;
 use strataray::model::synthetic::{RECIPES, Recipe};
 
@@ -59,12 +59,12 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let name = recipe.name.to_ascii_uppercase();
     let files = reporter.bar("writing", |progress| {
         let model = recipe.build(dims, arguments.seed, arguments.steps.into())?;
-        let target = save::Target {
+        let target = synthetic::Target {
             folder: &arguments.output,
             name: &name,
             text: true,
         };
-        anyhow::Ok(save::synthetic(model, &target, progress)?)
+        anyhow::Ok(synthetic::write(model, &target, progress)?)
     })?;
     for file in &files {
         say_line!("{}", file.display());

@@ -9,11 +9,11 @@ use strataray::render::{self, Executor};
 use strataray::scene::lighting::PRESETS;
 use strataray::scene::{
     CameraSpec, FramingCamera, Interpolation, LightMode, LightingSpec, Mode, Projection, Scene,
-    StepSpec, Storage, StrategyKind,
+    Space, StepSpec, Storage, StrategyKind,
 };
 use strataray::view::{look, wells};
 
-use super::choice::{INTERPOLATIONS, LIGHT_MODES, MODES, STORAGES, STRATEGIES, one_of};
+use super::choice::{INTERPOLATIONS, LIGHT_MODES, MODES, SPACES, STORAGES, STRATEGIES, one_of};
 use super::progress::Reporter;
 
 #[derive(clap::Args)]
@@ -39,6 +39,9 @@ pub struct SceneOptions {
     /// Opaque cells, or rays through the inside; by default the one that shows more of the property.
     #[arg(long, value_parser = one_of(&MODES))]
     mode: Option<Mode>,
+    /// True places of the cells, or those by I, J and K (simbox).
+    #[arg(long, value_parser = one_of(&SPACES))]
+    space: Option<Space>,
     /// Image size, such as 1000x1000.
     #[arg(long, value_name = "WxH")]
     pub size: Option<String>,
@@ -106,7 +109,10 @@ impl SceneOptions {
         self.over(scene)
     }
 
-    fn over(&self, mut scene: Scene) -> anyhow::Result<Scene> {
+    fn over(&self, scene: Scene) -> anyhow::Result<Scene> {
+        let space = self.space.unwrap_or(scene.space);
+        // First: what follows holds for this space.
+        let mut scene = scene.in_space(space);
         if let Some(step) = &self.step {
             scene.step = StepSpec::Name(step.clone());
         }
@@ -146,19 +152,10 @@ impl SceneOptions {
     }
 
     /// The keys of the scene file; none without one.
-    fn written(&self) -> anyhow::Result<serde_json::Map<String, serde_json::Value>> {
-        let Some(path) = &self.scene else {
-            return Ok(serde_json::Map::new());
-        };
-        let text = match path.as_os_str() == "-" {
-            true => std::io::read_to_string(std::io::stdin()),
-            false => std::fs::read_to_string(path),
-        };
-        let text = text.with_context(|| format!("cannot read {}", path.display()))?;
-        // As a whole scene first, for errors that name line and column.
-        let _: Scene =
-            serde_json::from_str(&text).with_context(|| format!("{}", path.display()))?;
-        Ok(serde_json::from_str(&text)?)
+    fn written(&self) -> anyhow::Result<SceneKeys> {
+        self.scene
+            .as_deref()
+            .map_or(Ok(SceneKeys::new()), read_keys)
     }
 
     /// True where an option picks one time step.
@@ -181,10 +178,33 @@ impl SceneOptions {
         self.added.open_case(path, reporter)
     }
 
+    /// The scene of a case, as [`Self::scene`], and the case in the scene's space; says what of it is not drawn there.
+    pub fn scene_in_space(
+        &self,
+        case: Case,
+        reporter: &Reporter,
+    ) -> anyhow::Result<(Scene, Arc<Case>)> {
+        let scene = self.scene(&case, reporter)?;
+        let case = in_space(case, &scene, reporter);
+        Ok((scene, case))
+    }
+
     /// Opens what makes the images, and says where it is no GPU.
     pub fn open_executor(&self, reporter: &Reporter) -> anyhow::Result<Arc<dyn Executor>> {
         open_executor(self.adapter.as_deref(), reporter)
     }
+}
+
+/// A case in the space of a scene; says what of it is not drawn there.
+pub fn in_space(case: Case, scene: &Scene, reporter: &Reporter) -> Arc<Case> {
+    let case = Arc::new(case);
+    let seen = case.in_space(scene.space);
+    if !Arc::ptr_eq(&seen, &case) {
+        for note in &seen.about.notes {
+            reporter.note(note);
+        }
+    }
+    seen
 }
 
 /// Opens what makes the images, by a part of its adapter's name where one is given, and says where it is no GPU.
@@ -205,6 +225,21 @@ pub fn open_executor(
         ));
     }
     Ok(executor)
+}
+
+/// Keys of a scene file with their values.
+pub type SceneKeys = serde_json::Map<String, serde_json::Value>;
+
+/// The keys of a scene file, or of standard input for `-`.
+pub fn read_keys(path: &Path) -> anyhow::Result<SceneKeys> {
+    let text = match path.as_os_str() == "-" {
+        true => std::io::read_to_string(std::io::stdin()),
+        false => std::fs::read_to_string(path),
+    };
+    let text = text.with_context(|| format!("cannot read {}", path.display()))?;
+    // As a whole scene first, for errors that name line and column.
+    let _: Scene = serde_json::from_str(&text).with_context(|| format!("{}", path.display()))?;
+    Ok(serde_json::from_str(&text)?)
 }
 
 impl AddedFiles {

@@ -7,7 +7,7 @@ use super::row::ms;
 use super::{Plan, Reference, Row};
 use crate::case::Case;
 use crate::compare::markdown::{self, row, table};
-use crate::scene::Interpolation;
+use crate::scene::{Interpolation, Space};
 use crate::view::View;
 
 /// What a report tells of its pictures beside their figures.
@@ -176,7 +176,7 @@ Speed is relative to the slowest strategy. GPU MB (1,000,000 bytes) is all that 
 /// What the figures hold for.
 fn conditions(setting: &Setting, rows: &[Row], reference_times: &[Duration]) -> String {
     let (case, plan) = (setting.case, setting.plan);
-    let dims = case.grid.dims();
+    let dims = case.grid.main_dims();
     let active = case.grid.active_cells().len();
     let (views, frames) = (plan.views.len(), plan.frames.max(1));
     let done = rows.last().map_or(0, |row| row.view + 1);
@@ -240,7 +240,10 @@ fn conditions_of_view(case: &Case, view: &View) -> [markdown::Row; 3] {
         ]),
         row([
             "sampling step",
-            &format!("{:.4} {}", view.sampling.step, case.about.length_unit),
+            &match view.world.space {
+                Space::Map => format!("{:.4} {}", view.sampling.step, case.about.length_unit),
+                Space::Ijk => format!("{:.4} cells", view.sampling.step),
+            },
         ]),
     ]
 }

@@ -13,7 +13,7 @@ pub struct DepthList(u32);
 impl DepthList {
     const GAPPED: u32 = 1 << 31;
 
-    fn new(offset: usize, gapped: bool) -> Self {
+    pub(super) fn new(offset: usize, gapped: bool) -> Self {
         Self(offset as u32 | if gapped { Self::GAPPED } else { 0 })
     }
 

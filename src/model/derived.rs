@@ -2,6 +2,7 @@
 
 use super::fields::CellField;
 use super::grid::Grid;
+use super::ids::Ijk;
 
 /// A property computed from the grid.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -12,11 +13,11 @@ pub enum Derived {
     Thickness,
     /// Volume of the trilinear map, without sign.
     Volume,
-    /// Column number along i, from 1.
+    /// Column number along i, from 1, of a local grid in that grid.
     I,
-    /// Column number along j, from 1.
+    /// Column number along j, from 1, likewise.
     J,
-    /// Layer, from 1.
+    /// Layer, from 1, likewise.
     K,
     /// 1 in every active cell.
     Actnum,
@@ -36,14 +37,17 @@ impl Derived {
 
     /// The property over the active cells of a grid.
     pub fn field(self, grid: &Grid) -> CellField {
+        let along = |axis: usize, i: usize, j: usize, k: usize| {
+            grid.cell_name(Ijk { i, j, k }).ijk[axis] as f64
+        };
         CellField::new(grid.map_active(|column, k| {
             let value = match self {
                 Self::Depth => column.hexahedron(k).center().z,
                 Self::Thickness => column.thickness(k),
                 Self::Volume => column.hexahedron(k).signed_volume().abs(),
-                Self::I => (column.i + 1) as f64,
-                Self::J => (column.j + 1) as f64,
-                Self::K => (k + 1) as f64,
+                Self::I => along(0, column.i, column.j, k),
+                Self::J => along(1, column.i, column.j, k),
+                Self::K => along(2, column.i, column.j, k),
                 Self::Actnum => 1.0,
             };
             value as f32

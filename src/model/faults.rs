@@ -87,7 +87,7 @@ fn key(i: usize, j: usize, face: Face) -> Option<(usize, usize, usize)> {
 
 impl Grid {
     /// The lateral faces of the cells that `drawn` (by active index) names behind which an active cell
-    /// of equal k is displaced, and those that lie on a named fault, whatever its throw. A face between
+    /// of equal k is displaced in map space, and those that lie on a named fault, whatever its throw. A face between
     /// two drawn cells is there twice, once for each.
     pub fn fault_faces_of(&self, drawn: &[bool], named: &FaultFaces) -> Vec<(Ijk, Face)> {
         let drawn = self.bits_of(drawn);
@@ -95,7 +95,7 @@ impl Grid {
             if matches!(face, Face::KMinus | Face::KPlus) {
                 return vec![0; drawn.column(column).len()];
             }
-            let mut faces = self.displaced(&drawn, column, face);
+            let mut faces = self.in_map_space().displaced(&drawn, column, face);
             if !named.is_empty() {
                 let (i, j) = (column % self.dims().ni, column / self.dims().ni);
                 let has_name = |k: &usize| named.fault_of(Ijk { i, j, k: *k }, face).is_some();

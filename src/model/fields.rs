@@ -4,6 +4,7 @@ use rayon::prelude::*;
 
 use super::grid::Grid;
 use super::ids::{CellIndex, Ijk};
+use super::{borders, vertices};
 
 /// Absolute values from here on mean "undefined" in simulators' files.
 const UNDEFINED: f32 = 1e19;
@@ -33,7 +34,7 @@ pub struct Statistics {
     pub max: f64,
     /// Arithmetic mean.
     pub mean: f64,
-    /// Number of active cells without a value.
+    /// Number of these cells without a value.
     pub undefined: usize,
 }
 
@@ -67,8 +68,13 @@ impl CellField {
     /// [`Self::statistics`] over the cells that `kept` (by active index) names, where it is given.
     pub fn statistics_of(&self, kept: Option<&[bool]>) -> Option<Statistics> {
         let (mut min, mut max, mut sum, mut count) = (f64::INFINITY, f64::NEG_INFINITY, 0.0, 0);
+        let mut undefined = 0;
         let is_kept = |at: usize| kept.is_none_or(|kept| kept[at]);
-        for (_, &v) in (self.0.iter().enumerate()).filter(|(at, v)| !v.is_nan() && is_kept(*at)) {
+        for (_, &v) in (self.0.iter().enumerate()).filter(|(at, _)| is_kept(*at)) {
+            if v.is_nan() {
+                undefined += 1;
+                continue;
+            }
             let v = f64::from(v);
             min = min.min(v);
             max = max.max(v);
@@ -79,13 +85,14 @@ impl CellField {
             min,
             max,
             mean: sum / f64::from(count),
-            undefined: self.0.len() - count as usize,
+            undefined,
         })
     }
 }
 
 /// One value for each entry of the grid's depth pool: the mean of the active cells that share
-/// the vertex (same pillar, same depth), so that nothing is averaged across a fault.
+/// the vertex (same pillar, same depth), so that nothing is averaged across a fault. Where local grids meet the grid that
+/// they refine, values are the same from both sides.
 ///
 /// **Invariants**: as long as the depth pool; NaN where no defined active cell touches.
 #[derive(Debug, Clone, PartialEq)]
@@ -103,7 +110,14 @@ impl VertexField {
             let counts = kept.is_none_or(|kept| kept[active]);
             if counts { field.0[active] } else { f32::NAN }
         };
-        Self(super::vertices::means(grid, value))
+        if grid.patches().len() == 1 {
+            return Self(vertices::means(grid, value));
+        }
+        let mut values: Vec<f32> = (0..field.0.len()).map(value).collect();
+        borders::restrict(grid, &mut values);
+        let mut means = vertices::means(grid, |active| values[active]);
+        borders::prolong(grid, &values, &mut means);
+        Self(means)
     }
 
     /// The values by depth-pool position.

@@ -25,7 +25,9 @@ use super::activity::{Activity, ColumnBits};
 use super::column::{Column, Corner};
 use super::corner_point::{Hexahedron, NO_THICKNESS};
 use super::depth_lists::{DepthList, Lists, UsedDepths};
+use super::flat::Flat;
 use super::ids::{ActiveIndex, CellIndex, Dims, Ijk};
+use super::patches::Patches;
 use super::spaces::MapAxes;
 
 /// Pillars whose ends lie closer in depth than this are vertical.
@@ -55,6 +57,12 @@ pub enum ModelError {
     /// The dimensions are zero or too large.
     #[error("a grid of {0} x {1} x {2} cells is not supported; 1 to 2^31-1 cells are")]
     Dimensions(usize, usize, usize),
+    /// Local grids whose shape is so unlike that of the others that the lattice of all would be nearly empty.
+    #[error(
+        "together the grids would take {0} x {1} x {2} places, nearly all of them empty: a grid has far more layers or \
+         columns than the others"
+    )]
+    Empty(usize, usize, usize),
     /// The corners of so many cells do not fit in memory.
     #[error("there is not enough memory for the corners of {0} x {1} x {2} cells")]
     Memory(usize, usize, usize),
@@ -105,26 +113,30 @@ pub struct GridInput<'a, C, Z> {
 
 /// A corner-point grid in its file's own coordinates (grid space).
 ///
-/// Copies share the geometry and have their own activity.
+/// Copies share the geometry and have their own activity. Local grids lie beside the main one in the same lattice
+/// (`patches.rs`): a cell is active in its own grid, whether or not a local grid refines it.
 #[derive(Debug, Clone)]
 pub struct Grid {
-    dims: Dims,
-    pillars: Arc<[Pillar]>,
+    pub(super) dims: Dims,
+    pub(super) pillars: Arc<[Pillar]>,
     /// Of the pillars: corners are asked for much more often than pillars are made.
-    slopes: Arc<[DVec2]>,
-    lists: Arc<Vec<DepthList>>,
-    depths: Arc<Vec<f64>>,
+    pub(super) slopes: Arc<[DVec2]>,
+    pub(super) lists: Arc<Vec<DepthList>>,
+    pub(super) depths: Arc<Vec<f64>>,
     /// By column: true where depth grows with the layer, or stays, on all pillars.
-    sorted: Arc<Vec<bool>>,
-    active_cells: Vec<CellIndex>,
-    activity: Activity,
-    map_axes: Option<MapAxes>,
-    found: Found,
+    pub(super) sorted: Arc<Vec<bool>>,
+    pub(super) active_cells: Vec<CellIndex>,
+    pub(super) activity: Activity,
+    pub(super) map_axes: Option<MapAxes>,
+    pub(super) patches: Arc<Patches>,
+    /// Of a grid in index space.
+    pub(super) flat: Option<Arc<Flat>>,
+    pub(super) found: Found,
 }
 
 /// What was found out of the active cells, at the first question.
 #[derive(Debug, Clone, Default)]
-struct Found {
+pub(super) struct Found {
     bounds: OnceLock<Option<[DVec3; 2]>>,
     signed_volume: OnceLock<f64>,
     thick: OnceLock<Arc<[bool]>>,
@@ -170,11 +182,13 @@ impl Grid {
             activity: Activity::new(dims, &active_cells),
             active_cells,
             map_axes: input.map_axes,
+            patches: Arc::new(Patches::one(dims)),
+            flat: None,
             found: Found::default(),
         })
     }
 
-    /// Cells along each axis.
+    /// Columns along each axis and layers of the lattice: the cells along each axis where there are no local grids.
     pub fn dims(&self) -> Dims {
         self.dims
     }
@@ -196,7 +210,10 @@ impl Grid {
 
     /// The same grid with its inactive cells active too.
     pub fn with_inactive(&self) -> Self {
-        let active_cells: Vec<CellIndex> = (0..self.dims.cells() as u32).map(CellIndex).collect();
+        let all = (0..self.dims.cells() as u32).map(CellIndex);
+        let is_one = self.patches().len() == 1;
+        let is_cell = |cell: &CellIndex| is_one || self.patch_of(self.dims.ijk(*cell)).is_some();
+        let active_cells: Vec<CellIndex> = all.filter(is_cell).collect();
         Self {
             dims: self.dims,
             pillars: self.pillars.clone(),
@@ -207,6 +224,8 @@ impl Grid {
             activity: Activity::new(self.dims, &active_cells),
             active_cells,
             map_axes: self.map_axes,
+            patches: self.patches.clone(),
+            flat: self.flat.clone(),
             found: Found::default(),
         }
     }
@@ -282,6 +301,11 @@ impl Grid {
     /// The active cells in natural order.
     pub fn active_cells(&self) -> &[CellIndex] {
         &self.active_cells
+    }
+
+    /// True where depth grows with the layer, or stays, on all pillars of a column.
+    pub(super) fn is_sorted(&self, column: usize) -> bool {
+        self.sorted[column]
     }
 
     /// A column (`i + ni * j`).

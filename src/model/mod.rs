@@ -1,6 +1,7 @@
 //! The reservoir in f64: corner-point geometry, topology and fields. No files, no GPU.
 
 mod activity;
+mod borders;
 mod column;
 pub mod corner_point;
 mod depth_lists;
@@ -9,8 +10,11 @@ pub mod derived;
 pub mod face_tree;
 pub mod faults;
 pub mod fields;
+mod flat;
 pub mod grid;
 pub mod ids;
+mod lattice;
+mod patches;
 pub mod spaces;
 pub mod summary;
 pub mod synthetic;
@@ -26,5 +30,7 @@ pub use faults::FaultFaces;
 pub use fields::{CellField, Statistics, VertexField};
 pub use grid::{Grid, GridInput, ModelError, Pillar};
 pub use ids::{ActiveIndex, CellIndex, Dims, Ijk};
-pub use spaces::{MapAxes, MapUnit, Spaces};
+pub use lattice::LocalGrid;
+pub use patches::{GridCell, Patch};
+pub use spaces::{MapAxes, MapUnit, Space, Spaces};
 pub use summary::Summary;

@@ -5,8 +5,38 @@
 //! | grid | x, y as in COORD, depth positive down | the file's length unit (GRIDUNIT) |
 //! | world | x east, y north (MAPAXES applied), z = -depth * vertical exaggeration | the same unit |
 //! | map | x east, y north, depth positive down | x and y in the map's unit (MAPUNITS), depth in the grid's |
+//!
+//! In index space the grid's x, y and depth are I, J and K.
 
 use glam::{DAffine3, DMat3, DVec2, DVec3};
+use serde::{Deserialize, Serialize};
+
+/// What places of cells go by.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Space {
+    /// Their true geometry.
+    #[default]
+    Map,
+    /// Their numbers I, J and K: flat layers and square columns (simbox).
+    Ijk,
+}
+
+impl Space {
+    /// The other one.
+    #[must_use]
+    pub fn other(self) -> Self {
+        match self {
+            Self::Map => Self::Ijk,
+            Self::Ijk => Self::Map,
+        }
+    }
+
+    /// True of the true geometry.
+    pub fn is_map(&self) -> bool {
+        *self == Self::Map
+    }
+}
 
 /// The map coordinate system of a grid (MAPAXES): `map = origin + x * ex + y * ey`.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -101,7 +101,7 @@ impl Grid {
     }
 
     /// True where all four corners of a face of a cell are those of the cell behind it.
-    fn coincide(&self, ijk: Ijk, next: Ijk, face: Face) -> bool {
+    pub(super) fn coincide(&self, ijk: Ijk, next: Ijk, face: Face) -> bool {
         let [mine, theirs] = face.corners();
         mine.iter().zip(theirs).all(|(&a, b)| {
             let (a, b) = (self.corner_entry(ijk, a), self.corner_entry(next, b));
@@ -226,12 +226,14 @@ impl Grid {
         columns.flat_map_iter(of_column).collect()
     }
 
-    /// Number of fault faces along i and along j (`[I, J]`): lateral faces between two active
+    /// Number of fault faces of the main grid along i and along j (`[I, J]`): lateral faces between two active
     /// cells of equal k whose corners do not all coincide.
     pub fn fault_faces(&self) -> [usize; 2] {
         let active = self.active_bits();
+        let ([lattice, main], nj) = ([self.dims().ni, self.main_dims().ni], self.main_dims().nj);
+        let is_main = move |column: &usize| column % lattice < main && column / lattice < nj;
         [Face::IPlus, Face::JPlus].map(|face| {
-            let columns = (0..self.dims().columns()).into_par_iter();
+            let columns = (0..self.dims().columns()).into_par_iter().filter(is_main);
             let words = columns.flat_map_iter(|column| self.displaced(active, column, face));
             words.map(|word| word.count_ones() as usize).sum()
         })

@@ -27,7 +27,7 @@ use glam::{DVec2, DVec3};
 
 use crate::case::{Case, CaseError};
 use crate::model::topology::{Behind, Face};
-use crate::model::{FaceHit, Grid, Ijk};
+use crate::model::{FaceHit, Grid, Ijk, Spaces};
 use crate::render::{RenderError, Renderer, tube_at};
 use crate::view::View;
 use crate::view::wells::Head;
@@ -80,7 +80,7 @@ pub struct Hit {
     pub ijk: Ijk,
     /// Place in world space: that of the cell which contributes most to the pixel.
     pub world: DVec3,
-    /// East, north and depth in map coordinates.
+    /// East, north and depth in map coordinates; in index space those of the middle of the cell.
     pub map: DVec3,
     /// What of the cell is seen.
     pub part: Part,
@@ -251,17 +251,25 @@ fn hit(
     Some(Hit {
         ijk: cell.ijk,
         world,
-        map: DVec3::new(
-            world.x,
-            world.y,
-            -world.z / view.world.vertical_exaggeration,
-        ),
+        map: on_map(case, view, cell.ijk, world),
         part,
         value: cell.value,
         shown: shown.map_or(cell.value, |value| view.true_value(value)),
         is_between: shown.is_some_and(|value| sight.is_apart(cell.ijk, value)),
         contribution,
     })
+}
+
+/// Where a point in a cell is on the map.
+fn on_map(case: &Case, view: &View, ijk: Ijk, world: DVec3) -> DVec3 {
+    if view.world.space.is_map() {
+        let depth = -world.z / view.world.vertical_exaggeration;
+        return world.with_z(depth);
+    }
+    let grid = case.grid.in_map_space();
+    let to_world = Spaces::new(grid.map_axes(), 1.0).world_from_grid;
+    let middle = to_world.transform_point3(grid.hexahedron(ijk).center());
+    middle.with_z(-middle.z)
 }
 
 /// The nearest sheet that is seen.
@@ -284,14 +292,16 @@ fn fault_of(case: &Case, hit: FaceHit) -> Option<Fault> {
     }
     let number = case.fault_faces.fault_of(cell, face);
     let name = number.and_then(|n| case.about.named_faults.get(n));
-    let beyond = match case.grid.behind(cell, face) {
+    // Faults have their throw in map space.
+    let grid = case.grid.in_map_space();
+    let beyond = match grid.behind(cell, face) {
         Behind::Displaced(beyond) => beyond,
         // Named faults need no throw.
         Behind::Neighbor(beyond) if name.is_some() => beyond,
         _ => return None,
     };
     // A ray leaves the near cell through a face that is turned away, and enters the far one otherwise.
-    let drop = drop(&case.grid, cell, face, beyond);
+    let drop = drop(grid, cell, face, beyond);
     let (near, far, throw) = match hit.is_exit {
         true => (cell, beyond, drop),
         false => (beyond, cell, -drop),

@@ -311,6 +311,7 @@ pub(super) mod tests {
             world: World {
                 spaces,
                 vertical_exaggeration: 2.0,
+                space: crate::scene::Space::Map,
                 bounds: [DVec3::new(0.0, 0.0, -4.0), DVec3::new(10.0, 9.0, 0.0)],
                 corners: box_corners,
                 subject: crate::view::Subject::of_box(box_corners).into(),

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use image::error::{ParameterError, ParameterErrorKind};
 
-use super::draft::Draft;
+use crate::draft::Draft;
 use crate::image::Image;
 
 /// Why a picture or film could not be written.

@@ -2,7 +2,7 @@
 
 use super::ticks::{short_label, shortened};
 use crate::case::{Case, Weighting};
-use crate::scene::StrategyKind;
+use crate::scene::{Space, StrategyKind};
 use crate::transfer::Scale;
 use crate::view::facts::Values;
 use crate::view::{Facts, View};
@@ -59,7 +59,13 @@ impl Info {
             ]));
         }
         let factor = format!("{:.2}", view.world.vertical_exaggeration);
-        items.push(Item::of([(6, format!("Z x {}", shortened(&factor)))]));
+        let factor = shortened(&factor);
+        let stretched = match view.world.space {
+            Space::Map => format!("Z x {factor}"),
+            Space::Ijk if factor == "1" => "IJK space".into(),
+            Space::Ijk => format!("IJK space, K x {factor}"),
+        };
+        items.push(Item::of([(6, stretched)]));
         let selection = |long: String, short: &str| Item {
             is_about_selection: true,
             ..Item::of([(5, long), (8, short.to_owned())])

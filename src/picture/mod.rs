@@ -6,7 +6,6 @@ mod axes;
 mod canvas;
 pub mod compared;
 mod difference;
-mod draft;
 mod files;
 pub mod film;
 pub mod filming;

@@ -122,6 +122,7 @@ fn view(grid: &Grid, field: CellField, extinction: f64, sampling_step: f64) -> V
         world: World {
             spaces,
             vertical_exaggeration: 2.0,
+            space: crate::scene::Space::Map,
             bounds: world_bounds,
             corners: box_corners,
             subject: crate::view::Subject::of_box(box_corners).into(),

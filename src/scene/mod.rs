@@ -14,9 +14,10 @@ pub mod transfer;
 
 use serde::{Deserialize, Serialize};
 
+pub use crate::model::Space;
 pub use camera::{AutomaticCamera, CameraSpec, ExplicitCamera, FramingCamera, Projection};
 pub use filter::{Filter, Indices, PropertyFilter};
-pub use lighting::{LightMode, LightingSpec};
+pub use lighting::{LightMode, LightSpec, LightingSpec};
 pub use settings::{
     ClipSpec, CutFace, Integration, LibcSettings, PltsSettings, SrgSettings, Storage,
 };
@@ -48,6 +49,9 @@ pub struct Scene {
     pub step: StepSpec,
     /// What one looks at: the faces of the cells, or into the volume.
     pub mode: Mode,
+    /// The true geometry, or flat layers and square columns by I, J and K.
+    #[serde(skip_serializing_if = "Space::is_map")]
+    pub space: Space,
     /// How values vary inside a cell; in the mode `cells` each has one value.
     pub interpolation: Interpolation,
     /// Values at both ends of the color map; those of the step shown where absent.
@@ -73,6 +77,9 @@ pub struct Scene {
     pub storage: Storage,
     /// Occlusion and lights.
     pub lighting: LightingSpec,
+    /// Which local grids are drawn in place of the cells that they refine: all, but those that are named.
+    #[serde(skip_serializing_if = "Grids::is_default")]
+    pub grids: Grids,
     /// Which cells are drawn.
     pub filter: Filter,
     /// Clip planes; kept is what all of them keep.
@@ -92,6 +99,7 @@ impl Default for Scene {
             property: None,
             step: StepSpec::Name("last".into()),
             mode: Mode::default(),
+            space: Space::default(),
             interpolation: Interpolation::Vertex,
             range: RangeSpec::STEP,
             transfer: TransferSpec::default(),
@@ -104,10 +112,55 @@ impl Default for Scene {
             plts: PltsSettings::default(),
             storage: Storage::default(),
             lighting: LightingSpec::default(),
+            grids: Grids::default(),
             filter: Filter::default(),
             clip: Vec::new(),
             show: Show::default(),
         }
+    }
+}
+
+impl Scene {
+    /// The same in a space. Places and lengths mean something in the other one alone: where that was another, camera,
+    /// exaggeration, clip planes, sampling and lights that stand somewhere are as if they had not been given.
+    #[must_use]
+    pub fn in_space(self, space: Space) -> Self {
+        if space == self.space {
+            return self;
+        }
+        let mut lighting = self.lighting;
+        let is_far = |light: &LightSpec| matches!(light, LightSpec::Directional { .. });
+        lighting.lights.retain(is_far);
+        Self {
+            space,
+            camera: CameraSpec::Automatic(AutomaticCamera {
+                projection: self.camera.projection(),
+                ..AutomaticCamera::default()
+            }),
+            vertical_exaggeration: None,
+            clip: Vec::new(),
+            sampling_step: None,
+            transfer: TransferSpec {
+                reference_length: None,
+                ..self.transfer
+            },
+            lighting,
+            ..self
+        }
+    }
+}
+
+/// Which local grids are drawn.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Grids {
+    /// Names of those that are not: the cells that they refine are drawn in their place.
+    pub hidden: Vec<String>,
+}
+
+impl Grids {
+    fn is_default(&self) -> bool {
+        self.hidden.is_empty()
     }
 }
 

@@ -56,10 +56,12 @@ impl Quantity {
         if name.contains('@') {
             return Self::Difference;
         }
+        // Of matrix, fractures or both.
+        let name = name.split('.').next().unwrap_or_default();
         let fits = |pattern: &&str| match (pattern.strip_suffix('*'), pattern.strip_prefix('*')) {
             (Some(start), _) => name.starts_with(start),
             (_, Some(end)) => name.ends_with(end),
-            _ => name == **pattern,
+            _ => name == *pattern,
         };
         let found = NAMES.iter().find(|(_, names)| names.iter().any(fits));
         found.map_or(Self::Other, |(quantity, _)| *quantity)

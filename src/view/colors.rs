@@ -282,6 +282,20 @@ fn opacity(
     }
 }
 
+/// The weights for a property's values: cells that a local grid refines count with the finer ones.
+fn weights(case: &Case, property: &str) -> Arc<Vec<f32>> {
+    let weights = case.weights_of(property).values;
+    let Some(finest) = case.grid.finest() else {
+        return weights;
+    };
+    let weights = weights.iter().zip(finest);
+    Arc::new(
+        weights
+            .map(|(weight, is_finest)| if is_finest { *weight } else { 0.0 })
+            .collect(),
+    )
+}
+
 /// The opacity that suits the values at the last step that has them; found once for a range and exaggeration.
 fn automatic(
     asked: &ColorRequest<'_>,
@@ -294,13 +308,17 @@ fn automatic(
         Scale::Log => "log",
         Scale::Categories(_) => "categories",
     };
-    let key = format!("{} {kind} {range:?} {exaggeration}", asked.property);
+    let space = case.grid.space();
+    let key = format!(
+        "{} {kind} {range:?} {space:?} {exaggeration}",
+        asked.property
+    );
     case.over_steps.opacity(&key, || {
         let Some(field) = case.last_field(asked.property)? else {
             return Ok(None);
         };
         let field = scale.field(&field, range[0]);
-        let (weights, extents) = rayon::join(|| case.weights(), || case.extents());
+        let (weights, extents) = rayon::join(|| weights(case, asked.property), || case.extents());
         let [low, high] = range;
         // Where the range is empty all values are at its low end; what is undefined stays so.
         let width = if high > low {
@@ -315,7 +333,7 @@ fn automatic(
         };
         let cells = field.values().par_iter();
         let cells = cells
-            .zip(weights.values.par_iter().zip(extents.par_iter()))
+            .zip(weights.par_iter().zip(extents.par_iter()))
             .map(cell);
         let interest = match scale {
             Scale::Categories(_) => Interest::Alike,

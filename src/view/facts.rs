@@ -1,9 +1,12 @@
 //! What is drawn, in numbers.
 
+use std::borrow::Cow;
+
 use glam::DVec3;
 use rayon::prelude::*;
 
 use super::ClipPlane;
+use super::grids::ShownGrids;
 use crate::case::{Case, Weighting};
 use crate::model::{CellField, Grid, Spaces};
 use crate::scene::{Coloring, Scene};
@@ -12,13 +15,13 @@ use crate::transfer::kinds::Quantity;
 /// What is drawn, in numbers: those of what is seen, for the line below the picture.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Facts {
-    /// Active cells of the case.
+    /// Active cells of the grids shown.
     pub active: usize,
     /// Those that are drawn and not cut away.
     pub drawn: usize,
     /// What the values of these are like; `None` where none is drawn.
     pub values: Option<Values>,
-    /// What the filter keeps, in words; empty where it keeps all.
+    /// What the filter keeps and which local grids are hidden, in words; empty where all is drawn.
     pub filter: String,
     /// Clip planes.
     pub planes: usize,
@@ -45,31 +48,55 @@ impl Facts {
         case: &Case,
         property: &str,
         values: &CellField,
-        seen: &[bool],
+        (seen, grids): (&[bool], &ShownGrids),
         scene: &Scene,
     ) -> Self {
         let has_mean = scene.transfer.coloring != Coloring::Categories
             && Quantity::of(property) != Quantity::Region;
-        let all = values.values();
+        let counts = grids.counted(&case.grid);
+        let active = counts.as_ref().map_or(values.values().len(), |counts| {
+            counts.iter().filter(|counts| **counts).count()
+        });
+        let (all, seen) = match &counts {
+            None => (Cow::from(values.values()), Cow::from(seen)),
+            Some(counts) => {
+                let value =
+                    |(value, counts): (&f32, &bool)| if *counts { *value } else { f32::NAN };
+                let all: Vec<f32> = values.values().iter().zip(counts).map(value).collect();
+                let seen: Vec<bool> = seen.iter().zip(counts).map(|(a, b)| *a && *b).collect();
+                (all.into(), seen.into())
+            }
+        };
         let Counted {
             valued,
             drawn,
             range,
-        } = Counted::of(all, seen);
+        } = Counted::of(&all, &seen);
         let values = range.map(|[min, max]| Values {
             min,
             max,
-            mean: has_mean.then(|| mean(case, all, seen)).flatten(),
+            mean: has_mean
+                .then(|| mean(case, property, &all, &seen))
+                .flatten(),
             are_all: drawn == valued,
         });
         Self {
-            active: case.grid.active_cells().len(),
+            active,
             drawn,
             values,
-            filter: scene.filter.words(),
+            filter: words(scene),
             planes: scene.clip.len(),
         }
     }
+}
+
+/// What is not drawn for the filter and the grids that are hidden.
+fn words(scene: &Scene) -> String {
+    let hidden = &scene.grids.hidden;
+    let hidden = (!hidden.is_empty()).then(|| format!("without {}", hidden.join(", ")));
+    let all = [Some(scene.filter.words()), hidden];
+    let all = all.into_iter().flatten().filter(|text| !text.is_empty());
+    all.collect::<Vec<_>>().join(", ")
 }
 
 /// Of the drawn cells those that clip planes do not cut away whole.
@@ -144,8 +171,8 @@ impl Counted {
 }
 
 /// The mean by pore volume, or by what stands in for it.
-fn mean(case: &Case, values: &[f32], seen: &[bool]) -> Option<(f64, Weighting)> {
-    let weights = case.weights();
+fn mean(case: &Case, property: &str, values: &[f32], seen: &[bool]) -> Option<(f64, Weighting)> {
+    let weights = case.weights_of(property);
     let mean = weighted(values, seen, &weights.values)?;
     Some((mean, weights.weighting))
 }

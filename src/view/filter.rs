@@ -6,6 +6,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::error::{SceneError, wrong};
+use super::grids::ShownGrids;
 use super::step::{step_of, well_step};
 use crate::case::{Case, CaseError};
 use crate::model::{CellField, Dims, Ijk};
@@ -65,22 +66,26 @@ pub(super) fn thinnest(
     Ok(runs.chain(one_cell).min_by(f64::total_cmp))
 }
 
-/// Which active cells of a case are drawn, by active index: those with a thickness and a value of `field`
-/// that pass the filter.
+/// Which active cells of a case are drawn, by active index: those of the grids shown with a thickness and a value of
+/// `field` that pass the filter. I, J and K of a cell of a local grid are those of the main grid's cell that it lies in.
 ///
 /// # Errors
 /// When the filter names what the case does not have, or contradicts itself.
 pub(super) fn drawn(
     case: &Case,
     field: &CellField,
+    grids: &ShownGrids,
     filter: &Filter,
     step: &StepSpec,
 ) -> Result<Vec<bool>, SceneError> {
     let grid = &case.grid;
     let dims = grid.dims();
-    let [i, j, k] = kept(filter, dims)?;
-    let passes = |ijk: Ijk| i[ijk.i] && j[ijk.j] && k[ijk.k];
-    let has_all = [&i, &j, &k].iter().all(|kept| !kept.contains(&false));
+    let [i, j, k] = kept(filter, grid.main_dims())?;
+    let passes = |cell: Ijk| {
+        let at = grid.main_cell(cell);
+        grids.shows(grid, cell) && i[at.i] && j[at.j] && k[at.k]
+    };
+    let has_all = grids.are_all() && [&i, &j, &k].iter().all(|kept| !kept.contains(&false));
     let cells = grid.active_cells().par_iter().zip(grid.thick());
     let mut drawn: Vec<bool> = cells
         .zip(field.values())
@@ -112,7 +117,7 @@ fn connected(case: &Case, names: &[String], step: usize) -> Result<Vec<bool>, Ca
     let mut cells = vec![false; grid.active_cells().len()];
     let wells = case.wells(step)?;
     let named = wells.iter().filter(|well| matches_any(names, &well.name));
-    for cell in named.flat_map(|well| well.global_cells(grid.dims())) {
+    for cell in named.flat_map(|well| well.cells(grid)) {
         if let Some(active) = grid.active_index(grid.dims().cell(cell)) {
             cells[active.0 as usize] = true;
         }

@@ -1,6 +1,7 @@
 //! Inactive cells shown as a faint ghost.
 
-use crate::model::Grid;
+use super::grids::ShownGrids;
+use crate::model::{Grid, Ijk};
 
 /// Color (sRGB, 0..1) of inactive cells.
 pub const COLOR: [f64; 3] = [0.45, 0.45, 0.5];
@@ -16,14 +17,17 @@ pub struct Ghosts {
     pub grid: Grid,
     /// By active index of this grid: the drawn cells of the case, and the ghosts that have a thickness.
     pub drawn: Vec<bool>,
+    /// Where there can be ghosts.
+    grids: ShownGrids,
 }
 
 impl Ghosts {
     /// Makes ghosts of the inactive cells of `grid`, the case's, beside the cells of it that are drawn.
-    pub fn new(grid: &Grid, drawn: &[bool]) -> Self {
+    pub fn new(grid: &Grid, grids: &ShownGrids, drawn: &[bool]) -> Self {
         let mut ghosts = Self {
             grid: grid.with_inactive(),
             drawn: Vec::new(),
+            grids: grids.clone(),
         };
         ghosts.drawn = ghosts.with(grid, drawn);
         ghosts
@@ -34,8 +38,13 @@ impl Ghosts {
         let all = &self.grid;
         let shown = all.active_cells().iter().map(|&cell| {
             let active = grid.active_index(cell).map(|a| a.0 as usize);
-            active.map_or_else(|| all.has_thickness(all.dims().ijk(cell)), |a| selected[a])
+            active.map_or_else(|| self.can_be(all.dims().ijk(cell)), |a| selected[a])
         });
         shown.collect()
+    }
+
+    /// True where an inactive cell can be seen.
+    fn can_be(&self, cell: Ijk) -> bool {
+        self.grid.has_thickness(cell) && self.grids.shows(&self.grid, cell)
     }
 }

@@ -229,7 +229,7 @@ const FEW: usize = 2000;
 /// cells where that hides what faces show at once: regions, constant and static properties, small models and
 /// sections of one cell.
 pub fn opening_mode(case: &Case, property: &str) -> Mode {
-    let dims = case.grid.dims();
+    let dims = case.grid.main_dims();
     let is_small = case.grid.active_cells().len() < FEW;
     let is_section = [dims.ni, dims.nj, dims.nk].contains(&1);
     let of_regions = Quantity::of(property) == Quantity::Region;

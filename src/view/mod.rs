@@ -9,6 +9,7 @@ pub mod facts;
 mod filter;
 pub mod framing;
 pub mod ghosts;
+mod grids;
 mod half_turns;
 pub mod lighting;
 pub mod look;
@@ -39,13 +40,14 @@ pub use surfaces::Surfaces;
 pub use wells::Wells;
 
 use crate::image::Blending;
-use crate::model::{CellField, FaultFaces, Grid, Spaces};
+use crate::model::{CellField, FaultFaces, Grid, Space, Spaces};
 use crate::scene::{
     CameraSpec, Interpolation, LibcSettings, PltsSettings, SrgSettings, Storage, StrategyKind,
 };
 use crate::transfer::TransferFunction;
 use bounds::box_corners;
 use ghosts::Ghosts;
+pub use grids::ShownGrids;
 use resolve::{camera as placed, checked_size};
 
 /// All that a renderer needs beside the grid: what every strategy and the reference integrate.
@@ -74,6 +76,8 @@ pub struct View {
 pub struct World {
     /// Grid to world and back.
     pub spaces: Spaces,
+    /// True places, or those by I, J and K.
+    pub space: Space,
     /// Factor on depth in world space.
     pub vertical_exaggeration: f64,
     /// Box of the active cells in world space.
@@ -240,6 +244,12 @@ impl View {
     pub fn drawn_bounds(&self, grid: &Grid) -> Option<[DVec3; 2]> {
         let cells = grid.active_cells().par_iter().zip(&*self.shown.cells.drawn);
         grid.bounds_of(cells.filter_map(|(cell, drawn)| drawn.then(|| grid.dims().ijk(*cell))))
+    }
+
+    /// By active index of `grid` (the case's): the drawn cells that clip planes do not cut away whole.
+    pub fn seen_cells(&self, grid: &Grid) -> Vec<bool> {
+        let Shown { cells, clip, .. } = &self.shown;
+        facts::uncut(grid, &cells.drawn, clip, &self.world.spaces)
     }
 
     /// Corners in world space of a box given by its smallest and largest corner in grid space; bit n of the

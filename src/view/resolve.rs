@@ -10,6 +10,7 @@ use super::error::{SceneError, positive, wrong};
 use super::facts::{self, Facts};
 use super::framing::{self, Direction, Subject};
 use super::ghosts::Ghosts;
+use super::grids::ShownGrids;
 use super::lighting::{self, Lighting};
 use super::look::default_property;
 use super::step::step_of;
@@ -39,6 +40,7 @@ pub(super) fn resolve_over(
     range: Option<[f64; 2]>,
 ) -> Result<View, SceneError> {
     check_version(scene)?;
+    check_space(scene, case)?;
     let exaggeration = exaggeration(scene, active_bounds(case)?)?;
     let spaces = Spaces::new(case.grid.map_axes(), exaggeration);
     let edges = case.mean_edges(exaggeration);
@@ -53,7 +55,7 @@ pub(super) fn resolve_over(
         range,
         mean_edge: edges.element_sum() / 3.0,
         exaggeration,
-        thinnest: filter::thinnest(&scene.filter, case.grid.dims(), edges)?,
+        thinnest: filter::thinnest(&scene.filter, case.grid.main_dims(), edges)?,
     };
     let Colors {
         field: in_scale,
@@ -68,6 +70,7 @@ pub(super) fn resolve_over(
         facts,
         subject,
         box_corners,
+        are_all_grids,
     } = cells(&asked, [&field, &in_scale], &spaces, &clip)?;
     let world_bounds = bounds_of(&box_corners);
     let wells = wells::shown(scene, case, &Measures::of(&spaces, &box_corners, edges))?;
@@ -80,7 +83,7 @@ pub(super) fn resolve_over(
             (&subject, &box_corners),
             scene.show.r#box,
         )?,
-        sampling: sampling(scene, case.grid.dims(), edges, world_bounds)?,
+        sampling: sampling(scene, case.grid.main_dims(), edges, world_bounds)?,
         style: Style {
             background: background(scene)?,
             transfer,
@@ -96,7 +99,7 @@ pub(super) fn resolve_over(
                 field: in_scale,
                 interpolation: interpolation(scene),
                 drawn: Arc::new(drawn),
-                is_filtered: scene.filter.limits(),
+                is_filtered: scene.filter.limits() || !are_all_grids,
                 ghosts,
             },
             clip,
@@ -108,6 +111,7 @@ pub(super) fn resolve_over(
         world: World {
             spaces,
             vertical_exaggeration: exaggeration,
+            space: scene.space,
             bounds: world_bounds,
             corners: box_corners,
             subject: Arc::new(subject),
@@ -158,7 +162,7 @@ fn active_bounds(case: &Case) -> Result<[DVec3; 2], SceneError> {
 }
 
 fn lighting(scene: &Scene, case: &Case, corners: &[DVec3; 8]) -> Result<Lighting, SceneError> {
-    let cells = case.grid.dims().cells();
+    let cells = case.grid.main_dims().cells();
     let lighting = lighting::resolve(&scene.lighting, box_edges(corners), cells)?;
     Ok(match scene.mode {
         Mode::Cells => lighting.on_solid_cells(),
@@ -179,6 +183,16 @@ fn check_version(scene: &Scene) -> Result<(), SceneError> {
         return Err(wrong("version", problem));
     }
     Ok(())
+}
+
+fn check_space(scene: &Scene, case: &Case) -> Result<(), SceneError> {
+    match scene.space == case.grid.space() {
+        true => Ok(()),
+        false => Err(wrong(
+            "space",
+            "is another one than that of the case; take it by Case::in_space",
+        )),
+    }
 }
 
 fn early_termination(scene: &Scene) -> Result<f64, SceneError> {
@@ -247,6 +261,8 @@ struct Cells {
     subject: Subject,
     /// Of all cells that could be drawn.
     box_corners: [DVec3; 8],
+    /// No grid is hidden, and none refines another.
+    are_all_grids: bool,
 }
 
 /// The cells of a scene, from the values of the property: true ones, and those in the scale of its colors.
@@ -257,14 +273,21 @@ fn cells(
     clip: &[ClipPlane],
 ) -> Result<Cells, SceneError> {
     let ColorRequest { scene, case, .. } = *asked;
-    let drawn = filter::drawn(case, in_scale, &scene.filter, &scene.step)?;
+    let grids = ShownGrids::of(&scene.grids, &case.grid)?;
+    let drawn = filter::drawn(case, in_scale, &grids, &scene.filter, &scene.step)?;
     let framed = match framing::still(&scene.filter, case) {
-        Some(still) => filter::drawn(case, values, &still, &scene.step)?,
+        Some(still) => filter::drawn(case, values, &grids, &still, &scene.step)?,
         None => drawn.clone(),
     };
     let facts = scene.show.info.then(|| {
         let seen = facts::uncut(&case.grid, &drawn, clip, spaces);
-        Arc::new(Facts::of(case, asked.property, values, &seen, scene))
+        Arc::new(Facts::of(
+            case,
+            asked.property,
+            values,
+            (&seen, &grids),
+            scene,
+        ))
     });
     let connections = match scene.show.nnc {
         true => connections(case, spaces, &drawn),
@@ -272,7 +295,7 @@ fn cells(
     };
     let ghosts = match scene.show.inactive {
         Inactive::Hidden => None,
-        Inactive::Ghost => Some(Arc::new(Ghosts::new(&case.grid, &drawn))),
+        Inactive::Ghost => Some(Arc::new(Ghosts::new(&case.grid, &grids, &drawn))),
     };
     let (grid, framed): (&Grid, _) = match &ghosts {
         None => (&case.grid, framed),
@@ -287,6 +310,7 @@ fn cells(
         connections: Arc::new(connections),
         facts,
         subject,
+        are_all_grids: grids.are_all(),
     })
 }
 

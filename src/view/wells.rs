@@ -8,7 +8,7 @@ use super::error::SceneError;
 use super::step::well_step;
 use super::surfaces::Surfaces;
 use crate::case::{Case, Connection, ConnectionAxis, Well, WellKind};
-use crate::model::{Grid, Ijk, Spaces};
+use crate::model::{Grid, Spaces};
 use crate::scene::names::matches;
 use crate::scene::{Scene, ShownWells};
 
@@ -110,7 +110,7 @@ impl<'a> Measures<'a> {
 }
 
 /// The wells that a scene shows, of the step that it names whether or not its property changes with time; none of
-/// those that have no connection in the global grid.
+/// those that have no connection in a grid shown.
 pub(super) fn shown(
     scene: &Scene,
     case: &Case,
@@ -229,7 +229,7 @@ impl Wells {
 /// The parts of a well in its cells, from the head on, in world space; true where something can flow.
 fn pieces(grid: &Grid, well: &Well, spaces: &Spaces) -> Vec<([DVec3; 2], bool)> {
     let mut pieces: Vec<([DVec3; 2], bool)> = Vec::new();
-    for connection in &well.connections {
+    for connection in well.finest_connections(grid) {
         let Some(ends) = ends(grid, connection) else {
             continue;
         };
@@ -246,14 +246,9 @@ fn pieces(grid: &Grid, well: &Well, spaces: &Spaces) -> Vec<([DVec3; 2], bool)> 
     pieces
 }
 
-/// Middles of the two faces through which a well passes a cell, in grid space; `None` where that lies in a local grid
-/// or in none.
+/// Middles of the two faces through which a well passes a cell, in grid space; `None` where that lies in no grid.
 fn ends(grid: &Grid, connection: &Connection) -> Option<[DVec3; 2]> {
-    let (dims, Ijk { i, j, k }) = (grid.dims(), connection.cell);
-    if connection.grid.is_some() || i >= dims.ni || j >= dims.nj || k >= dims.nk {
-        return None;
-    }
-    let corners = grid.hexahedron(connection.cell).0;
+    let corners = grid.hexahedron(connection.cell_in(grid)?).0;
     let bit = match connection.axis {
         ConnectionAxis::I => 0,
         ConnectionAxis::J => 1,

@@ -5,8 +5,9 @@ use serde::{Deserialize, Serialize};
 use super::slices::Slicing;
 use super::state::{Comparison, CurvePlots, Playback, State};
 use crate::scene::{
-    CameraSpec, ClipSpec, Filter, Interpolation, LibcSettings, LightingSpec, Mode, PltsSettings,
-    RangeSpec, Scene, Show, SrgSettings, StepSpec, Storage, StrategyKind, TransferSpec,
+    CameraSpec, ClipSpec, Filter, Grids, Interpolation, LibcSettings, LightingSpec, Mode,
+    PltsSettings, RangeSpec, Scene, Show, Space, SrgSettings, StepSpec, Storage, StrategyKind,
+    TransferSpec,
 };
 
 /// A change of a tab's state.
@@ -18,6 +19,8 @@ pub enum Action {
     Step(usize),
     /// Cells as solid bodies, or rays through the volume.
     Mode(Mode),
+    /// True places of the cells, or those by I, J and K; the camera frames the model anew.
+    Space(Space),
     /// Values in a cell.
     Interpolation(Interpolation),
     /// Ends of the color map.
@@ -38,6 +41,8 @@ pub enum Action {
     SamplingStep(Option<f64>),
     /// Occlusion and lights.
     Lighting(LightingSpec),
+    /// Which local grids are drawn.
+    Grids(Grids),
     /// Which cells are drawn.
     Filter(Filter),
     /// Clip planes.
@@ -86,6 +91,7 @@ impl Action {
             Self::Property(_) => "property",
             Self::Step(_) => "time step",
             Self::Mode(_) => "mode",
+            Self::Space(_) => "space",
             Self::Interpolation(_) => "interpolation",
             Self::Range(_) => "color range",
             Self::Transfer(_) => "transfer function",
@@ -94,6 +100,7 @@ impl Action {
             Self::Storage(_) => "storage",
             Self::SamplingStep(_) => "sampling step",
             Self::Lighting(_) => "lighting",
+            Self::Grids(_) => "local grids",
             Self::Filter(_) => "filter",
             Self::Clip(_) => "clip planes",
             Self::Camera(_) => "camera",
@@ -116,6 +123,7 @@ impl Action {
             Self::Property(name) => state.setup.show(name),
             Self::Step(step) => scene.step = StepSpec::Index(step),
             Self::Mode(v) => state.setup.scene.mode = v,
+            Self::Space(v) => *scene = std::mem::take(scene).in_space(v),
             Self::Interpolation(v) => state.setup.change_look(|look| look.interpolation = v),
             Self::Range(v) => state.setup.change_look(|look| look.range = v),
             Self::Transfer(v) => state.setup.change_look(|look| look.transfer = v),
@@ -126,6 +134,7 @@ impl Action {
             Self::Storage(v) => scene.storage = v,
             Self::SamplingStep(v) => scene.sampling_step = v,
             Self::Lighting(v) => scene.lighting = v,
+            Self::Grids(v) => scene.grids = v,
             Self::Filter(v) => scene.filter = v,
             Self::Clip(v) => scene.clip = v,
             Self::Camera(v) => scene.camera = v,

@@ -37,8 +37,13 @@ impl Purpose {
             Self::SaveScene => "Save the scene",
             Self::SaveTable => "Save the values of the selected cells",
             Self::SaveVectors => "Save the summary vectors shown",
-            Self::Export(spec) if spec.kind == ExportKind::Still => "Save an image",
-            Self::Export(_) => "Save an animation",
+            Self::Export(spec) => match spec.kind {
+                ExportKind::Still => "Save an image",
+                ExportKind::Cells => {
+                    "Export cells (.vtu, .EGRID, .grdecl, .roff, .csv, .parquet, .glb)"
+                }
+                ExportKind::Steps { .. } | ExportKind::Orbit { .. } => "Save an animation",
+            },
         }
     }
 

@@ -17,10 +17,17 @@ use crate::view::View;
 /// A case and how it looks.
 #[derive(Clone)]
 pub struct RenderRequest {
-    /// The case.
+    /// The case, in map space.
     pub case: Arc<Case>,
     /// How it looks; `size` is the picture's.
     pub scene: Scene,
+}
+
+impl RenderRequest {
+    /// The case in the space of the scene. Takes time at the first call for a case.
+    pub fn seen(&self) -> Arc<Case> {
+        self.case.in_space(self.scene.space)
+    }
 }
 
 impl PartialEq for RenderRequest {

@@ -60,6 +60,8 @@ pub enum Command {
     Curves,
     /// Cells as solid bodies, or rays through the volume.
     Mode,
+    /// True places of the cells, or those by I, J and K.
+    Space,
     /// The next strategy.
     NextStrategy,
     /// Lighting off, or soft.
@@ -76,6 +78,8 @@ pub enum Command {
     SaveTable,
     /// Saves the summary vectors that are shown.
     SaveVectors,
+    /// Writes the drawn cells, or their surfaces, for other programs.
+    ExportCells,
     /// A second picture, or none.
     Compare,
     /// Selects no cell.
@@ -105,7 +109,7 @@ const fn from(view: usize) -> Command {
 }
 
 /// Every shortcut, with what it says in the sheet.
-pub const SHORTCUTS: [(Modifiers, Key, Command, &str); 60] = [
+pub const SHORTCUTS: [(Modifiers, Key, Command, &str); 62] = [
     (CTRL, Key::O, Command::Open, "Open a case"),
     (
         CTRL_SHIFT,
@@ -207,6 +211,7 @@ pub const SHORTCUTS: [(Modifiers, Key, Command, &str); 60] = [
         "Save the summary vectors shown",
     ),
     (NONE, Key::V, Command::Mode, "Cells or volume"),
+    (NONE, Key::I, Command::Space, "Map, or IJK (simbox)"),
     (NONE, Key::S, Command::NextStrategy, "Next strategy"),
     (NONE, Key::Q, Command::Light, "Occlusion on or off"),
     (CTRL, Key::D, Command::Theme, "Dark or light theme"),
@@ -224,6 +229,7 @@ pub const SHORTCUTS: [(Modifiers, Key, Command, &str); 60] = [
         Command::SaveTable,
         "Save the values of the selected cells",
     ),
+    (CTRL, Key::E, Command::ExportCells, "Export the drawn cells"),
     (NONE, Key::C, Command::Compare, "Compare two pictures"),
     (
         NONE,

@@ -1,5 +1,7 @@
 //! Selected cells in the picture: their edges, each in the color of its curve.
 
+use std::sync::Arc;
+
 use eframe::egui::{Color32, Rect, Stroke, Ui, vec2};
 use glam::DVec2;
 
@@ -20,7 +22,7 @@ pub fn show(
     rect: Rect,
     shown: &View,
     scene: &Scene,
-    case: &Case,
+    case: &Arc<Case>,
     selected: &[[usize; 3]],
 ) {
     let pixels = [rect.width().max(1.0) as u32, rect.height().max(1.0) as u32];
@@ -29,12 +31,13 @@ pub fn show(
     };
     let size = DVec2::new(f64::from(rect.width()), f64::from(rect.height()));
     let painter = ui.painter_at(rect);
+    let grid = &case.in_space(view.world.space).grid;
     for (n, cell) in selected.iter().enumerate() {
         // A case that was read again may be smaller.
-        let Some(cell) = case.grid.dims().one_based(*cell) else {
+        let Some(cell) = grid.dims().one_based(*cell) else {
             continue;
         };
-        for line in cell_edges(&view, &case.grid, cell, size) {
+        for line in cell_edges(&view, grid, cell, size) {
             let line = line.map(|at| rect.min + vec2(at.x as f32, at.y as f32));
             // A light seam keeps the line apart from what is behind it.
             painter.line_segment(line, Stroke::new(3.5, Color32::from_white_alpha(160)));

@@ -118,10 +118,11 @@ impl RenderSession {
     ) -> Result<Option<Picture>, Failure> {
         let start = Instant::now();
         let executor = self.open(say).map_err(Failure::of_device)?;
-        self.share(side, &wanted.case);
+        let case = wanted.seen();
+        self.share(side, &case);
         let side = &mut self.sides[side];
         let view = side.view(wanted)?;
-        let renderer = side.renderer(&*executor, &wanted.case)?;
+        let renderer = side.renderer(&*executor, &case)?;
         let last_said = std::cell::Cell::new(Instant::now());
         let progress = |part: f64| {
             if last_said.get().elapsed() > Duration::from_millis(200) {
@@ -166,7 +167,8 @@ impl RenderSession {
     /// Frees what is kept of a case.
     fn forget(&mut self, case: &Weak<Case>, grid: &Weak<Grid>) -> Result<(), Failure> {
         let is_of = |known: &Arc<Case>| std::ptr::eq(Arc::as_ptr(known), case.as_ptr());
-        let has = |known: &Arc<Grid>| std::ptr::eq(Arc::as_ptr(known), grid.as_ptr());
+        // Also one in index space that was made of it.
+        let has = |known: &Arc<Grid>| std::ptr::eq(known.in_map_space(), grid.as_ptr());
         for side in &mut self.sides {
             side.renderer.take_if(|kept| has(kept.grid()));
             side.resolved.retain(|(wanted, _)| !is_of(&wanted.case));
@@ -189,9 +191,10 @@ impl RenderSession {
     ) -> Result<Pick, Failure> {
         let executor = self.open(say).map_err(Failure::of_device)?;
         let side = &mut self.sides[side];
+        let case = wanted.seen();
         let view = side.view(wanted)?;
-        let renderer = side.renderer(&*executor, &wanted.case)?;
-        picking::pick(renderer, &wanted.case, &view, at).map_err(|error| Failure {
+        let renderer = side.renderer(&*executor, &case)?;
+        picking::pick(renderer, &case, &view, at).map_err(|error| Failure {
             is_device: matches!(error, PickError::Render(_)),
             sentence: error.to_string(),
         })
@@ -236,7 +239,7 @@ impl SideState {
             .position(|(known, _)| *known == without_camera);
         let view = match known.and_then(|n| self.resolved.remove(n)) {
             Some((_, view)) => view.seen_from(&wanted.scene.camera, wanted.scene.size),
-            None => view::resolve(&wanted.scene, &wanted.case),
+            None => view::resolve(&wanted.scene, &wanted.seen()),
         };
         let view = Arc::new(view.map_err(of_scene)?);
         self.resolved.push_front((without_camera, view.clone()));

@@ -48,7 +48,7 @@ impl Viewport {
     pub fn show(
         &mut self,
         ui: &mut Ui,
-        case: &Case,
+        case: &Arc<Case>,
         scene: &Scene,
         shown: Option<&ShownImage>,
         mouse: Mouse,
@@ -79,7 +79,8 @@ impl Viewport {
             &Annotations::of(case, &now),
         );
         let input = Input::of(ui, &response, rect, mouse);
-        if let Some(camera) = self.moved(&input, &now, &case.grid) {
+        let grid = &case.in_space(now.world.space).grid;
+        if let Some(camera) = self.moved(&input, &now, grid) {
             touched.camera = Some(orbit::spec(&camera, &now.world.corners));
         }
         if response.clicked() {

@@ -155,7 +155,7 @@ fn steps_are_chosen_by_number_date_and_name() {
 
 /// Notes which steps are read, and has no values at one of them.
 struct Watched {
-    source: Box<dyn Source>,
+    source: Arc<dyn Source>,
     missing: usize,
     read: Arc<Mutex<BTreeSet<usize>>>,
 }
@@ -177,7 +177,7 @@ impl Source for Watched {
 fn only_chosen_steps_are_read_and_those_without_values_are_left_out() {
     let mut case = load::open(&common::sample()).unwrap();
     let read = Arc::default();
-    case.source = Box::new(Watched {
+    case.source = Arc::new(Watched {
         source: case.source,
         missing: 4,
         read: Arc::clone(&read),

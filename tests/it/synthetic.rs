@@ -3,7 +3,8 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use strataray::case::{Case, load, save};
+use strataray::case::{Case, load};
+use strataray::export::{ExportError, synthetic};
 use strataray::model::corner_point::NO_THICKNESS;
 use strataray::model::synthetic::{Fields, RECIPES, Recipe, Synthetic};
 use strataray::model::topology::COINCIDENT;
@@ -22,8 +23,8 @@ fn build(name: &str, dims: Dims, seed: u64) -> Synthetic {
     recipe.build(dims, seed, STEPS).unwrap()
 }
 
-fn target(folder: &Path) -> save::Target<'_> {
-    save::Target {
+fn target(folder: &Path) -> synthetic::Target<'_> {
+    synthetic::Target {
         folder,
         name: "MODEL",
         text: true,
@@ -31,7 +32,7 @@ fn target(folder: &Path) -> save::Target<'_> {
 }
 
 fn write(model: Synthetic, folder: &Path) -> Vec<PathBuf> {
-    save::synthetic(model, &target(folder), &|_| true).unwrap()
+    synthetic::write(model, &target(folder), &|_| true).unwrap()
 }
 
 /// The grid of a model without going through files.
@@ -411,6 +412,6 @@ fn err_command_in_one_sentence() {
 fn ok_canceled_writing_says_so() {
     let folder = tempfile::tempdir().unwrap();
     let model = build("box", dims(2, 2, 2), 1);
-    let result = save::synthetic(model, &target(folder.path()), &|done| done < 0.3);
-    assert!(matches!(result, Err(save::SaveError::Canceled)));
+    let result = synthetic::write(model, &target(folder.path()), &|done| done < 0.3);
+    assert!(matches!(result, Err(ExportError::Canceled)));
 }

@@ -2,7 +2,7 @@
 
 use eframe::egui::{self, Key, Modifiers, vec2};
 use glam::DVec3;
-use strataray::scene::{CameraSpec, Filter};
+use strataray::scene::{CameraSpec, Filter, Space};
 use strataray::view::Camera;
 use strataray::viewer::Action;
 
@@ -148,4 +148,49 @@ fn buttons_do_what_the_preset_says() {
     driven.drag(middle, middle - vec2(0.0, 60.0));
     driven.wait_final();
     assert!(camera(&driven).forward.distance(near.forward) > 0.1);
+}
+
+#[test]
+fn one_switch_shows_index_space_and_undo_brings_the_map_back() {
+    let Some(_) = gpu() else { return };
+    let mut driven = Driven::showing(sample());
+    let view = |d: &Driven| d.harness.state().picture(0).unwrap().0.view.clone();
+    let (map, picture) = (view(&driven), driven.picture(0));
+    assert_eq!(map.world.space, Space::Map);
+    // A camera of the map would see nothing of a model of forty columns.
+    let middle = driven.place("volume").center();
+    driven.drag(middle, middle + vec2(60.0, 20.0));
+    driven.wait_final();
+    let turned = camera(&driven);
+    driven.press(Modifiers::NONE, Key::I);
+    driven.wait_final();
+    let flat = view(&driven);
+    assert_eq!(flat.world.space, Space::Ijk);
+    assert!(flat.world.bounds[1].x < 41.0 && driven.covered() > 0.1);
+    // What is clicked has the same name in both, and a drag turns about it.
+    driven.click_at(middle, Modifiers::NONE);
+    driven.wait("a selected cell", |w| {
+        let document = w.document().unwrap();
+        !document.state.selected.is_empty()
+    });
+    driven.drag(middle, middle + vec2(40.0, 0.0));
+    driven.wait_final();
+    assert!(driven.covered() > 0.1);
+    driven.press(Modifiers::COMMAND, Key::Z);
+    driven.press(Modifiers::COMMAND, Key::Z);
+    driven.wait_final();
+    assert_eq!(camera(&driven), turned);
+    driven.press(Modifiers::COMMAND, Key::Z);
+    driven.wait_final();
+    assert_eq!(
+        (view(&driven).camera, driven.picture(0)),
+        (map.camera, picture)
+    );
+    // The button does what the key does.
+    driven.click("IJK");
+    driven.wait_final();
+    assert_eq!(view(&driven).world.space, Space::Ijk);
+    driven.click("IJK");
+    driven.wait_final();
+    assert_eq!(view(&driven).world.space, Space::Map);
 }

@@ -51,6 +51,28 @@ pub(super) fn runs(data: &[u8], rule: Rule) -> Result<Runs, Mistake> {
 }
 
 impl Runs {
+    /// An array that is numbers already.
+    ///
+    /// # Errors
+    /// When a value is undefined and must not be.
+    pub(super) fn of(mut values: Vec<f64>, rule: Rule) -> Result<Self, String> {
+        for (index, value) in values.iter_mut().enumerate() {
+            if !value.is_finite() {
+                let number = index + 1;
+                let undefined = rule.undefined;
+                *value = undefined.ok_or_else(|| format!("value {number} is not finite"))?;
+            }
+        }
+        let count = values.len();
+        let piece = Piece {
+            values,
+            repeats: Vec::new(),
+            count,
+        };
+        let pieces = vec![piece];
+        Ok(Self { pieces, count })
+    }
+
     /// The array with repeat counts expanded; `None` where there is not enough memory.
     pub(super) fn expand(self) -> Option<Vec<f64>> {
         let mut array = zeros(self.count)?;

@@ -6,13 +6,14 @@ use super::array::{Rule, Runs, runs};
 use super::cells::{CellArray, CellArrays};
 use super::edit::{Edit, Place, cells_of};
 use super::lexer::{Mistake, keyword};
-use super::scan::{Block, DepthShift, Found, product_text};
+use super::scan::{Block, Data, DepthShift, Found, product_text};
 use super::skip::is_read;
 use super::{DeckCells, FaultFaces, Grdecl, GridUnit, blocks, faults};
 use crate::arrays::is_table;
-use crate::egrid::Egrid;
+use crate::egrid::{Egrid, PorosityModel};
 use crate::error::{At, ErrorKind, ParseError, Warnings};
 use crate::geometry::{Lengths, first_not, unaddressable};
+use crate::radial;
 
 /// Every value must be there and be a finite number.
 pub(super) const GEOMETRY: Rule = Rule {
@@ -40,40 +41,69 @@ pub(super) fn assemble(
     warnings: &mut Warnings,
 ) -> Result<Grdecl, ParseError> {
     let file = named_grid(&mut found, warnings)?;
-    let Some(dims) = found.dims else {
+    let Some(all) = found.dims else {
         return Err(swallowed(&found).unwrap_or_else(|| missing(path, &found)));
     };
-    let lengths = checked_lengths(path, dims)?;
+    let dims = shown_dims(path, all, found.porosity_model)?;
+    let lengths = checked_lengths(path, all)?;
     if file.is_none() {
-        check_text(path, dims, found.bytes)?;
+        check_text(path, all, found.bytes)?;
     }
+    let depths = 8 * dims.iter().product::<usize>();
     let corners = match (&found.coord, &found.zcorn, file) {
         (Some(coord), Some(zcorn), _) => {
-            let coord = array(coord, GEOMETRY, lengths.coord)?;
-            Some([coord, array(zcorn, GEOMETRY, lengths.zcorn)?])
+            let mut coord = array(coord, GEOMETRY, &[lengths.coord])?;
+            if found.radial_corners {
+                let note = radial::straighten(&mut coord, dims[0]);
+                warnings.push(path, At::File, note);
+            }
+            Some([coord, array(zcorn, GEOMETRY, &[lengths.zcorn, depths])?])
         }
         (_, _, Some(corners)) => Some(corners),
         _ => None,
     };
+    let absent = missing(path, &found);
     let vectors = std::mem::take(&mut found.vectors);
-    let mut arrays = CellArrays::play(&mut found, dims, warnings)?;
+    let mut arrays = CellArrays::play(&mut found, all, warnings)?;
+    let actnum = arrays.take("ACTNUM");
+    let actnum = actnum.map(|array| activity(&array)).transpose()?;
+    arrays.keep(dims);
     let [coord, mut zcorn] = match corners {
         Some(corners) => corners,
-        None if found.radial || !blocks::are_given(&arrays, &vectors) => {
-            return Err(swallowed(&found).unwrap_or_else(|| missing(path, &found)));
+        None if !blocks::are_given(&arrays, &vectors, found.radial) => {
+            return Err(swallowed(&found).unwrap_or(absent));
         }
-        None => blocks::corner_points(path, dims, &mut arrays, &vectors, warnings)?,
+        None => {
+            let blocks = blocks::Blocks {
+                path,
+                dims,
+                layers: all[2],
+                is_radial: found.radial,
+                vectors: &vectors,
+            };
+            blocks.corner_points(&mut arrays, warnings)?
+        }
     };
+    zcorn.truncate(depths);
     for shift in &found.depth_shifts {
         shift_depths(&mut zcorn, dims, shift, warnings);
     }
-    let actnum = arrays.take("ACTNUM");
-    let actnum = actnum.map(|array| activity(&array)).transpose()?;
+    for (name, values) in [("COORD", &coord), ("ZCORN", &zcorn)] {
+        if let Some(number) = first_not(values, |value| value.is_finite()) {
+            let message = format!("value {number} becomes infinite by what the deck does to it");
+            let kind = ErrorKind::BadValue;
+            return Err(ParseError::of(kind, path, At::File, name, message));
+        }
+    }
     Ok(Grdecl {
         dims,
         coord,
         zcorn,
-        actnum: actnum.or(found.file_actnum.take()),
+        actnum: match found.porosity_model {
+            PorosityModel::Single => actnum,
+            _ => Some(matrix_and_fractures(actnum, depths / 8)),
+        },
+        porosity_model: found.porosity_model,
         map_axes: found.map_axes,
         map_units: found.map_units.take(),
         grid_unit: found.grid_unit.take(),
@@ -82,9 +112,38 @@ pub(super) fn assemble(
         phases: found.phases,
         min_pore_volume: found.min_pore_volume,
         properties: arrays.into_properties(),
-        faults: inside(&mut found, dims, warnings),
+        faults: inside(&mut found, all, dims, warnings),
         files: found.files,
     })
+}
+
+/// The part of a deck's cells that is shown: with dual porosity the upper half of the layers, which are the matrix.
+fn shown_dims(
+    path: &Path,
+    [ni, nj, nk]: [usize; 3],
+    model: PorosityModel,
+) -> Result<[usize; 3], ParseError> {
+    match model {
+        PorosityModel::Single => Ok([ni, nj, nk]),
+        _ if nk % 2 == 0 => Ok([ni, nj, nk / 2]),
+        _ => {
+            let message = format!(
+                "{nk} layers of dual porosity: there must be an even number, half of them matrix and half fractures"
+            );
+            let kind = ErrorKind::BadValue;
+            Err(ParseError::of(kind, path, At::File, "DIMENS", message))
+        }
+    }
+}
+
+/// Activity as grid files have it of dual porosity: 1 matrix, 2 fractures, 3 both.
+fn matrix_and_fractures(actnum: Option<Vec<i32>>, cells: usize) -> Vec<i32> {
+    let Some(actnum) = actnum else {
+        return vec![3; cells];
+    };
+    let is_active = |cell: usize| i32::from(actnum.get(cell).is_some_and(|active| *active != 0));
+    let flags = (0..cells).map(|cell| is_active(cell) + 2 * is_active(cell + cells));
+    flags.collect()
 }
 
 /// What the decks say of the cells of a grid that was read from elsewhere; `path` is the first of them.
@@ -94,12 +153,18 @@ pub(super) fn cells(
     dims: [usize; 3],
     warnings: &mut Warnings,
 ) -> Result<DeckCells, ParseError> {
-    checked_lengths(path, dims)?;
-    let mut arrays = CellArrays::play(&mut found, dims, warnings)?;
+    let [ni, nj, nk] = dims;
+    let all = match found.porosity_model {
+        PorosityModel::Single => dims,
+        _ => [ni, nj, 2 * nk],
+    };
+    checked_lengths(path, all)?;
+    let mut arrays = CellArrays::play(&mut found, all, warnings)?;
     arrays.take("ACTNUM");
+    arrays.keep(dims);
     Ok(DeckCells {
         properties: arrays.into_properties(),
-        faults: inside(&mut found, dims, warnings),
+        faults: inside(&mut found, all, dims, warnings),
         unit_system: found.unit_system,
         phases: found.phases,
         files: found.files,
@@ -127,7 +192,13 @@ fn named_grid(
         let message = format!("its grid cannot be read: {error}");
         place.error(error.kind, message)
     })?;
-    if let Some(dims) = found.dims.filter(|dims| *dims != grid.dims) {
+    let is_dual = found.porosity_model != PorosityModel::Single;
+    let [ni, nj, nk] = grid.dims;
+    // Grid files of dual porosity have the layers of the matrix alone.
+    let doubled = [ni, nj, 2 * nk];
+    let is_half = is_dual && found.dims.is_none_or(|dims| dims == doubled);
+    let fitting = if is_half { doubled } else { grid.dims };
+    if let Some(dims) = found.dims.filter(|dims| *dims != fitting) {
         let message = format!(
             "the deck has {} cells and {} has {}",
             product_text(dims),
@@ -136,8 +207,20 @@ fn named_grid(
         );
         return Err(place.error(ErrorKind::Mismatch, message));
     }
-    found.dims = Some(grid.dims);
-    found.file_actnum = grid.actnum;
+    found.dims = Some(fitting);
+    let bits = |mask: i32| move |active: &i32| i32::from(active & mask != 0);
+    let fractures = match grid.porosity_model {
+        PorosityModel::Single => 1,
+        _ => 2,
+    };
+    let actnum = grid.actnum.map(|actnum| match is_half {
+        true => [1, fractures]
+            .into_iter()
+            .flat_map(|mask| actnum.iter().map(bits(mask)))
+            .collect(),
+        false => actnum,
+    });
+    found.file_actnum = actnum.map(|actnum| (place, actnum));
     found.map_axes = found.map_axes.or(grid.map_axes);
     found.map_units = found.map_units.take().or(grid.map_units);
     let unit = grid.grid_unit.map(|unit| GridUnit {
@@ -160,7 +243,7 @@ fn check_text(path: &Path, dims: [usize; 3], bytes: usize) -> Result<(), ParseEr
     let cells: usize = dims.iter().product();
     if cells / MOST_CELLS_PER_BYTE > bytes {
         let message = format!(
-            "{} cells cannot be described by {bytes} bytes of text",
+            "{} cells cannot be described by {bytes} bytes of text: are the dimensions right?",
             product_text(dims)
         );
         return Err(too_large(path, message));
@@ -202,22 +285,21 @@ fn missing(path: &Path, found: &Found) -> ParseError {
     });
     let faults = (!found.faults.is_empty()).then_some("FAULTS");
     let names: Vec<_> = names.take(3).chain(faults).collect();
-    let kind = match found.radial {
-        true => ErrorKind::Unsupported,
-        false => ErrorKind::MissingKeyword,
-    };
-    let message = if found.radial {
-        "the grid is radial; only Cartesian grids are read from text: run the simulator and open the EGRID"
-            .to_owned()
-    } else if absent.len() == parts.len() && !names.is_empty() {
+    let message = if absent.len() == parts.len() && !names.is_empty() {
         format!(
             "has {} but no grid: open the grid's file and add this one (--with)",
             names.join(", ")
         )
+    } else if found.radial {
+        "no grid: a radial one needs DIMENS, INRAD, DR (or DRV, or OUTRAD), DTHETA (or DTHETAV), DZ (or DZV) and TOPS"
+            .to_owned()
+    } else if found.is_block_centered() {
+        "no grid: a block-centered one needs DIMENS, DX (or DXV), DY (or DYV), DZ (or DZV) and TOPS"
+            .to_owned()
     } else {
         format!("no grid: {} missing", absent.join(" and "))
     };
-    ParseError::of(kind, path, At::File, "", message)
+    ParseError::of(ErrorKind::MissingKeyword, path, At::File, "", message)
 }
 
 /// The array without a closing `/` that took a missing keyword for its own data, if there is one.
@@ -234,22 +316,34 @@ fn swallowed(found: &Found) -> Option<ParseError> {
     })
 }
 
-/// Reads an array that must have `expected` values.
-pub(super) fn array(block: &Block, rule: Rule, expected: usize) -> Result<Vec<f64>, ParseError> {
+/// Reads an array that must have one of `counts` of values, the first of which is told where it has not.
+pub(super) fn array(block: &Block, rule: Rule, counts: &[usize]) -> Result<Vec<f64>, ParseError> {
     let runs = numbers(block, rule).map_err(|mistake| error(block, mistake))?;
+    let is_known = counts.contains(&runs.count);
+    let expected = if is_known { runs.count } else { counts[0] };
     expand(block, runs, expected)
 }
 
 pub(super) fn numbers(block: &Block, rule: Rule) -> Result<Runs, Mistake> {
-    let start = block.data.start;
-    runs(&block.source.text()[block.data.clone()], rule).map_err(|mistake| mistake.moved(start))
+    let text = block.source.text();
+    match &block.data {
+        Data::Text(range) => {
+            runs(&text[range.clone()], rule).map_err(|mistake| mistake.moved(range.start))
+        }
+        Data::Imported(file, entry) => {
+            let placed = |kind, message| Mistake::new(kind, block.at, message);
+            let values = file.f64s(entry);
+            let values = values.map_err(|error| placed(error.kind, error.to_string()))?;
+            let in_file = |message| format!("{message} in {}", file.path().display());
+            Runs::of(values, rule).map_err(|message| placed(ErrorKind::BadValue, in_file(message)))
+        }
+    }
 }
 
 pub(super) fn expand(block: &Block, runs: Runs, expected: usize) -> Result<Vec<f64>, ParseError> {
     let failed = |kind, message| {
-        block
-            .source
-            .error(kind, block.data.end, &block.name, message)
+        let at = block.end();
+        block.source.error(kind, at, &block.name, message)
     };
     if runs.count != expected {
         let message = format!("expected {expected} values, found {}", runs.count);
@@ -273,8 +367,10 @@ pub(super) fn error(block: &Block, mut mistake: Mistake) -> ParseError {
 }
 
 pub(super) fn is_swallowed_keyword(block: &Block, mistake: &Mistake) -> bool {
-    keyword(block.source.text(), mistake.at)
-        .is_some_and(|found| found.alone || is_read(&found.name))
+    let is_text = matches!(block.data, Data::Text(_));
+    is_text
+        && keyword(block.source.text(), mistake.at)
+            .is_some_and(|found| found.alone || is_read(&found.name))
 }
 
 fn activity(array: &CellArray) -> Result<Vec<i32>, ParseError> {
@@ -295,21 +391,24 @@ fn activity(array: &CellArray) -> Result<Vec<i32>, ParseError> {
     Ok(values.iter().map(|&value| value as i32).collect())
 }
 
-/// The fault faces that lie inside the grid, with their multipliers.
+/// The fault faces that lie inside the grid of `all` cells, with their multipliers; of those of dual porosity the part in
+/// the matrix, which has `dims` cells.
 pub(super) fn inside(
     found: &mut Found,
+    all: [usize; 3],
     dims: [usize; 3],
     warnings: &mut Warnings,
 ) -> Vec<FaultFaces> {
     let mut kept = Vec::with_capacity(found.faults.len());
     for (place, mut fault) in std::mem::take(&mut found.faults) {
-        if let Some(outside) = faults::outside(&fault, dims) {
+        if let Some(outside) = faults::outside(&fault, all) {
             let message = format!(
                 "a face of fault {} lies outside the grid ({outside}); it is left out",
                 fault.name
             );
             place.warn(warnings, message);
-        } else {
+        } else if fault.k[0] <= dims[2] {
+            fault.k[1] = fault.k[1].min(dims[2]);
             fault.multiplier = faults::multiplier_of(&fault.name, &found.fault_multipliers);
             kept.push(fault);
         }

@@ -1,17 +1,27 @@
 //! The arrays of a deck, made by playing its edits in their order.
 
-use super::edit::{CellBox, Change, Edit, LeftOut, Place, cells_of};
-use super::scan::{Block, Found, Section};
+use std::collections::HashSet;
+
+use super::edit::{CellBox, Cells, Change, Edit, LeftOut, Operation, Place, cells_of};
+use super::scan::{Block, Found, Section, product_text};
 use super::{DeckProperty, assemble};
-use crate::arrays::{default_value, is_cell_array, is_table};
-use crate::error::{ParseError, Warnings};
+use crate::arrays::{default_value, is_cell_array, is_multiplier, is_table};
+use crate::egrid::PorosityModel;
+use crate::error::{ErrorKind, ParseError, Warnings};
 
 /// A one-record keyword with more values than this and half a value per cell is taken for a property gone wrong.
 const PROPERTY_LIKE: usize = 1000;
 
+/// Most values of all arrays together that a deck may have whatever its length (4 GiB), so that a short text cannot ask for
+/// all memory; longer ones may have one for each byte.
+const MOST_VALUES: usize = 1 << 29;
+
 /// An array in the making.
 pub(super) struct CellArray {
     pub(super) name: String,
+    /// True of a factor that the EDIT section has on what the GRID section has under that name. Of PORV it is the one on
+    /// volumes that are not given but follow from the geometry.
+    is_edit_factor: bool,
     /// One value per cell; NaN where none was given.
     pub(super) values: Vec<f64>,
     /// Keywords that should have changed it and were not applied.
@@ -25,9 +35,17 @@ pub(super) struct CellArray {
 /// All arrays of a deck.
 pub(super) struct CellArrays {
     dims: [usize; 3],
+    /// True where the lower half of the layers are the fractures.
+    is_dual: bool,
     arrays: Vec<CellArray>,
     left_out: LeftOut,
+    /// The array of regions that is meant where a record names none, and the one where that is not given.
+    regions: [&'static str; 2],
 }
+
+/// Region arrays, where GRIDOPTS asks for regions of MULTNUM and where it does not.
+const MULTIPLIER_REGIONS: [&str; 2] = ["MULTNUM", "FLUXNUM"];
+const FLUX_REGIONS: [&str; 2] = ["FLUXNUM", "MULTNUM"];
 
 impl CellArrays {
     /// Plays the edits of a deck whose grid has `dims` cells.
@@ -38,40 +56,82 @@ impl CellArrays {
     ) -> Result<Self, ParseError> {
         let mut all = Self {
             dims,
+            is_dual: found.porosity_model != PorosityModel::Single,
             arrays: Vec::new(),
             left_out: LeftOut::default(),
+            regions: match found.has_multiplier_regions {
+                true => MULTIPLIER_REGIONS,
+                false => FLUX_REGIONS,
+            },
         };
+        if let Some((place, actnum)) = found.file_actnum.take() {
+            let active = all.find_or_begin("ACTNUM", false, &place);
+            active.values = actnum.into_iter().map(f64::from).collect();
+        }
+        check_values(found, dims)?;
         for edit in std::mem::take(&mut found.edits) {
             match edit {
                 Edit::Given(block, cells) => all.give(&block, cells, warnings)?,
-                Edit::Changed {
-                    place,
-                    target,
-                    change,
-                    cells,
-                } => all.change(&place, &target, &change, cells),
-                Edit::NotApplied { place, target } => all.doubt(&place, &target),
+                Edit::Changed(operation) => {
+                    if let Err(why) = all.change(&operation, warnings) {
+                        all.leave_out(&operation.place, &operation.target, why);
+                    }
+                }
+                Edit::NotApplied { place, target, why } => all.leave_out(&place, &target, why),
             }
         }
         std::mem::take(&mut all.left_out).report(warnings);
+        all.join_factors();
         Ok(all)
+    }
+
+    /// Multiplies what the EDIT section has as factors into what they are factors of.
+    fn join_factors(&mut self) {
+        let all = std::mem::take(&mut self.arrays);
+        let (factors, arrays) = all.into_iter().partition(|array| array.is_edit_factor);
+        self.arrays = arrays;
+        let factors: Vec<CellArray> = factors;
+        let volumes = factors.iter().find(|factor| factor.name == "MULTPV");
+        if let (Some(factor), Some(given)) = (volumes, self.find("PORV", false)) {
+            given.multiply(factor);
+        }
+        for factor in factors {
+            let name = match factor.name.as_str() {
+                "PORV" => "MULTPV",
+                name => name,
+            };
+            self.find_or_begin(name, false, &factor.place)
+                .multiply(&factor);
+        }
+        self.arrays
+            .retain(|array| array.name != "PORV" || array.values.iter().any(|v| !v.is_nan()));
     }
 
     fn cells(&self) -> usize {
         self.dims.iter().product()
     }
 
-    fn find(&mut self, name: &str) -> Option<&mut CellArray> {
-        self.arrays.iter_mut().find(|array| array.name == name)
+    fn place_of(&self, name: &str, is_edit_factor: bool) -> Option<usize> {
+        let is_meant = |a: &CellArray| a.name == name && a.is_edit_factor == is_edit_factor;
+        self.arrays.iter().position(is_meant)
+    }
+
+    fn find(&mut self, name: &str, is_edit_factor: bool) -> Option<&mut CellArray> {
+        let at = self.place_of(name, is_edit_factor)?;
+        self.arrays.get_mut(at)
     }
 
     /// The array called `name`, begun with what cells have where nothing is given.
-    fn find_or_begin(&mut self, name: &str, place: &Place) -> &mut CellArray {
-        let at = self.arrays.iter().position(|array| array.name == name);
+    fn find_or_begin(&mut self, name: &str, is_edit_factor: bool, place: &Place) -> &mut CellArray {
+        let at = self.place_of(name, is_edit_factor);
         let at = at.unwrap_or_else(|| {
-            let start = default_value(name).unwrap_or(f64::NAN);
+            let start = match is_edit_factor {
+                true => 1.0,
+                false => default_value(name).unwrap_or(f64::NAN),
+            };
             self.arrays.push(CellArray {
                 name: name.to_owned(),
+                is_edit_factor,
                 values: vec![start; self.cells()],
                 doubts: Vec::new(),
                 place: place.clone(),
@@ -82,10 +142,25 @@ impl CellArrays {
         &mut self.arrays[at]
     }
 
+    /// Leaves out what is not of the first `dims` cells: of dual porosity the fractures, which follow the matrix.
+    pub(super) fn keep(&mut self, dims: [usize; 3]) {
+        self.dims = dims;
+        let cells = self.cells();
+        for array in &mut self.arrays {
+            array.values.truncate(cells);
+        }
+    }
+
     /// Takes an array out.
     pub(super) fn take(&mut self, name: &str) -> Option<CellArray> {
         let at = self.arrays.iter().position(|array| array.name == name)?;
         Some(self.arrays.remove(at))
+    }
+
+    /// Where an array was given.
+    pub(super) fn place(&self, name: &str) -> Option<&Place> {
+        let array = self.arrays.iter().find(|array| array.name == name)?;
+        Some(&array.place)
     }
 
     /// The values of an array.
@@ -124,19 +199,21 @@ impl CellArrays {
         let count = ranges.iter().map(ExactSizeIterator::len).product();
         let counts = match block.name.as_str() {
             // The tops of the first layer are enough.
-            "TOPS" if is_whole => vec![count, self.dims[0] * self.dims[1]],
+            "TOPS" if is_whole => {
+                let half = if self.is_dual { count / 2 } else { count };
+                vec![count, self.dims[0] * self.dims[1], half]
+            }
+            // The matrix alone.
+            _ if is_whole && self.is_dual => vec![count, count / 2],
             _ => vec![count],
         };
         let Some(values) = values(block, &counts, warnings)? else {
             return Ok(());
         };
-        let place = Place {
-            source: block.source.clone(),
-            at: block.at,
-            keyword: block.name.clone(),
-        };
+        let place = block.place();
         let dims = self.dims;
-        let array = self.find_or_begin(&block.name, &place);
+        let is_factor = is_edit_factor(&block.name, block.section);
+        let array = self.find_or_begin(&block.name, is_factor, &place);
         if is_whole {
             if array.is_given {
                 let message = format!("{} is given again; the last one is used", block.name);
@@ -155,58 +232,190 @@ impl CellArrays {
         Ok(())
     }
 
-    fn change(&mut self, place: &Place, target: &str, change: &Change, cells: CellBox) {
-        let Some(ranges) = cells.ranges(self.dims) else {
-            self.left_out
-                .add(place, target, ": its box is outside the grid");
-            return self.mark(place, target);
-        };
-        let (source, doubts) = match change {
-            Change::CopyOf(name) => match self.find(name) {
-                Some(source) => (source.values.clone(), source.doubts.clone()),
-                None => {
-                    self.left_out
-                        .add(place, target, ": the array to copy is not in the deck");
-                    return self.mark(place, target);
-                }
-            },
-            Change::Equals(_) => (Vec::new(), Vec::new()),
-            _ if self.find(target).is_none() && default_value(target).is_none() => {
-                return self
-                    .left_out
-                    .add(place, target, ", which the deck does not give");
+    /// Applies a record, or says why that is not done.
+    fn change(
+        &mut self,
+        operation: &Operation,
+        warnings: &mut Warnings,
+    ) -> Result<(), &'static str> {
+        let mut read = self.read(operation)?;
+        let target = operation.target.as_str();
+        let is_known = is_edit_factor(target, operation.section)
+            || target == "PORV"
+            || default_value(target).is_some()
+            || self.place_of(target, false).is_some();
+        if !operation.change.is_absolute() && !is_known {
+            return Err(NOT_GIVEN);
+        }
+        let dims = self.dims;
+        match &operation.cells {
+            Cells::Box(cells) => {
+                let ranges = cells.ranges(dims);
+                let ranges = ranges.ok_or(": its box is outside the grid")?;
+                read.is_whole = cells.is_whole(dims);
+                self.set(operation, cells_of(ranges, dims), &read, warnings)
             }
-            _ => (Vec::new(), Vec::new()),
+            Cells::Region(array, number) => {
+                let (cells, doubts) = self.region(array.as_deref(), *number)?;
+                read.doubts.extend(doubts);
+                self.set(operation, cells.into_iter(), &read, warnings)
+            }
+        }
+    }
+
+    /// The array that a record reads, which is empty where it reads none.
+    fn read(&self, operation: &Operation) -> Result<Read, &'static str> {
+        let Some(name) = operation.change.source() else {
+            return Ok(Read::default());
         };
-        let (dims, is_whole) = (self.dims, cells.is_whole(self.dims));
-        let array = self.find_or_begin(target, place);
-        if is_whole && matches!(change, Change::Equals(_) | Change::CopyOf(_)) {
+        let at = self.place_of(name, is_edit_factor(name, operation.section));
+        let at = at.or_else(|| self.place_of(name, false));
+        let array = at.and_then(|at| self.arrays.get(at));
+        let array = array.ok_or(": the array that it reads is not in the deck")?;
+        Ok(Read {
+            values: array.values.clone(),
+            doubts: array.doubts.clone(),
+            is_whole: false,
+        })
+    }
+
+    /// Changes the values of cells.
+    fn set(
+        &mut self,
+        operation: &Operation,
+        cells: impl Iterator<Item = usize>,
+        read: &Read,
+        warnings: &mut Warnings,
+    ) -> Result<(), &'static str> {
+        let Operation { place, change, .. } = operation;
+        let target = operation.target.as_str();
+        let is_factor = is_edit_factor(target, operation.section);
+        let array = self.find_or_begin(target, is_factor, place);
+        if read.is_whole && change.is_absolute() {
             array.doubts.clear();
         }
-        for doubt in doubts {
-            array.add_doubt(&doubt);
+        for doubt in &read.doubts {
+            array.add_doubt(doubt);
         }
-        for cell in cells_of(ranges, dims) {
-            let copied = source.get(cell).copied().unwrap_or(f64::NAN);
-            array.values[cell] = change.apply(array.values[cell], copied);
+        if target == "PORV" && !change.is_absolute() {
+            return self.change_volumes(operation, cells, read);
+        }
+        let mut undefined = 0_usize;
+        for cell in cells {
+            let value = change.apply(array.values[cell], read.value(cell));
+            undefined += usize::from(value.is_nan() && !read.value(cell).is_nan());
+            array.values[cell] = value;
+        }
+        if undefined > 0 {
+            let cells = if undefined == 1 { "cell" } else { "cells" };
+            let message = format!("{target} becomes undefined in {undefined} {cells}");
+            place.warn(warnings, message);
+        }
+        Ok(())
+    }
+
+    /// The cells of a region, and what is in doubt about the array that says which they are.
+    fn region(
+        &self,
+        array: Option<&str>,
+        number: i32,
+    ) -> Result<(Vec<usize>, Vec<String>), &'static str> {
+        let at = match array {
+            Some(name) => self.place_of(name, false),
+            None => self
+                .regions
+                .iter()
+                .find_map(|name| self.place_of(name, false)),
+        };
+        let regions = at.and_then(|at| self.arrays.get(at));
+        let regions = regions.ok_or(": the array of its regions is not in the deck")?;
+        let is_in = |value: f64| value == f64::from(number);
+        let cells = (0..self.cells()).filter(|cell| is_in(regions.values[*cell]));
+        let cells: Vec<usize> = cells.collect();
+        match cells.is_empty() {
+            true => Err(EMPTY),
+            false => Ok((cells, regions.doubts.clone())),
         }
     }
 
-    /// Notes a record that is not evaluated.
-    fn doubt(&mut self, place: &Place, target: &str) {
-        self.left_out
-            .add(place, target, ": this keyword is not evaluated");
-        self.mark(place, target);
+    /// Changes pore volumes by what they are: those that are given, and by a factor those that follow from the geometry.
+    fn change_volumes(
+        &mut self,
+        operation: &Operation,
+        cells: impl Iterator<Item = usize>,
+        read: &Read,
+    ) -> Result<(), &'static str> {
+        let Operation { place, change, .. } = operation;
+        let given = self.find_or_begin("PORV", false, place);
+        let mut computed = Vec::new();
+        for cell in cells {
+            let value = &mut given.values[cell];
+            if value.is_nan() {
+                computed.push(cell);
+            } else {
+                *value = change.apply(*value, read.value(cell));
+            }
+        }
+        let factor = match change {
+            _ if computed.is_empty() => return Ok(()),
+            Change::Multiply(factor) => *factor,
+            _ => return Err(" where it follows from the geometry"),
+        };
+        let factors = self.find_or_begin("PORV", true, place);
+        for cell in computed {
+            factors.values[cell] *= factor;
+        }
+        Ok(())
     }
 
-    fn mark(&mut self, place: &Place, target: &str) {
-        if let Some(array) = self.find(target) {
+    /// Notes a record that is not applied, for a reason that ends the sentence.
+    fn leave_out(&mut self, place: &Place, target: &str, why: &'static str) {
+        self.left_out.add(place, target, why);
+        if let Some(array) = self
+            .find(target, false)
+            .filter(|_| ![NOT_GIVEN, EMPTY].contains(&why))
+        {
             array.add_doubt(&place.keyword);
         }
     }
 }
 
+/// What a record reads beside the values that it changes.
+#[derive(Default)]
+struct Read {
+    values: Vec<f64>,
+    doubts: Vec<String>,
+    /// True where the record is for all cells.
+    is_whole: bool,
+}
+
+impl Read {
+    fn value(&self, cell: usize) -> f64 {
+        self.values.get(cell).copied().unwrap_or(f64::NAN)
+    }
+}
+
+/// Why a change of what is not there is not made.
+const NOT_GIVEN: &str = ", which the deck does not give";
+
+/// Why a change of no cells is not made.
+const EMPTY: &str = ": no cell is in its region";
+
+/// True of an array of the EDIT section that is a factor on what the GRID section has under that name.
+fn is_edit_factor(name: &str, section: Option<Section>) -> bool {
+    section == Some(Section::Edit) && is_multiplier(name)
+}
+
 impl CellArray {
+    fn multiply(&mut self, factor: &Self) {
+        for (value, factor) in self.values.iter_mut().zip(&factor.values) {
+            *value *= factor;
+        }
+        for doubt in &factor.doubts {
+            self.add_doubt(doubt);
+        }
+    }
+
     fn add_doubt(&mut self, keyword: &str) {
         if !self.doubts.iter().any(|known| known == keyword) {
             self.doubts.push(keyword.to_owned());
@@ -223,6 +432,28 @@ impl CellArray {
     }
 }
 
+/// Refuses more arrays than a text of this length may ask for, before any of them is made.
+fn check_values(found: &Found, dims: [usize; 3]) -> Result<(), ParseError> {
+    let most = MOST_VALUES.max(found.bytes) / dims.iter().product::<usize>();
+    let mut names = HashSet::new();
+    for edit in &found.edits {
+        let name = match edit {
+            Edit::Given(block, _) if may_be_cells(block) => block.name.as_str(),
+            Edit::Changed(operation) => operation.target.as_str(),
+            Edit::Given(..) | Edit::NotApplied { .. } => continue,
+        };
+        names.insert(name);
+        if names.len() > most {
+            let message = format!(
+                "the deck has more than {most} arrays of {} cells: leave out those that are not needed",
+                product_text(dims)
+            );
+            return Err(edit.place().error(ErrorKind::TooLarge, message));
+        }
+    }
+    Ok(())
+}
+
 /// The values of a block that has one of `counts` of them; `None`, with a warning where it matters, for one that
 /// has not.
 fn values(
@@ -231,7 +462,7 @@ fn values(
     warnings: &mut Warnings,
 ) -> Result<Option<Vec<f64>>, ParseError> {
     if block.name == "ACTNUM" {
-        return assemble::array(block, assemble::ACTIVITY, counts[0]).map(Some);
+        return assemble::array(block, assemble::ACTIVITY, counts).map(Some);
     }
     if !may_be_cells(block) {
         return Ok(None);
@@ -255,7 +486,7 @@ fn values(
             "{} has {} values for {cells} cells: it is left out",
             block.name, runs.count
         );
-        let at = block.source.at(block.data.end);
+        let at = block.source.at(block.end());
         warnings.push(block.source.path(), at, message);
     }
     Ok(None)

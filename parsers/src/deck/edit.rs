@@ -1,12 +1,13 @@
-//! What a deck does to arrays of cells, in its order: gives them, sets and changes them in boxes.
+//! What a deck does to arrays of cells, in its order: gives them, sets and changes them in boxes and regions.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
 use std::rc::Rc;
 
-use super::header::{name, positive, real};
+use super::formula::Formula;
+use super::header::{name, positive, real, whole};
 use super::lexer::{Cursor, Item, Keyword, Mistake};
-use super::scan::{Block, Scan};
+use super::scan::{Block, Scan, Section};
 use super::skip::ends_records;
 use super::source::Source;
 use crate::error::{ErrorKind, ParseError, Warnings};
@@ -85,7 +86,7 @@ impl Place {
     }
 }
 
-/// What happens to the values of a box.
+/// What happens to the values of cells.
 pub(super) enum Change {
     Equals(f64),
     Add(f64),
@@ -93,10 +94,29 @@ pub(super) enum Change {
     AtLeast(f64),
     AtMost(f64),
     CopyOf(String),
+    /// A formula of OPERATE over the values of another array.
+    Operate(Formula, String),
 }
 
 impl Change {
-    /// The new value of a cell; `source` is that of the array that is copied.
+    /// The array that is read, if not the one that is changed alone.
+    pub(super) fn source(&self) -> Option<&str> {
+        match self {
+            Self::CopyOf(source) | Self::Operate(_, source) => Some(source),
+            _ => None,
+        }
+    }
+
+    /// True where the new values do not follow from those before.
+    pub(super) fn is_absolute(&self) -> bool {
+        match self {
+            Self::Equals(_) | Self::CopyOf(_) => true,
+            Self::Operate(formula, _) => !formula.needs_target(),
+            _ => false,
+        }
+    }
+
+    /// The new value of a cell; `source` is that of the array that is read.
     pub(super) fn apply(&self, value: f64, source: f64) -> f64 {
         match self {
             Self::Equals(new) => *new,
@@ -107,23 +127,50 @@ impl Change {
             Self::AtMost(most) if value > *most => *most,
             Self::AtLeast(_) | Self::AtMost(_) => value,
             Self::CopyOf(_) => source,
+            Self::Operate(formula, _) => formula.value(value, source),
         }
     }
+}
+
+/// The cells that a record is for.
+pub(super) enum Cells {
+    Box(CellBox),
+    /// Those that have a number in an array of regions; `None` is the array that is meant where none is named.
+    Region(Option<String>, i32),
+}
+
+/// A record of an operation.
+pub(super) struct Operation {
+    pub(super) place: Place,
+    pub(super) section: Option<Section>,
+    pub(super) target: String,
+    pub(super) change: Change,
+    pub(super) cells: Cells,
 }
 
 /// One step in the making of the arrays.
 pub(super) enum Edit {
     /// An array as numbers, for all cells or those of a box.
     Given(Block, CellBox),
-    /// A record of EQUALS, ADD, MULTIPLY, MINVALUE, MAXVALUE or COPY.
-    Changed {
+    /// A record that sets or changes an array.
+    Changed(Operation),
+    /// A record that is not evaluated.
+    NotApplied {
         place: Place,
         target: String,
-        change: Change,
-        cells: CellBox,
+        /// The end of the sentence that says so.
+        why: &'static str,
     },
-    /// A record of a keyword that is not evaluated.
-    NotApplied { place: Place, target: String },
+}
+
+impl Edit {
+    pub(super) fn place(&self) -> Place {
+        match self {
+            Self::Given(block, _) => block.place(),
+            Self::Changed(operation) => operation.place.clone(),
+            Self::NotApplied { place, .. } => place.clone(),
+        }
+    }
 }
 
 impl Scan<'_> {
@@ -147,7 +194,7 @@ impl Scan<'_> {
                 at,
                 keyword: keyword.name.clone(),
             };
-            let edit = edit(place, &items, &mut cells).map_err(placed)?;
+            let edit = edit(place, self.section, &items, &mut cells).map_err(placed)?;
             if !self.in_refinement() {
                 self.found.edits.extend(edit);
             }
@@ -157,35 +204,97 @@ impl Scan<'_> {
 }
 
 /// The edit of a record. A box that it names holds for the records behind it too.
-fn edit(place: Place, items: &[Item], cells: &mut CellBox) -> Result<Option<Edit>, Mistake> {
+fn edit(
+    place: Place,
+    section: Option<Section>,
+    items: &[Item],
+    cells: &mut CellBox,
+) -> Result<Option<Edit>, Mistake> {
     let keyword = place.keyword.as_str();
     let target = usize::from(matches!(keyword, "COPY" | "COPYREG"));
     let Some(target) = name(items, target) else {
         return Ok(None);
     };
+    let why = match (change(keyword, items)?, of_cells(keyword, items, cells)?) {
+        (Some(change), Some(cells)) => {
+            return Ok(Some(Edit::Changed(Operation {
+                place,
+                section,
+                target,
+                change,
+                cells,
+            })));
+        }
+        (_, None) => ": its record names no region, or an array of regions that is not known",
+        (None, _) if keyword.starts_with("OPERATE") => ": its formula is not known",
+        (None, _) if keyword == "COPYBOX" => ": this keyword is not evaluated",
+        (None, _) => ": its record is incomplete",
+    };
+    Ok(Some(Edit::NotApplied { place, target, why }))
+}
+
+/// What a record does; `None` where that is not known.
+fn change(keyword: &str, items: &[Item]) -> Result<Option<Change>, Mistake> {
     let value = || items.get(1).map(real).transpose();
-    let change = match keyword {
-        "COPY" => name(items, 0).map(Change::CopyOf),
-        "EQUALS" => value()?.map(Change::Equals),
-        "ADD" => value()?.map(Change::Add),
-        "MULTIPLY" => value()?.map(Change::Multiply),
+    Ok(match keyword {
+        "COPY" | "COPYREG" => name(items, 0).map(Change::CopyOf),
+        "EQUALS" | "EQUALREG" => value()?.map(Change::Equals),
+        "ADD" | "ADDREG" => value()?.map(Change::Add),
+        "MULTIPLY" | "MULTIREG" => value()?.map(Change::Multiply),
         "MINVALUE" => value()?.map(Change::AtLeast),
         "MAXVALUE" => value()?.map(Change::AtMost),
+        "OPERATE" => operate(items.get(7..).unwrap_or_default())?,
+        "OPERATER" => operate(items.get(2..).unwrap_or_default())?,
         _ => None,
+    })
+}
+
+/// A formula, the array that it reads, and up to two parameters.
+fn operate(items: &[Item]) -> Result<Option<Change>, Mistake> {
+    let parameter = |index: usize| {
+        let given = items.get(index).filter(|item| item.text.is_some());
+        given.map_or(Ok(0.0), real)
     };
-    let Some(change) = change else {
-        return Ok(Some(Edit::NotApplied { place, target }));
+    let parameters = [parameter(2)?, parameter(3)?];
+    let formula = name(items, 0).and_then(|name| Formula::of(&name, parameters));
+    let read = name(items, 1);
+    Ok(formula
+        .zip(read)
+        .map(|(formula, read)| Change::Operate(formula, read)))
+}
+
+/// The cells of a record; `None` where they cannot be told.
+fn of_cells(
+    keyword: &str,
+    items: &[Item],
+    current: &mut CellBox,
+) -> Result<Option<Cells>, Mistake> {
+    let (number, letter) = match keyword {
+        "EQUALREG" | "ADDREG" | "MULTIREG" | "COPYREG" => (2, 3),
+        "OPERATER" => (1, 6),
+        _ => {
+            let first = if keyword == "OPERATE" { 1 } else { 2 };
+            let ends = items.get(first..).unwrap_or_default();
+            if let Some(named) = CellBox::read(&ends[..ends.len().min(6)])? {
+                *current = named;
+            }
+            return Ok(Some(Cells::Box(*current)));
+        }
     };
-    if let Some(named) = CellBox::read(items.get(2..).unwrap_or_default())? {
-        *cells = named;
-    }
-    let cells = *cells;
-    Ok(Some(Edit::Changed {
-        place,
-        target,
-        change,
-        cells,
-    }))
+    let Some(number) = items.get(number).map(whole).transpose()? else {
+        return Ok(None);
+    };
+    let array = match name(items, letter).as_deref() {
+        None if keyword == "OPERATER" => Some("OPERNUM".to_owned()),
+        None => None,
+        Some("F") => Some("FLUXNUM".to_owned()),
+        Some("M") => Some("MULTNUM".to_owned()),
+        Some("O") => Some("OPERNUM".to_owned()),
+        // OPERATER may name an array of regions.
+        Some(named) if named.len() > 1 => Some(named.to_owned()),
+        Some(_) => return Ok(None),
+    };
+    Ok(Some(Cells::Region(array, number)))
 }
 
 /// What was left out, gathered so that each keyword is told of once, at its first place.

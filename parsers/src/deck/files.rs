@@ -117,7 +117,9 @@ fn as_on_disk(path: &Path) -> Option<PathBuf> {
         };
         let names = std::fs::read_dir(folder).ok()?.flatten();
         let names = names.map(|entry| entry.file_name());
-        let same = names.filter(|name| name.eq_ignore_ascii_case(part));
+        // Names in another encoding than UTF-8 are compared by what of them can be read, as the deck's are.
+        let wanted = part.as_os_str().to_string_lossy();
+        let same = names.filter(|name| name.to_string_lossy().eq_ignore_ascii_case(&wanted));
         found.push(same.min()?);
     }
     found.is_file().then_some(found)

@@ -7,8 +7,9 @@ use super::numbers::number;
 use crate::error::ErrorKind;
 use crate::geometry::MOST_CELLS;
 
-/// SPECGRID or DIMENS: three counts, for SPECGRID also coordinate systems and `T` for a radial grid.
-pub(super) fn dims(items: &[Item], at: usize) -> Result<[usize; 3], Mistake> {
+/// SPECGRID or DIMENS: three counts, for SPECGRID also coordinate systems and `T` for a radial grid, which is the second
+/// that is given.
+pub(super) fn dims(items: &[Item], at: usize) -> Result<([usize; 3], bool), Mistake> {
     let mut dims = [0; 3];
     for (axis, dim) in dims.iter_mut().enumerate() {
         let item = items.get(axis).ok_or_else(|| {
@@ -16,11 +17,12 @@ pub(super) fn dims(items: &[Item], at: usize) -> Result<[usize; 3], Mistake> {
         })?;
         *dim = positive(item)?;
     }
+    let mut is_radial = false;
     // The number of coordinate systems, which some writers leave out, and the letter behind it.
     for item in items.iter().skip(3).take(2) {
         match item.text.and_then(|text| text.first()) {
             None => {}
-            Some(b'T' | b't') => return Err(Mistake::new(ErrorKind::Unsupported, item.at, RADIAL)),
+            Some(b'T' | b't') => is_radial = true,
             Some(b'F' | b'f') => break,
             Some(_) if positive(item)? != 1 => {
                 return Err(Mistake::new(ErrorKind::Unsupported, item.at, SYSTEMS));
@@ -39,11 +41,10 @@ pub(super) fn dims(items: &[Item], at: usize) -> Result<[usize; 3], Mistake> {
             format!("{ni} x {nj} x {nk} cells are more than a grid can have (2^31)"),
         ));
     }
-    Ok(dims)
+    Ok((dims, is_radial))
 }
 
-const RADIAL: &str = "the grid is radial (T); only Cartesian corner-point grids are read from text";
-const SYSTEMS: &str = "grids with more than one coordinate system (NUMRES) are not read";
+const SYSTEMS: &str = "grids with more than one coordinate system (NUMRES) are not read from text: run the simulator and open the EGRID";
 
 /// A whole number of at least 1.
 pub(super) fn positive(item: &Item) -> Result<usize, Mistake> {
@@ -62,6 +63,16 @@ pub(super) fn positive(item: &Item) -> Result<usize, Mistake> {
                 ),
             )
         })
+}
+
+/// A whole number, as of a region.
+pub(super) fn whole(item: &Item) -> Result<i32, Mistake> {
+    let text = item.text.unwrap_or(b"*");
+    let number = std::str::from_utf8(text).ok().and_then(|t| t.parse().ok());
+    number.ok_or_else(|| {
+        let message = format!("expected a whole number, found '{}'", shown(text));
+        Mistake::new(ErrorKind::BadValue, item.at, message)
+    })
 }
 
 /// MAPAXES: six finite numbers.

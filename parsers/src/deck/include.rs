@@ -1,14 +1,14 @@
-//! INCLUDE, GDFILE and PATHS: how one file leads to the next.
+//! INCLUDE, GDFILE, IMPORT and PATHS: how one file leads to the next.
 
 use std::rc::Rc;
 
-use super::edit::Place;
+use super::edit::{CellBox, Place};
 use super::lexer::{Cursor, Keyword, Token, line_end, record_end};
-use super::scan::{Flow, Scan};
+use super::scan::{Block, Data, Flow, Scan};
 use super::source::Source;
 use crate::bytes::FileBytes;
 use crate::error::{ErrorKind, ParseError};
-use crate::records::Form;
+use crate::records::{Form, RecordFile};
 
 /// Deepest nesting and largest number of included files.
 const DEEPEST: usize = 64;
@@ -58,8 +58,8 @@ impl Scan<'_> {
         self.include_file(source, keyword, at, file)
     }
 
-    /// GDFILE: a text file is included, one of arrays noted for when the grid is built.
-    pub(super) fn grid_file(
+    /// GDFILE and IMPORT: a text file is included, one of arrays noted for when the grid is built.
+    pub(super) fn array_file(
         &mut self,
         source: &Rc<Source>,
         cursor: &mut Cursor,
@@ -83,9 +83,39 @@ impl Scan<'_> {
             at,
             keyword: keyword.name.clone(),
         };
-        // A file that is not there is missed where the grid is needed, which it is not to read faults alone.
-        self.found.grid_file = Some((place, file));
+        if keyword.name == "GDFILE" {
+            // A file that is not there is missed where the grid is needed, which it is not to read faults alone.
+            self.found.grid_file = Some((place, file));
+        } else if let Err(error) = file.and_then(|file| self.import(&place, file)) {
+            let message = format!("IMPORT was not read, so its arrays are missing: {error}");
+            place.warn(self.warnings, message);
+        }
         Ok(Flow::On)
+    }
+
+    /// Notes the arrays of a file as if they stood in the deck.
+    fn import(&mut self, place: &Place, file: FileBytes) -> Result<(), ParseError> {
+        let bytes = file.bytes().len();
+        let file = Rc::new(RecordFile::from_bytes(file)?);
+        self.found.bytes = self.found.bytes.saturating_add(bytes);
+        self.found.files.push(file.path().to_owned());
+        for entry in file.entries().iter().filter(|entry| entry.is_numeric()) {
+            let block = Block {
+                source: Rc::clone(&place.source),
+                name: entry.name().to_ascii_uppercase(),
+                at: place.at,
+                data: Data::Imported(Rc::clone(&file), *entry),
+                section: self.section,
+            };
+            match block.name.as_str() {
+                "MAPAXES" => self.found.map_axes = file.f64s(entry)?.try_into().ok(),
+                // Dimensions are the deck's.
+                "SPECGRID" | "DIMENS" => {}
+                _ if self.in_refinement() => {}
+                _ => self.keep(block, CellBox::default()),
+            }
+        }
+        Ok(())
     }
 
     fn include_file(

@@ -3,7 +3,8 @@
 //! The reader follows INCLUDE, skips what does not describe the grid, and stops at the SUMMARY or
 //! SCHEDULE section. It works in two steps: a scan over all files that notes where each array
 //! lies and what is done to it, and, once the dimensions are known, the parallel conversion of the
-//! arrays and, in the deck's order, what EQUALS, COPY, ADD, MULTIPLY, MINVALUE and MAXVALUE do to them.
+//! arrays and, in the deck's order, what is done to them in boxes (EQUALS, COPY, ...), regions (EQUALREG, ...) and by
+//! formulas (OPERATE).
 
 mod array;
 mod assemble;
@@ -12,6 +13,7 @@ mod cells;
 mod edit;
 mod faults;
 mod files;
+mod formula;
 mod header;
 mod include;
 mod lexer;
@@ -23,6 +25,7 @@ mod write;
 
 use std::path::{Path, PathBuf};
 
+use crate::egrid::PorosityModel;
 use crate::error::{ParseError, Warnings};
 pub use crate::units::UnitSystem;
 pub use files::{DeckFiles, Folders, MemoryFiles};
@@ -33,14 +36,18 @@ pub use write::{DeckWriter, GridText, Number};
 /// Shape: `ni`, `nj`, `nk` are `dims[0]`, `dims[1]`, `dims[2]`; cell arrays run i fastest, then j, then k.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Grdecl {
-    /// Number of cells in i, j and k, each at least 1, their product below 2^31.
+    /// Number of cells in i, j and k, each at least 1, their product below 2^31. Of dual porosity those of the matrix,
+    /// which are half of the deck's layers.
     pub dims: [usize; 3],
     /// Pillars: 6 numbers (x, y, z of top, x, y, z of bottom) for each of `(ni+1)*(nj+1)`, i fastest; all finite.
     pub coord: Vec<f64>,
     /// Corner depths, `8*ni*nj*nk` in the file's order (`2ni` fastest, then `2nj`, then `2nk`); all finite.
     pub zcorn: Vec<f64>,
-    /// Activity of each cell as written (0 is inactive), `None` where the deck has no ACTNUM.
+    /// Activity of each cell as written (0 is inactive), `None` where the deck has no ACTNUM. With dual porosity always
+    /// there: 1 matrix, 2 fractures, 3 both.
     pub actnum: Option<Vec<i32>>,
+    /// DUALPORO or DUALPERM of the RUNSPEC section.
+    pub porosity_model: PorosityModel,
     /// MAPAXES: x and y of a point on the map's y axis, of the origin, of a point on its x axis.
     pub map_axes: Option<[f64; 6]>,
     /// MAPUNITS: the length unit of MAPAXES, such as `METRES`.
@@ -118,11 +125,10 @@ pub struct FaultFaces {
 impl Grdecl {
     /// Reads the grid of the deck at `path` and of all files it includes.
     ///
-    /// What the reader leaves out or cannot evaluate (operations by region, local refinements, files that are
-    /// imported) goes to `warnings`.
+    /// What the reader leaves out or cannot evaluate (an operation on what is not given, local refinements, ...) goes to `warnings`.
     ///
     /// # Errors
-    /// When a file is missing or ends inside a record, when the grid is missing, radial, damaged or of the wrong
+    /// When a file is missing or ends inside a record, when the grid is missing, damaged or of the wrong
     /// length, when numbers are not numbers, or when files include each other in a loop.
     pub fn read(path: &Path, warnings: &mut Warnings) -> Result<Self, ParseError> {
         Self::read_from(&Folders, path, &[], warnings)
@@ -182,7 +188,7 @@ impl Grdecl {
     ) -> Result<Vec<FaultFaces>, ParseError> {
         // What else the deck says is not asked for, so nobody has to know what of it was left out.
         let mut found = scan::scan(files, &[path], &mut Warnings::default())?;
-        Ok(assemble::inside(&mut found, dims, warnings))
+        Ok(assemble::inside(&mut found, dims, dims, warnings))
     }
 
     /// True where the text file at `path`, or one that it includes, describes a grid and not only what belongs to

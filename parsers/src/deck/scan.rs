@@ -11,19 +11,46 @@ use super::skip::{Skipped, ends_records, is_operation, skip_records};
 use super::source::{Places, Source};
 use super::{FaultFaces, GridUnit, faults, header};
 use crate::bytes::FileBytes;
+use crate::egrid::PorosityModel;
 use crate::error::{ErrorKind, ParseError, Warnings};
+use crate::records::{Entry, RecordFile};
 use crate::units::UnitSystem;
 
-/// An array that is still text.
+/// An array that is not yet numbers.
 pub(super) struct Block {
     pub(super) source: Rc<Source>,
     pub(super) name: String,
     /// Offset of the keyword.
     pub(super) at: usize,
-    /// From behind the keyword to the closing `/`.
-    pub(super) data: Range<usize>,
+    pub(super) data: Data,
     /// The section it stands in; `None` in a file without sections.
     pub(super) section: Option<Section>,
+}
+
+/// Where the values of an array are.
+pub(super) enum Data {
+    /// In the text, from behind the keyword to the closing `/`.
+    Text(Range<usize>),
+    /// In a file that the keyword names.
+    Imported(Rc<RecordFile>, Entry),
+}
+
+impl Block {
+    pub(super) fn place(&self) -> Place {
+        Place {
+            source: Rc::clone(&self.source),
+            at: self.at,
+            keyword: self.name.clone(),
+        }
+    }
+
+    /// The offset that people are told of its length: that of the closing `/`, or of the keyword that names the file.
+    pub(super) fn end(&self) -> usize {
+        match &self.data {
+            Data::Text(range) => range.end,
+            Data::Imported(..) => self.at,
+        }
+    }
 }
 
 /// The sections of a deck that describe the grid and its first state.
@@ -68,12 +95,12 @@ pub(super) struct Found {
     pub(super) zcorn: Option<Block>,
     /// What is done to arrays of cells, in order.
     pub(super) edits: Vec<Edit>,
-    /// Sizes by column, row and layer: DXV, DYV, DZV.
+    /// Sizes by column, row and layer (DXV, DYV, DZV, DRV, DTHETAV), and radii (INRAD, OUTRAD).
     pub(super) vectors: Vec<Block>,
     /// A binary file with the geometry, where GDFILE names one, or why it cannot be opened.
     pub(super) grid_file: Option<(Place, Result<FileBytes, ParseError>)>,
-    /// ACTNUM of that file.
-    pub(super) file_actnum: Option<Vec<i32>>,
+    /// ACTNUM of that file, and where it is named.
+    pub(super) file_actnum: Option<(Place, Vec<i32>)>,
     pub(super) depth_shifts: Vec<DepthShift>,
     pub(super) faults: Vec<(Place, FaultFaces)>,
     /// MULTFLT: names with multipliers, in order.
@@ -86,8 +113,13 @@ pub(super) struct Found {
     /// Phases as INTEHEAD numbers them: 1 oil, 2 water, 4 gas, added.
     pub(super) phases: i32,
     pub(super) min_pore_volume: Option<f64>,
-    /// True when radial sizes were met.
+    /// True where GRIDOPTS has regions of MULTNUM.
+    pub(super) has_multiplier_regions: bool,
+    /// True where the grid is radial.
     pub(super) radial: bool,
+    /// True where COORD has radii and angles (`T` of SPECGRID).
+    pub(super) radial_corners: bool,
+    pub(super) porosity_model: PorosityModel,
     pub(super) files: Vec<PathBuf>,
     /// Bytes of all files, each time they are included.
     pub(super) bytes: usize,
@@ -96,13 +128,23 @@ pub(super) struct Found {
 impl Found {
     /// True where pillars and depths, a file with them, or sizes of cells were found.
     pub(super) fn describes_grid(&self) -> bool {
-        let is_size = |edit: &Edit| match edit {
-            Edit::Given(block, _) => block.name == "TOPS",
-            Edit::Changed { target, .. } => target == "TOPS",
-            Edit::NotApplied { .. } => false,
-        };
         let has_corners = self.coord.is_some() && self.zcorn.is_some();
-        has_corners || self.grid_file.is_some() || self.edits.iter().any(is_size)
+        has_corners || self.grid_file.is_some() || self.sets("TOPS")
+    }
+
+    /// True where sizes of cells were found and no corners.
+    pub(super) fn is_block_centered(&self) -> bool {
+        let has_corners = self.coord.is_some() || self.zcorn.is_some();
+        let sizes = ["DX", "DY", "DZ", "TOPS"];
+        !has_corners && (!self.vectors.is_empty() || sizes.iter().any(|name| self.sets(name)))
+    }
+
+    fn sets(&self, name: &str) -> bool {
+        self.edits.iter().any(|edit| match edit {
+            Edit::Given(block, _) => block.name == name,
+            Edit::Changed(operation) => operation.target == name,
+            Edit::NotApplied { .. } => false,
+        })
     }
 }
 
@@ -118,7 +160,7 @@ pub(super) struct Scan<'a> {
     pub(super) warnings: &'a mut Warnings,
     pub(super) places: Places<'a>,
     pub(super) found: Found,
-    section: Option<Section>,
+    pub(super) section: Option<Section>,
     /// The cells that arrays at hand belong to.
     pub(super) input_box: CellBox,
     refinement: bool,
@@ -221,7 +263,7 @@ impl Scan<'_> {
             "ENDINC" => return Ok(Flow::EndOfFile),
             // PFLOTRAN names files to include like this.
             "INCLUDE" | "EXTERNAL_FILE" => return self.include(source, cursor, keyword),
-            "GDFILE" => return self.grid_file(source, cursor, keyword),
+            "GDFILE" | "IMPORT" => return self.array_file(source, cursor, keyword),
             "TITLE" => skip_title(cursor),
             "SKIP" | "SKIP100" | "SKIP300" => self.skip_region(source, cursor, keyword)?,
             "METRIC" => self.found.unit_system = Some(UnitSystem::Metric),
@@ -239,7 +281,7 @@ impl Scan<'_> {
             "PATHS" => self.paths(source, cursor)?,
             "FAULTS" | "MULTFLT" | "ADDZCORN" => self.lists(source, cursor, keyword)?,
             "SPECGRID" | "DIMENS" | "MAPAXES" | "MAPUNITS" | "GRIDUNIT" | "GDORIENT" | "BOX"
-            | "MINPV" | "MINPORV" => {
+            | "MINPV" | "MINPORV" | "GRIDOPTS" => {
                 let items = cursor
                     .record()
                     .map_err(|mistake| source.mistake(name, mistake))?;
@@ -275,6 +317,11 @@ impl Scan<'_> {
                     .map_err(placed)?;
                 self.found.min_pore_volume = least;
             }
+            "GRIDOPTS" => {
+                let regions = items.get(1).filter(|item| item.text.is_some());
+                let regions = regions.map(header::whole).transpose().map_err(placed)?;
+                self.found.has_multiplier_regions = regions.is_some_and(|count| count > 0);
+            }
             "MAPAXES" => {
                 self.found.map_axes = Some(header::map_axes(items, keyword.at).map_err(placed)?);
             }
@@ -282,7 +329,9 @@ impl Scan<'_> {
             "GRIDUNIT" => self.found.grid_unit = Some(header::grid_unit(items)),
             "GDORIENT" => self.found.gdorient = Some(header::gdorient(items)),
             _ => {
-                let dims = header::dims(items, keyword.at).map_err(placed)?;
+                let (dims, is_radial) = header::dims(items, keyword.at).map_err(placed)?;
+                self.found.radial |= is_radial;
+                self.found.radial_corners |= is_radial;
                 self.dims(source, keyword, dims);
             }
         }
@@ -291,6 +340,13 @@ impl Scan<'_> {
 
     fn dims(&mut self, source: &Source, keyword: &Keyword, dims: [usize; 3]) {
         let from_specgrid = keyword.name == "SPECGRID";
+        // Some give the layers of the matrix alone.
+        let [ni, nj, nk] = dims;
+        if self.found.porosity_model != PorosityModel::Single
+            && self.found.dims == Some([ni, nj, 2 * nk])
+        {
+            return;
+        }
         if let Some(earlier) = self.found.dims.filter(|&earlier| earlier != dims) {
             let message = format!(
                 "{} gives {} cells where the deck gave {} before; SPECGRID is followed",
@@ -387,22 +443,22 @@ impl Scan<'_> {
         if self.refinement {
             return Ok(());
         }
-        let place = match name {
+        self.keep(block, self.input_box);
+        Ok(())
+    }
+
+    /// Keeps an array for when the dimensions are known.
+    pub(super) fn keep(&mut self, block: Block, cells: CellBox) {
+        let (source, at, name) = (Rc::clone(&block.source), block.at, block.name.clone());
+        let place = match name.as_str() {
             "COORD" => &mut self.found.coord,
             "ZCORN" => &mut self.found.zcorn,
-            _ => {
-                self.found.edits.push(Edit::Given(block, self.input_box));
-                return Ok(());
-            }
+            _ => return self.found.edits.push(Edit::Given(block, cells)),
         };
         if place.replace(block).is_some() {
-            self.warn(
-                source,
-                keyword.at,
-                &format!("{name} is given again; the last one is used"),
-            );
+            let message = format!("{name} is given again; the last one is used");
+            self.warn(&source, at, &message);
         }
-        Ok(())
     }
 
     /// A keyword that has no meaning here, or a property.
@@ -422,7 +478,9 @@ impl Scan<'_> {
             Skipped::OneNumeric(end) => {
                 let block = self.block(source, keyword, end);
                 match name {
-                    "DXV" | "DYV" | "DZV" => self.found.vectors.push(block),
+                    "DXV" | "DYV" | "DZV" | "DRV" | "DTHETAV" | "INRAD" | "OUTRAD" => {
+                        self.found.vectors.push(block);
+                    }
                     _ => self.found.edits.push(Edit::Given(block, self.input_box)),
                 }
             }
@@ -433,12 +491,13 @@ impl Scan<'_> {
             self.refinement = false;
         }
         match name {
-            "DR" | "DRV" | "DTHETA" | "DTHETAV" | "INRAD" => self.found.radial = true,
-            "IMPORT" => self.warn(
-                source,
-                keyword.at,
-                "the file that IMPORT names is not read: its arrays are missing",
-            ),
+            "RADIAL" | "DR" | "DRV" | "DTHETA" | "DTHETAV" | "INRAD" => self.found.radial = true,
+            "DUALPORO" if self.section == Some(Section::Runspec) => {
+                self.found.porosity_model = PorosityModel::Dual;
+            }
+            "DUALPERM" if self.section == Some(Section::Runspec) => {
+                self.found.porosity_model = PorosityModel::DualPermeability;
+            }
             "EQLZCORN" => self.warn(
                 source,
                 keyword.at,
@@ -477,7 +536,7 @@ impl Scan<'_> {
             source: Rc::clone(source),
             name: keyword.name.clone(),
             at: keyword.at,
-            data: keyword.end..end,
+            data: Data::Text(keyword.end..end),
             section: self.section,
         }
     }

@@ -13,7 +13,7 @@ const WITHOUT_DATA: &[&str] = &[
     "RUNSPEC", "GRID", "EDIT", "PROPS", "REGIONS", "SOLUTION", "OIL", "WATER", "GAS", "DISGAS",
     "VAPOIL", "NOECHO", "ECHO", "INIT", "UNIFIN", "UNIFOUT", "FMTIN", "FMTOUT", "NOSIM",
     "NOINSPEC", "NORSSPEC", "METRIC", "FIELD", "LAB", "PVT-M", "ENDBOX", "ENDFIN", "NEWTRAN",
-    "OLDTRAN", "ENDSKIP", "NONNC", "IMPES",
+    "OLDTRAN", "ENDSKIP", "NONNC", "IMPES", "RADIAL", "DUALPORO", "DUALPERM", "NODPPM", "DPGRID",
 ];
 
 /// Keywords whose records begin with words and which end with an empty record.

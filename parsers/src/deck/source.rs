@@ -121,7 +121,6 @@ impl<'f> Places<'f> {
 
     /// Replaces `$NAME` by its directory and backslashes, which some systems write, by slashes.
     fn with_aliases(&self, written: &str) -> String {
-        let written = written.replace('\\', "/");
         let mut parts = written.split('$');
         let mut path = parts.next().unwrap_or_default().to_owned();
         for part in parts {
@@ -134,6 +133,6 @@ impl<'f> Places<'f> {
             }
             path.push_str(behind);
         }
-        path
+        path.replace('\\', "/")
     }
 }

@@ -131,10 +131,11 @@ impl<W: Write> DeckWriter<W> {
     ///
     /// # Errors
     /// When writing fails, a value is infinite, or `name` is not a keyword of at most 8 characters
-    /// that starts with a letter.
+    /// that starts with a letter; `-` may be its last one, as in `MULTX-`.
     pub fn property<T: Number>(&mut self, name: &str, values: &[T]) -> io::Result<()> {
         let starts = name.starts_with(|c: char| c.is_ascii_alphabetic());
-        let spelled = name.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_');
+        let body = name.strip_suffix('-').unwrap_or(name);
+        let spelled = body.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_');
         if !starts || !spelled || name.len() > 8 {
             return Err(refused(format!("{name:?} is not a keyword")));
         }

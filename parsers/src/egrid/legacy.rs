@@ -40,7 +40,7 @@ pub(super) fn read(global: &Section<'_>, warnings: &mut Warnings) -> Result<Egri
     if let Some(radial) = global.find("RADIAL")
         && global.string("RADIAL")?.is_some_and(|s| s.starts_with('T'))
     {
-        let message = "the grid is radial; only Cartesian pillar grids are read";
+        let message = "the grid is radial; only Cartesian pillar grids are read from GRID files: have the simulator write an EGRID";
         return Err(file.error(ErrorKind::Unsupported, radial, message));
     }
     let dims = dimensions(file, head, [ni, nj, nk])?;

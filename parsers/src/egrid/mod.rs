@@ -13,7 +13,8 @@ mod write;
 use std::path::Path;
 
 use crate::bytes::FileBytes;
-use crate::error::{At, ErrorKind, ParseError, Warnings};
+use crate::error::{At, ParseError, Warnings};
+use crate::radial;
 use crate::records::{Entry, RecordFile};
 use section::Section;
 
@@ -30,9 +31,10 @@ pub struct GridUnit {
 }
 
 /// One value per cell, or one for the matrix and one for the fractures.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum PorosityModel {
     /// Single porosity.
+    #[default]
     Single,
     /// Dual porosity.
     Dual,
@@ -45,7 +47,8 @@ pub enum PorosityModel {
 pub struct Egrid {
     /// Cells along i, j and k.
     pub dims: [usize; 3],
-    /// **Shape**: 6 values per pillar: x, y, depth of the upper, then of the lower end.
+    /// **Shape**: 6 values per pillar: x, y, depth of the upper, then of the lower end. Radii and angles of a radial
+    /// grid are made into x and y, around the origin.
     pub coord: Vec<f32>,
     /// **Shape**: 8 depths per cell, index `2i+di + 2ni(2j+dj) + 4ni*nj(2k+dk)`.
     pub zcorn: Vec<f32>,
@@ -102,10 +105,6 @@ impl Egrid {
             return legacy::read(&global, warnings);
         }
         let head = global.head()?;
-        if head.is_radial {
-            let message = "the grid is radial; only Cartesian corner-point grids are read";
-            return Err(file.error(ErrorKind::Unsupported, global.head_entry()?, message));
-        }
         let geometry = global.geometry(head.dims)?;
         let mut coord = geometry.coord;
         if coord.len() > geometry.pillars {
@@ -115,6 +114,12 @@ impl Egrid {
                 "COORD has several coordinate reservoirs; the first is used for all layers",
             );
             coord.truncate(geometry.pillars);
+        }
+        if head.is_radial {
+            let mut wide: Vec<f64> = coord.iter().map(|v| f64::from(*v)).collect();
+            let note = radial::straighten(&mut wide, head.dims[0]);
+            warnings.push(file.path(), At::File, note);
+            coord = wide.into_iter().map(|v| v as f32).collect();
         }
         let cells = geometry.zcorn.len() / 8;
         let map = MapKeywords::read(&global, warnings)?;

@@ -112,7 +112,7 @@ fn array(bytes: &[u8], at: u64, form: Form) -> Result<Entry, Fault> {
             Err(_) => {
                 let count = first.count;
                 return wrong(format!(
-                    "has an X231 count of {count}, which must not be positive"
+                    "has an X231 count of {count}, which must not be positive; the file is damaged"
                 ));
             }
         },
@@ -123,10 +123,15 @@ fn array(bytes: &[u8], at: u64, form: Form) -> Result<Entry, Fault> {
     }
     let Some(kind) = Kind::parse(second.kind) else {
         let kind = String::from_utf8_lossy(second.kind);
-        return wrong(format!("has the unknown type {kind:?}"));
+        return wrong(format!(
+            "has the unknown type {kind:?}; the file is damaged"
+        ));
     };
     let Ok(low) = u64::try_from(second.count) else {
-        return wrong(format!("has a count of {}", second.count));
+        return wrong(format!(
+            "has a count of {}; the file is damaged",
+            second.count
+        ));
     };
     let count = high + low;
     let data = second.behind;

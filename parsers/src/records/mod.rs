@@ -346,12 +346,16 @@ pub(crate) mod tests {
         let bytes = array("PORO", "REAL", 4, &reals(5000), 1000);
         let path = tempfile::NamedTempFile::new().unwrap();
         std::fs::write(path.path(), &bytes).unwrap();
-        let file = RecordFile::open(path.path()).unwrap();
+        let mapped = FileBytes::open_mapping(path.path(), 0).unwrap();
+        let file = RecordFile::from_bytes(mapped).unwrap();
         assert!(file.f32s(&file.entries()[0]).is_ok());
+        let in_memory = RecordFile::open(path.path()).unwrap();
         let writer = std::fs::OpenOptions::new().write(true).open(path.path());
         writer.unwrap().set_len(100).unwrap();
         let error = file.f32s(&file.entries()[0]).unwrap_err().to_string();
         assert!(error.contains("cut off"), "{error}");
+        // What was read is whole.
+        assert!(in_memory.f32s(&in_memory.entries()[0]).is_ok());
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! The grid of a ROFF file, in its own form and as pillars and depths.
 
+use super::write::turned;
 use super::{RoffFile, natural};
 use crate::error::{ErrorKind, ParseError};
 use crate::geometry::first_not;
@@ -156,6 +157,42 @@ impl RoffGrid {
         }
     }
 
+    /// The grid of pillars and depths, whose x and y are kept relative to `origin`: the file has 4 bytes for each.
+    /// Nodes have as many values as the cells around them differ. Arrays that are too short give a grid that cannot be
+    /// written.
+    pub fn of(pillars: &Pillars, origin: [f64; 2]) -> Self {
+        let [ni, nj, nk] = pillars.dims;
+        let mut corner_lines = Vec::with_capacity(pillars.coord.len());
+        let (mut splits, mut z) = (Vec::new(), Vec::new());
+        for i in 0..=ni {
+            for j in 0..=nj {
+                let line = pillars.coord.get(6 * (i + (ni + 1) * j)..).unwrap_or(&[]);
+                for end in [3, 0].into_iter().filter_map(|at| line.get(at..at + 3)) {
+                    corner_lines.extend([end[0] - origin[0], end[1] - origin[1], -end[2]]);
+                }
+                for k in 0..=nk {
+                    let before = z.len();
+                    pillars.add_node([i, j, k], &mut z);
+                    splits.push((z.len() - before) as u8);
+                }
+            }
+        }
+        let active = |actnum: &Vec<i32>| {
+            let active: Vec<bool> = actnum.iter().map(|a| *a != 0).collect();
+            turned(pillars.dims, &active)
+        };
+        Self {
+            dims: pillars.dims,
+            offset: [origin[0], origin[1], 0.0],
+            scale: [1.0, 1.0, -1.0],
+            corner_lines,
+            splits,
+            z,
+            active: pillars.actnum.as_ref().map(active),
+            subgrids: Vec::new(),
+        }
+    }
+
     /// Where the values of each node start.
     fn starts(&self) -> Vec<usize> {
         let mut sum = 0;
@@ -181,5 +218,53 @@ impl RoffGrid {
             _ => quadrant + 4 * above,
         };
         self.z[starts[n] + within]
+    }
+}
+
+impl Pillars {
+    /// Appends the heights at a node, whose k counts from the bottom: one where all cells around it agree, two where
+    /// those below differ from those above, four where columns differ, else eight.
+    fn add_node(&self, node: [usize; 3], z: &mut Vec<f64>) {
+        let around: [Option<f64>; 8] = std::array::from_fn(|n| self.height(node, n));
+        let Some(some) = around.iter().copied().flatten().next() else {
+            return;
+        };
+        // What lies outside of the grid agrees with what there is.
+        let agree = |values: &[Option<f64>]| {
+            let mut known = values.iter().flatten();
+            let first = known.next();
+            known.all(|v| Some(v) == first)
+        };
+        let first =
+            |values: &[Option<f64>]| values.iter().copied().flatten().next().unwrap_or(some);
+        let column = |n: usize| [around[n], around[n + 4]];
+        let layer = |n: usize| &around[4 * n..4 * n + 4];
+        if agree(&around) {
+            z.push(some);
+        } else if (0..2).all(|n| agree(layer(n))) {
+            z.extend((0..2).map(|n| first(layer(n))));
+        } else if (0..4).all(|n| agree(&column(n))) {
+            z.extend((0..4).map(|n| first(&column(n))));
+        } else {
+            z.extend((0..8).map(|n| around[n].unwrap_or(first(&column(n % 4)))));
+        }
+    }
+
+    /// Height of the corner at a node of one of the eight cells around it; `None` where there is none.
+    fn height(&self, [i, j, k]: [usize; 3], n: usize) -> Option<f64> {
+        let [ni, nj, nk] = self.dims;
+        let (east, north, above) = (n & 1, n >> 1 & 1, n >> 2);
+        let cell = [
+            (i + east).checked_sub(1).filter(|i| *i < ni)?,
+            (j + north).checked_sub(1).filter(|j| *j < nj)?,
+            // Layers of the model count from the top.
+            (nk - k).checked_sub(above).filter(|k| *k < nk)?,
+        ];
+        // Of a cell to the east the corner is a western one, and so on.
+        let column = 2 * cell[0] + 1 - east;
+        let row = 2 * cell[1] + 1 - north;
+        let plane = 2 * cell[2] + above;
+        let depth = self.zcorn.get(column + 2 * ni * (row + 2 * nj * plane))?;
+        Some(-depth)
     }
 }

@@ -6,7 +6,8 @@
 //!
 //! Layers count from the bottom and depths point up in these files. [`RoffGrid::pillars`] and [`RoffFile::values`] turn
 //! both: layer 1 is the uppermost, and depth grows downward. What the tags mean is as xtgeo documents it
-//! (`xtgeo/grid3d/_roff_grid.py`, `_roff_parameter.py`). Units are not in the file.
+//! (`xtgeo/grid3d/_roff_grid.py`, `_roff_parameter.py`). Units are not in the file. [`RoffWriter`] writes grids and
+//! properties in binary form.
 //!
 //! ```
 //! use strataray_parsers::roff::RoffFile;
@@ -41,6 +42,7 @@
 
 mod grid;
 mod index;
+mod write;
 
 use std::path::Path;
 
@@ -51,6 +53,7 @@ use crate::records::Form;
 
 pub use grid::{Pillars, RoffGrid};
 pub use index::{Item, Kind, Tag};
+pub use write::RoffWriter;
 
 /// Stands for no value in parameters of bytes, and in all others.
 const NO_BYTE: f64 = 255.0;
@@ -204,7 +207,7 @@ impl RoffFile {
 
     fn need(&self, name: &str) -> Result<&Tag, ParseError> {
         self.find(name).ok_or_else(|| {
-            let message = "is missing";
+            let message = "is missing; a grid needs dimensions, cornerLines and zvalues";
             let kind = ErrorKind::MissingKeyword;
             ParseError::of(kind, self.path(), At::File, name, message)
         })

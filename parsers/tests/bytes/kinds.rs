@@ -285,7 +285,7 @@ fn mismatch() {
 fn unsupported() {
     check(
         ErrorKind::Unsupported,
-        read_deck(&CELL.replace(" F", " T")),
+        read_deck(&CELL.replace("1 1 1 1 F", "1 1 1 2 F")),
         read_deck(CELL),
     );
     // The first 1 of GRIDHEAD is the type of the grid.

@@ -210,7 +210,12 @@ fn ok_binary_grdecl() {
     let write = |kind: i32| {
         let mut out = RecordWriter::new(Vec::new());
         out.inte("SPECGRID", &[3, 2, 4, 1, kind]).unwrap();
-        out.real("COORD", &grid.coord).unwrap();
+        let mut coord = grid.coord.clone();
+        if kind == 1 {
+            // Sectors of a few degrees.
+            coord.iter_mut().skip(1).step_by(3).for_each(|y| *y /= 10.0);
+        }
+        out.real("COORD", &coord).unwrap();
         out.real("ZCORN", &grid.zcorn).unwrap();
         out.inte("ACTNUM", grid.actnum.as_ref().unwrap()).unwrap();
         out.finish().unwrap()
@@ -220,12 +225,22 @@ fn ok_binary_grdecl() {
     assert!(warnings.is_empty());
     assert_eq!((twin.dims, &twin.coord), (grid.dims, &grid.coord));
     assert_eq!((&twin.zcorn, &twin.actnum), (&grid.zcorn, &grid.actnum));
-    let error = read(&write(1), &mut warnings).unwrap_err();
-    assert_eq!(error.kind, ErrorKind::Unsupported);
-    assert!(
-        error.to_string().contains("SPECGRID: the grid is radial"),
-        "{error}"
+    // Radii and angles.
+    let radial = read(&write(1), &mut warnings).unwrap();
+    let said: Vec<_> = warnings.iter().map(ToString::to_string).collect();
+    assert!(said.len() == 1 && said[0].contains("radial"), "{said:?}");
+    assert_eq!(
+        (radial.dims, &radial.zcorn, &radial.actnum),
+        (grid.dims, &grid.zcorn, &grid.actnum)
     );
+    for (made, [radius, angle]) in [(0, [0, 1]), (7, [42, 43])] {
+        let made = &radial.coord[6 * made..][..2];
+        let angle = (grid.coord[angle] / 10.0).to_radians();
+        let radius = grid.coord[radius];
+        let expected = [radius * angle.cos(), radius * angle.sin()];
+        let near = |(a, b): (&f32, f32)| (a - b).abs() < 1e-5 * radius.abs().max(1.0);
+        assert!(made.iter().zip(expected).all(near), "{made:?} {expected:?}");
+    }
 }
 
 #[test]

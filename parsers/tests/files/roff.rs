@@ -1,6 +1,6 @@
 //! ROFF files, binary in both byte orders and as text.
 
-use strataray_parsers::roff::{Kind, RoffFile};
+use strataray_parsers::roff::{Kind, Pillars, RoffFile, RoffGrid, RoffWriter};
 use strataray_parsers::{ErrorKind, ParseError};
 
 /// A writer of one of the forms.
@@ -340,7 +340,10 @@ fn err_what_is_damaged() {
     assert_eq!(kind, ErrorKind::BadValue);
     let (kind, text) = said("zvalues", "zvaluos");
     assert_eq!(kind, ErrorKind::MissingKeyword);
-    assert_eq!(text, "A.ROFF: zvalues: is missing");
+    assert_eq!(
+        text,
+        "A.ROFF: zvalues: is missing; a grid needs dimensions, cornerLines and zvalues"
+    );
     for form in FORMS {
         let whole = write(form, 8, depth).1;
         for length in (1..whole.len() - 20).step_by(7) {
@@ -352,4 +355,105 @@ fn err_what_is_damaged() {
             );
         }
     }
+}
+
+/// Pillars whose corners have these depths.
+fn pillars(depth: &dyn Fn([usize; 3], usize) -> f64) -> Pillars {
+    let [ni, nj, nk] = DIMS;
+    let mut zcorn = vec![0.0; 8 * ni * nj * nk];
+    for [i, j, k] in cells() {
+        for c in 0..8 {
+            let (di, dj, dk) = (c & 1, c >> 1 & 1, c >> 2);
+            let at = 2 * i + di + 2 * ni * (2 * j + dj) + 4 * ni * nj * (2 * k + dk);
+            zcorn[at] = depth([i, j, k], c);
+        }
+    }
+    let (mut coord, mut actnum) = (Vec::new(), Vec::new());
+    for j in 0..=nj {
+        for i in 0..=ni {
+            let [x, y] = [460_000.0 + 50.0 * i as f64, 5_930_000.0 + 25.0 * j as f64];
+            coord.extend([x + 0.5, y, 1000.0, x, y + 0.25, 1100.0]);
+        }
+    }
+    actnum.extend(cells().map(|[i, j, k]| i32::from(i + j != k)));
+    Pillars {
+        dims: DIMS,
+        coord,
+        zcorn,
+        actnum: Some(actnum),
+    }
+}
+
+#[test]
+fn ok_what_is_written_reads_back_equal() {
+    let node = |[i, j, k]: [usize; 3], c: usize| {
+        let [di, dj, dk] = [c & 1, c >> 1 & 1, c >> 2];
+        1000.0 + (i + di) as f64 + 4.0 * (j + dj) as f64 + 16.0 * (k + dk) as f64
+    };
+    let gaps = |ijk: [usize; 3], c: usize| node(ijk, c) + (c >> 2) as f64 / 2.0;
+    let faults = |ijk: [usize; 3], c: usize| node(ijk, c) + (2 * ijk[0] + ijk[1]) as f64 / 8.0;
+    let mixed = |ijk: [usize; 3], c: usize| match ijk[0] {
+        0 => node(ijk, c),
+        1 => gaps(ijk, c),
+        _ => depth(ijk, c),
+    };
+    let nodes = (DIMS[0] + 1) * (DIMS[1] + 1) * (DIMS[2] + 1);
+    let most = |split: u8| move |splits: &[u8]| splits.iter().all(|s| *s <= split);
+    check_written(&node, &move |splits| splits == vec![1; nodes]);
+    check_written(&gaps, &most(2));
+    check_written(&faults, &most(4));
+    check_written(&depth, &most(8));
+    check_written(&mixed, &|splits| {
+        [1, 2, 8].iter().all(|s| splits.contains(s))
+    });
+}
+
+fn check_written(depth: &dyn Fn([usize; 3], usize) -> f64, has: &dyn Fn(&[u8]) -> bool) {
+    let pillars = pillars(depth);
+    let grid = RoffGrid::of(&pillars, [460_000.0, 5_930_000.0]);
+    assert!(has(&grid.splits), "{:?}", grid.splits);
+    let mut writer = RoffWriter::new(Vec::new(), &grid).unwrap();
+    let mut poro: Vec<f32> = (0..24_u8).map(|n| f32::from(n) / 8.0).collect();
+    poro[7] = f32::NAN;
+    writer.real("PORO", &poro).unwrap();
+    let facies: Vec<Option<i32>> = (0..24).map(|n| (n != 5).then_some(n % 3)).collect();
+    let codes = [(0, "shale".to_owned()), (2, "sand".to_owned())];
+    writer.discrete("FACIES", &codes, &facies).unwrap();
+    let bytes = writer.finish().unwrap();
+    let file = RoffFile::from_bytes(("A.ROFF", bytes)).unwrap();
+    assert_eq!(file.tags().last().unwrap().name, "eof");
+    let read = file.grid().unwrap().unwrap();
+    assert_eq!(read, grid);
+    assert_eq!(read.pillars(), pillars);
+    let parameters = file.parameters().unwrap();
+    assert_eq!(parameters[1].codes, codes);
+    let values = |n: usize| file.values(&parameters[n]).unwrap();
+    for (n, (real, whole)) in values(0).into_iter().zip(values(1)).enumerate() {
+        assert!(real == f64::from(poro[n]) || n == 7 && real.is_nan());
+        assert!(facies[n].map_or(whole.is_nan(), |v| whole == f64::from(v)));
+    }
+}
+
+#[test]
+fn err_what_cannot_be_written() {
+    let good = RoffGrid::of(&pillars(&depth), [0.0; 2]);
+    let refused = |change: &dyn Fn(&mut RoffGrid)| {
+        let mut grid = good.clone();
+        change(&mut grid);
+        let written = RoffWriter::new(Vec::new(), &grid);
+        written.map(drop).unwrap_err().to_string()
+    };
+    let text = refused(&|grid| grid.z.truncate(3));
+    assert!(text.starts_with("zvalues: expected"), "{text}");
+    let text = refused(&|grid| grid.corner_lines[4] = f64::NAN);
+    assert_eq!(text, "cornerLines: value 5 is not a finite number");
+    assert!(refused(&|grid| grid.dims[0] = 0).contains("not supported"));
+    let mut writer = RoffWriter::new(Vec::new(), &good).unwrap();
+    let mut real = |name: &str, values: &[f32]| {
+        let written = writer.real(name, values);
+        written.unwrap_err().to_string()
+    };
+    assert_eq!(real("A", &[0.5; 23]), "A: expected 24 values, found 23");
+    assert_eq!(real("A", &[f32::INFINITY; 24]), "A: value 1 is infinite");
+    assert!(real("A\0", &[0.5; 24]).contains("holds a zero"));
 }

@@ -5,12 +5,13 @@ use std::time::Instant;
 
 use strataray_parsers::case::{CaseFiles, GridSource};
 use strataray_parsers::deck::{DeckCells, DeckProperty, FaultFaces as DeckFault, Grdecl};
-use strataray_parsers::egrid::{Egrid, PorosityModel};
+use strataray_parsers::egrid::{Egrid, GridConnections, LocalGrid, PorosityModel};
 use strataray_parsers::units::{LengthUnit, UnitSystem};
 use strataray_parsers::{At, ErrorKind, ParseError, Warnings};
 
+use super::roff;
 use super::slots::CellFlags;
-use crate::case::{About, LoadTimes, LocalGrid, NamedFault};
+use crate::case::{About, LoadTimes, NamedFault};
 use crate::model::topology::Face;
 use crate::model::{
     CellIndex, Dims, FaultFaces, Grid, GridInput, Ijk, MapAxes, MapUnit, ModelError,
@@ -20,7 +21,9 @@ fn model_error(path: &Path, error: &ModelError) -> ParseError {
     let kind = match error {
         ModelError::Length { .. } => ErrorKind::WrongCount,
         ModelError::NotFinite { .. } => ErrorKind::BadValue,
-        ModelError::Dimensions(..) | ModelError::Memory(..) => ErrorKind::TooLarge,
+        ModelError::Dimensions(..) | ModelError::Memory(..) | ModelError::Empty(..) => {
+            ErrorKind::TooLarge
+        }
     };
     ParseError::of(kind, path, At::File, "", error.to_string())
 }
@@ -32,6 +35,8 @@ pub struct Loaded {
     /// Arrays of decks and other text.
     pub texts: Vec<DeckProperty>,
     pub connections: Vec<[Ijk; 2]>,
+    pub local_grids: Vec<LocalGrid>,
+    pub local_connections: Vec<GridConnections>,
     pub fault_faces: FaultFaces,
     /// What a deck's RUNSPEC says.
     pub units: Option<UnitSystem>,
@@ -43,6 +48,7 @@ pub struct Loaded {
 }
 
 /// Where a grid lies in the map, and the units, as its file says.
+#[derive(Default)]
 struct MapKeywords {
     axes: Option<[f64; 6]>,
     unit: Option<String>,
@@ -91,17 +97,21 @@ pub fn read(
     about: &mut About,
     warnings: &mut Warnings,
 ) -> Result<Loaded, ParseError> {
-    match &files.grid {
-        GridSource::Egrid(path) => {
-            let mut loaded = read_egrid(path, about, warnings)?;
-            add_texts(&mut loaded, files, about, warnings)?;
-            Ok(loaded)
-        }
+    let mut loaded = match &files.grid {
+        GridSource::Egrid(path) => read_egrid(path, about, warnings)?,
+        GridSource::Roff(path) => read_roff(path, about)?,
         GridSource::Deck(path) => {
             let deck = Grdecl::read_with(path, &files.added, warnings)?;
-            read_deck(path, deck, about)
+            read_deck(path, deck, about)?
         }
+    };
+    if !loaded.is_deck {
+        add_texts(&mut loaded, files, about, warnings)?;
     }
+    let Dims { ni, nj, nk } = loaded.grid.dims();
+    roff::add(&mut loaded.texts, [ni, nj, nk], &files.roff)?;
+    about.files.extend(files.roff.iter().cloned());
+    Ok(loaded)
 }
 
 fn read_egrid(
@@ -125,33 +135,7 @@ fn read_egrid(
     about.files.push(path.to_owned());
     about.map_axes = egrid.map_axes;
     about.nnc = egrid.nnc.len();
-    about.porosity_model = match egrid.porosity_model {
-        PorosityModel::Single => "single",
-        PorosityModel::Dual => "dual porosity",
-        PorosityModel::DualPermeability => "dual permeability",
-    }
-    .into();
-    if egrid.porosity_model != PorosityModel::Single {
-        about.notes.push(format!(
-            "the case is of {}: the values of the matrix are shown, those of the fractures are not",
-            about.porosity_model
-        ));
-    }
-    for local in &egrid.local_grids {
-        about.notes.push(format!(
-            "local grid {} ({} x {} x {}) is not shown; its place shows the host cells",
-            local.name, local.dims[0], local.dims[1], local.dims[2]
-        ));
-    }
-    about.local_grids = egrid
-        .local_grids
-        .into_iter()
-        .map(|l| LocalGrid {
-            active: l.active(),
-            name: l.name,
-            dims: l.dims,
-        })
-        .collect();
+    about.porosity_model = porosity_name(egrid.porosity_model).into();
     let connections = connections(&egrid.nnc, grid.dims());
     let unit = egrid.grid_unit;
     Ok(Loaded {
@@ -159,6 +143,8 @@ fn read_egrid(
         flags: CellFlags::new(egrid.actnum, egrid.coarse, egrid.porosity_model),
         texts: Vec::new(),
         connections,
+        local_grids: egrid.local_grids,
+        local_connections: egrid.local_nnc,
         fault_faces: FaultFaces::default(),
         units: None,
         phases: 0,
@@ -171,6 +157,14 @@ fn read_egrid(
             length: unit.map(|u| u.length),
         },
     })
+}
+
+fn porosity_name(model: PorosityModel) -> &'static str {
+    match model {
+        PorosityModel::Single => "single",
+        PorosityModel::Dual => "dual",
+        PorosityModel::DualPermeability => "dual_permeability",
+    }
 }
 
 fn read_deck(path: &Path, deck: Grdecl, about: &mut About) -> Result<Loaded, ParseError> {
@@ -188,14 +182,20 @@ fn read_deck(path: &Path, deck: Grdecl, about: &mut About) -> Result<Loaded, Par
     };
     about.files.extend(deck.files);
     about.map_axes = deck.map_axes;
-    about.porosity_model = "single".into();
+    about.porosity_model = porosity_name(deck.porosity_model).into();
+    if deck.porosity_model != PorosityModel::Single {
+        let note = "the deck has matrix and fractures: the values of the matrix are shown, those of the fractures are not";
+        about.notes.push(note.into());
+    }
     about.named_faults = named_faults(&deck.faults);
     let fault_faces = fault_faces(&deck.faults, &about.named_faults);
     Ok(Loaded {
         grid,
-        flags: CellFlags::default(),
+        flags: CellFlags::new(deck.actnum, None, deck.porosity_model),
         texts: deck.properties,
         connections: Vec::new(),
+        local_grids: Vec::new(),
+        local_connections: Vec::new(),
         fault_faces,
         units: deck.unit_system,
         phases: deck.phases,
@@ -210,6 +210,46 @@ fn read_deck(path: &Path, deck: Grdecl, about: &mut About) -> Result<Loaded, Par
     })
 }
 
+fn read_roff(path: &Path, about: &mut About) -> Result<Loaded, ParseError> {
+    let roff::Contents {
+        pillars,
+        properties,
+    } = roff::read(path)?;
+    let start = Instant::now();
+    let grid = Grid::new(&GridInput {
+        dims: dims(pillars.dims),
+        coord: &pillars.coord,
+        zcorn: &pillars.zcorn,
+        actnum: pillars.actnum.as_deref(),
+        map_axes: None,
+    })
+    .map_err(|e| model_error(path, &e))?;
+    about.load_times = LoadTimes {
+        model: start.elapsed(),
+    };
+    about.files.push(path.to_owned());
+    about.porosity_model = "single".into();
+    let note = "ROFF files say no units: lengths are taken as METRES";
+    about.notes.push(note.into());
+    Ok(Loaded {
+        grid,
+        flags: CellFlags::default(),
+        texts: properties,
+        connections: Vec::new(),
+        local_grids: Vec::new(),
+        local_connections: Vec::new(),
+        fault_faces: FaultFaces::default(),
+        units: None,
+        phases: 0,
+        min_pore_volume: None,
+        is_deck: false,
+        map: MapKeywords {
+            is_map: true,
+            ..MapKeywords::default()
+        },
+    })
+}
+
 /// Faults of the deck beside an EGRID file, and all that was added by hand.
 fn add_texts(
     loaded: &mut Loaded,
@@ -220,7 +260,7 @@ fn add_texts(
     let Dims { ni, nj, nk } = loaded.grid.dims();
     let added = DeckCells::read(&files.added, [ni, nj, nk], warnings)?;
     about.files.extend(added.files);
-    loaded.texts = added.properties;
+    loaded.texts.extend(added.properties);
     loaded.units = added.unit_system;
     loaded.phases = added.phases;
     let faults = match &files.deck {

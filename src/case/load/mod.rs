@@ -1,8 +1,11 @@
 //! From files to a [`Case`]: the one module that knows both the file formats and the model.
 
 mod grids;
+mod local;
 mod pore_volume;
 mod properties;
+mod radial;
+mod roff;
 mod slots;
 mod source;
 mod summary;
@@ -22,7 +25,7 @@ use self::properties::Setting;
 use self::slots::{CellSlots, ResultCells};
 use self::source::FileSource;
 use self::summary::SummaryFiles;
-use crate::case::{About, Case, FieldCache, OverSteps, Step, WellsOfSteps};
+use crate::case::{About, Case, FieldCache, OverSteps, Simbox, Step, WellsOfSteps};
 
 /// Opens the case that `path` names: any of its files, or its base name.
 ///
@@ -98,6 +101,7 @@ fn own_grid(path: &Path) -> Option<GridSource> {
     let grid = find(path).ok()?.grid;
     match &grid {
         GridSource::Deck(deck) if !Grdecl::is_grid(deck).unwrap_or(true) => None,
+        GridSource::Roff(file) if !roff::is_grid(file) => None,
         _ => Some(grid),
     }
 }
@@ -135,7 +139,7 @@ pub fn open_reporting(
         return Ok(None);
     }
     let steps = open_restart(&files.restart, &mut about, &mut warnings);
-    note_missing(&files, loaded.is_deck, &mut about);
+    note_missing(&files, &mut about);
     let summary = SummaryFiles::new(files.summary);
     let case = build(loaded, init, steps, summary, about, &warnings);
     Ok(Some(case))
@@ -176,8 +180,11 @@ fn build(
         init: init.as_ref(),
     };
     let cells = CellSlots::new(&mut loaded.grid, &loaded.flags, &results, &mut about.notes);
+    let local_grids = std::mem::take(&mut loaded.local_grids);
+    let locals = local::read(local_grids, &loaded.grid, init.as_ref(), &mut about.notes);
     let mut source = FileSource {
         cells,
+        local: None,
         init: None,
         steps: Vec::new(),
         texts: loaded.texts,
@@ -195,6 +202,23 @@ fn build(
     };
     let properties = properties::of(&source, &setting, &mut about);
     about.notes.extend(warnings.iter().map(ToString::to_string));
+    if !locals.is_empty() {
+        match local::join(
+            &loaded.grid,
+            &source.cells,
+            locals,
+            &loaded.local_connections,
+        ) {
+            Ok((grid, places, connections)) => {
+                loaded.grid = grid;
+                loaded.connections.extend(connections);
+                source.local = Some(places);
+            }
+            Err(why) => about
+                .notes
+                .push(format!("local grids are not shown: {why}")),
+        }
+    }
     Case {
         grid: Arc::new(loaded.grid),
         about,
@@ -202,11 +226,12 @@ fn build(
         connections: loaded.connections,
         steps: source.steps.iter().map(step).collect(),
         properties,
-        source: Box::new(source),
-        cache: FieldCache::default(),
-        over_steps: OverSteps::default(),
-        wells: WellsOfSteps::default(),
+        source: Arc::new(source),
+        cache: Arc::new(FieldCache::default()),
+        over_steps: Arc::new(OverSteps::default()),
+        wells: Arc::new(WellsOfSteps::default()),
         minus: None,
+        simbox: Simbox::default(),
     }
 }
 
@@ -259,8 +284,8 @@ fn read_wells(source: &FileSource, about: &mut About) {
     }
 }
 
-fn note_missing(files: &CaseFiles, is_deck: bool, about: &mut About) {
-    if is_deck {
+fn note_missing(files: &CaseFiles, about: &mut About) {
+    if !matches!(files.grid, GridSource::Egrid(_)) {
         return;
     }
     if files.init.is_none() && files.added.is_empty() {

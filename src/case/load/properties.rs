@@ -4,6 +4,7 @@ use strataray_parsers::cells::CellArrays;
 use strataray_parsers::units::{LengthUnit, UnitSystem};
 
 use super::source::FileSource;
+use crate::case::pores::Pores;
 use crate::case::{About, CONNECTIONS, Kind, POROSITY_THICKNESS, Property};
 use crate::model::derived::{Derived, rest_of_saturations};
 
@@ -61,6 +62,7 @@ pub fn of(source: &FileSource, setting: &Setting, about: &mut About) -> Vec<Prop
         });
     }
     list.extend(saturation(setting.phases, &list));
+    list.extend(of_fractures(source, &list));
     if has(&list, "PORO") {
         let unit = setting.length.short();
         list.push(Property::new(POROSITY_THICKNESS, Kind::Derived, unit));
@@ -77,6 +79,24 @@ pub fn of(source: &FileSource, setting: &Setting, about: &mut About) -> Vec<Prop
         }
     }
     list
+}
+
+/// Properties of fractures, and those that change with time of matrix and fractures together, where there are any.
+fn of_fractures(source: &FileSource, list: &[Property]) -> Vec<Property> {
+    let has = |name: &str| source.has_fractures(name);
+    let has_volumes = has("PORV");
+    let twins = list.iter().flat_map(|property| {
+        let is_there = match property.rest_of[..] {
+            [] => has(&property.name),
+            _ => property.rest_of.iter().all(|name| has(name)),
+        };
+        let fracture = is_there.then(|| Pores::Fracture.twin(property));
+        let is_total = is_there && has_volumes && property.steps > 0;
+        fracture
+            .into_iter()
+            .chain(is_total.then(|| Pores::Total.twin(property)))
+    });
+    twins.collect()
 }
 
 /// The saturation that the files leave out and that follows from those they have.

@@ -12,8 +12,10 @@ pub struct CellSlots {
     cells: Vec<u32>,
     /// All cells.
     total: usize,
-    /// Where values stand, if not for one active cell after the other.
+    /// Where values stand, if not for one active cell after the other; with dual porosity those of the matrix.
     places: Option<Places>,
+    /// Of dual porosity, those of the fractures.
+    fractures: Option<Places>,
 }
 
 /// Where in arrays the values of active cells stand.
@@ -76,14 +78,14 @@ impl CellSlots {
     ) -> Self {
         let total = grid.dims().cells();
         let active = grid.active_cells().len();
-        let places = match (&flags.porosity, &flags.coarse) {
-            (Some(porosity), _) => Some(Places::of_matrix(grid, porosity)),
+        let [places, fractures] = match (&flags.porosity, &flags.coarse) {
+            (Some(porosity), _) => Places::of_porosity(grid, porosity).map(Some),
             (None, Some(coarse)) => {
                 let coarsened = Places::of_coarse(grid, coarse, results);
                 notes.push(coarsened.note(coarse));
-                Some(coarsened)
+                [Some(coarsened), None]
             }
-            (None, None) => None,
+            (None, None) => [None, None],
         };
         let differs = results.active.is_some_and(|count| count != active);
         if places.is_none()
@@ -100,7 +102,19 @@ impl CellSlots {
             cells: grid.active_cells().iter().map(|c| c.0).collect(),
             total,
             places,
+            fractures,
         }
+    }
+
+    /// True where an array of this length has values of matrix and fractures.
+    pub fn has_fractures(&self, count: usize) -> bool {
+        let fractures = self.fractures.as_ref();
+        fractures.is_some_and(|places| count == places.count || count == places.whole)
+    }
+
+    /// Rank of a cell of the grid among its active ones.
+    pub fn rank(&self, cell: CellIndex) -> Option<u32> {
+        self.cells.binary_search(&cell.0).ok().map(|at| at as u32)
     }
 
     /// Values of an array of active cells.
@@ -119,43 +133,70 @@ impl CellSlots {
         whole || count == self.total || count == self.count()
     }
 
-    /// The values of the active cells from an array that fits.
-    pub fn pick(&self, values: &[f32]) -> Vec<f32> {
+    /// The values of the active cells from an array of all cells.
+    pub fn pick_of_all(&self, values: &[f32]) -> Vec<f32> {
         match &self.places {
             Some(places) => {
-                let by_rank = values.len() == places.count;
-                let value =
-                    |(rank, cell): (u32, u32)| values[if by_rank { rank } else { cell } as usize];
+                let value = |(_, cell): (u32, u32)| values[cell as usize];
                 let places = places.of.iter();
                 places.map(|place| place.map_or(f32::NAN, value)).collect()
             }
-            None if values.len() == self.cells.len() => values.to_vec(),
             None => {
                 let cells = self.cells.par_iter();
                 cells.map(|&c| values[c as usize]).collect()
             }
         }
     }
+
+    /// The values of the active cells from an array that fits.
+    pub fn pick(&self, values: &[f32]) -> Vec<f32> {
+        match &self.places {
+            Some(places) => places.pick(values),
+            None if values.len() == self.cells.len() => values.to_vec(),
+            None => self.pick_of_all(values),
+        }
+    }
+}
+
+impl CellSlots {
+    /// The values of the active cells' fractures from an array that [has them](Self::has_fractures).
+    pub fn pick_fractures(&self, values: &[f32]) -> Vec<f32> {
+        let fractures = self.fractures.as_ref();
+        fractures.map_or_else(Vec::new, |places| places.pick(values))
+    }
 }
 
 impl Places {
-    /// Of the matrix, whose values come before those of the fractures.
-    fn of_matrix(grid: &Grid, porosity: &[i32]) -> Self {
-        let (mut matrix, mut fractures) = (0, 0);
-        let of = grid.active_cells().iter().map(|cell| {
-            let flags = porosity[cell.0 as usize];
-            fractures += usize::from(flags & 2 != 0);
-            (flags & 1 != 0).then(|| {
-                matrix += 1;
-                (matrix - 1, cell.0)
-            })
+    /// Of the matrix and of the fractures, whose values come behind those of the matrix.
+    fn of_porosity(grid: &Grid, porosity: &[i32]) -> [Self; 2] {
+        let total = grid.dims().cells();
+        let mut count = 0;
+        let places = [(1, 0), (2, total as u32)].map(|(flag, before)| {
+            let of = grid.active_cells().iter().map(|cell| {
+                let is_there = porosity[cell.0 as usize] & flag != 0;
+                is_there.then(|| {
+                    count += 1;
+                    (count - 1, before + cell.0)
+                })
+            });
+            of.collect::<Vec<_>>()
         });
-        let of = of.collect();
-        Self {
+        places.map(|of| Self {
             of,
-            count: matrix as usize + fractures,
-            whole: 2 * grid.dims().cells(),
-        }
+            count: count as usize,
+            whole: 2 * total,
+        })
+    }
+
+    /// The values of the active cells from an array that fits; not a number where a cell has none.
+    fn pick(&self, values: &[f32]) -> Vec<f32> {
+        let by_rank = values.len() == self.count;
+        let value = |(rank, cell): (u32, u32)| {
+            let at = if by_rank { rank } else { cell };
+            values.get(at as usize).copied().unwrap_or(f32::NAN)
+        };
+        let places = self.of.iter();
+        places.map(|place| place.map_or(f32::NAN, value)).collect()
     }
 
     /// Of cells that were made into coarse ones: all cells of a coarse one have the value of the one that stands for

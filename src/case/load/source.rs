@@ -10,9 +10,11 @@ use strataray_parsers::records::{Entry, Kind};
 use strataray_parsers::restart::Step as FileStep;
 use strataray_parsers::{At, ErrorKind, ParseError};
 
+use super::local::Places;
 use super::slots::CellSlots;
 use super::summary::SummaryFiles;
 use super::wells;
+use crate::case::pores::{self, Pores};
 use crate::case::{About, CaseError, Source, Vectors, Well};
 
 /// Arrays that are no properties, though there may be as many values as cells: heads, wells, groups, connections.
@@ -22,9 +24,14 @@ const NOT_PROPERTIES: &[&str] = &[
     "DLYTIM", "THRESHPR", "TRANNNC", "TRANGL", "TRANLL", "TRANNLL", "DIFFNNC", "HEATNNC",
 ];
 
+/// The array of pore volumes.
+const PORE_VOLUME: &str = "PORV";
+
 /// Values from the case's files, decoded when asked for.
 pub struct FileSource {
     pub cells: CellSlots,
+    /// Where the cells of all grids have theirs, where there are local ones.
+    pub local: Option<Places>,
     pub init: Option<CellArrays>,
     pub steps: Vec<FileStep>,
     /// Arrays of decks and other text.
@@ -62,6 +69,41 @@ impl FileSource {
                 .notes
                 .push(format!("time steps were not loaded: {error}")),
         }
+    }
+
+    /// The values of an array at a step, of which `pick` takes those of the main grid's active cells.
+    fn read(
+        &self,
+        name: &str,
+        step: usize,
+        pick: impl Fn(&[f32]) -> Vec<f32>,
+    ) -> Result<Option<Vec<f32>>, CaseError> {
+        let arrays = self.arrays(name, step);
+        let Some((arrays, entry)) = arrays.and_then(|a| Some((a, a.find(name)?))) else {
+            return Ok(None);
+        };
+        let values = pick(&arrays.values(entry)?);
+        self.of_all_grids(values, Some(arrays), name)
+    }
+
+    /// True where an array of INIT or of a step has values of fractures too.
+    pub fn has_fractures(&self, name: &str) -> bool {
+        let arrays = self.steps.iter().map(|s| &s.arrays).chain(&self.init);
+        let mut found = arrays.filter_map(|arrays| arrays.find(name));
+        found.any(|entry| self.cells.has_fractures(entry.count as usize))
+    }
+
+    /// Values of the main grid, with those of local grids from the same arrays.
+    fn of_all_grids(
+        &self,
+        main: Vec<f32>,
+        arrays: Option<&CellArrays>,
+        name: &str,
+    ) -> Result<Option<Vec<f32>>, CaseError> {
+        Ok(Some(match &self.local {
+            Some(places) => places.values(&main, arrays, name)?,
+            None => main,
+        }))
     }
 
     /// Refuses results of another grid.
@@ -207,18 +249,28 @@ impl std::fmt::Display for Misfit<'_> {
 
 impl Source for FileSource {
     fn values(&self, name: &str, step: usize) -> Result<Option<Vec<f32>>, CaseError> {
+        let (array, pores) = Pores::of(name);
         let text = self.texts.iter().find(|p| p.name == name);
         if let Some(property) = text.filter(|_| !self.changes(name)) {
             let values: Vec<f32> = property.values.iter().map(|v| *v as f32).collect();
-            return Ok(Some(self.cells.pick(&values)));
+            return self.of_all_grids(self.cells.pick_of_all(&values), None, name);
         }
-        let Some((arrays, entry)) = self
-            .arrays(name, step)
-            .and_then(|a| Some((a, a.find(name)?)))
-        else {
-            return Ok(None);
-        };
-        Ok(Some(self.cells.pick(&arrays.values(entry)?)))
+        match pores {
+            Pores::Matrix => self.read(array, step, |values| self.cells.pick(values)),
+            Pores::Fracture => self.read(array, step, |values| self.cells.pick_fractures(values)),
+            Pores::Total => {
+                let both = |name: &str| {
+                    let matrix = self.read(name, step, |values| self.cells.pick(values))?;
+                    let of_fractures = |values: &[f32]| self.cells.pick_fractures(values);
+                    let fractures = self.read(name, step, of_fractures)?;
+                    Ok::<_, CaseError>(matrix.zip(fractures))
+                };
+                let (Some(of), Some(volumes)) = (both(array)?, both(PORE_VOLUME)?) else {
+                    return Ok(None);
+                };
+                Ok(Some(pores::means([&of.0, &of.1], [&volumes.0, &volumes.1])))
+            }
+        }
     }
 
     fn wells(&self, step: usize) -> Result<Vec<Well>, CaseError> {

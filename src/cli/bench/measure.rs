@@ -14,7 +14,7 @@ use strataray::view::{self, Shown, View};
 use super::{Failure, Run};
 use crate::cli::process::{cpu_time, forget_peak, peak_memory};
 use crate::cli::progress::Reporter;
-use crate::cli::scene_options::open_case;
+use crate::cli::scene_options::{in_space, open_case};
 
 /// What a case costs up to the first frame, and each strategy's frames.
 #[derive(Serialize)]
@@ -102,6 +102,7 @@ impl Timer<'_> {
         let model = case.about.load_times.model;
         let (_, topology) = timed(|| case.grid.fault_faces());
         let first = &self.runs.first().context("there is nothing to time")?.scene;
+        let case = in_space(case, first, self.reporter);
         let (view, read) = timed(|| view::resolve(first, &case));
         let Shown { property, step, .. } = view?.shown;
         let (field, property_time) = timed(|| case.field(&property, step));
@@ -130,7 +131,7 @@ impl Timer<'_> {
             }
         }
         let setup = setup.unwrap_or_default();
-        let dims = case.grid.dims();
+        let dims = case.grid.main_dims();
         let times = CaseTimes {
             case: case.about.name.clone(),
             dims: [dims.ni, dims.nj, dims.nk],

@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 use anyhow::Context;
 use serde::Serialize;
-use strataray::case::save;
+use strataray::export::synthetic;
 use strataray::model::synthetic::Recipe;
 use strataray::render::{Executor, ExecutorInfo};
 use strataray::scene::{Scene, StrategyKind};
@@ -262,14 +262,14 @@ impl Files {
         };
         let folder = tempfile::tempdir().context("cannot make a temporary folder")?;
         let name = recipe.name.to_ascii_uppercase();
-        let target = save::Target {
+        let target = synthetic::Target {
             folder: folder.path(),
             name: &name,
             text: false,
         };
         reporter.bar("writing", |progress| {
             let model = recipe.build(recipe.dims, SEED, STEPS)?;
-            anyhow::Ok(save::synthetic(model, &target, progress)?)
+            anyhow::Ok(synthetic::write(model, &target, progress)?)
         })?;
         Ok(Self {
             path: folder.path().join(name),

@@ -12,8 +12,8 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use super::PictureError;
-use super::draft::Draft;
 use super::files::{Cause, matching};
+use crate::draft::Draft;
 
 /// Kinds of films.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]

@@ -1,4 +1,4 @@
-//! Map coordinates and depths along the outline of the model's box.
+//! Map coordinates and depths along the outline of the model's box; in index space numbers of cells.
 
 use glam::{DVec2, DVec3};
 
@@ -6,6 +6,7 @@ use super::edges::{self, Edge};
 use super::{Area, Arrangement, overlap};
 use crate::picture::ticks::plain_labels;
 use crate::picture::units::short_unit;
+use crate::scene::Space;
 use crate::view::View;
 use crate::view::camera::middle;
 
@@ -26,6 +27,9 @@ const LONGEST_TICK: f64 = 1.2;
 /// Rotation of the box on the map, in degrees, from which ticks follow the lines of the map.
 const LEAST_ROTATION: f64 = 1.0;
 
+/// Names of the axes of index space.
+const AXES: [&str; 3] = ["I", "J", "K"];
+
 /// How far an edge's outward direction goes to the side where the edge is upright.
 const UPRIGHT: f64 = 0.9;
 
@@ -35,12 +39,17 @@ enum Coordinate {
     Easting,
     Northing,
     Depth,
+    /// The number of a cell along an axis, from 1.
+    Index(usize),
 }
 
 impl Coordinate {
     /// What the edges along each axis of the grid are labeled by: of the two horizontal ones the one that
     /// goes east more than the other by the easting.
     fn along_axes(view: &View) -> [Self; 3] {
+        if view.world.space == Space::Ijk {
+            return [0, 1, 2].map(Self::Index);
+        }
         let corners = &view.world.subject.outline;
         let way = |axis: usize| corners[1 << axis] - corners[0];
         let [a, b] = [way(0), way(1)];
@@ -55,6 +64,7 @@ impl Coordinate {
             Self::Easting => "Easting",
             Self::Northing => "Northing",
             Self::Depth => "Depth",
+            Self::Index(axis) => AXES[axis],
         }
     }
 
@@ -63,6 +73,7 @@ impl Coordinate {
             Self::Easting => "E",
             Self::Northing => "N",
             Self::Depth => "Depth",
+            Self::Index(axis) => AXES[axis],
         }
     }
 
@@ -72,6 +83,7 @@ impl Coordinate {
             Self::Easting => map.x,
             Self::Northing => map.y,
             Self::Depth => map.z,
+            Self::Index(axis) => view.world.spaces.grid_from_world.transform_point3(point)[axis],
         }
     }
 }
@@ -80,6 +92,7 @@ impl Coordinate {
     /// Its unit: that of the map where it is not the grid's.
     fn unit(self, view: &View, length_unit: &str) -> String {
         match (self, view.world.spaces.map_unit) {
+            (Self::Index(_), _) => String::new(),
             (Self::Easting | Self::Northing, Some(unit)) => short_unit(unit.name),
             _ => length_unit.to_owned(),
         }
@@ -201,6 +214,9 @@ impl Scale {
             })
         };
         let values = plain_labels([a.min(b), a.max(b)], wanted).into_iter();
+        // Between whole numbers there are no cells.
+        let is_index = matches!(self.coordinate, Coordinate::Index(_));
+        let values = values.filter(|(_, text)| !(is_index && text.contains('.')));
         let values = values.filter(|(v, _)| (a.min(b)..=a.max(b)).contains(v));
         values.filter_map(at).collect()
     }

@@ -1,5 +1,5 @@
 //! What shows where one is: the model's box with coordinates along its edges, a scale bar, the directions
-//! east, north and up, and the vertical exaggeration. Here they are laid out as lines and texts; pictures and
+//! east, north and up or I, J and K, and the vertical exaggeration. Here they are laid out as lines and texts; pictures and
 //! the window draw them.
 
 mod coordinates;
@@ -13,6 +13,7 @@ pub use edges::on_screen;
 pub use wells::well_names;
 
 use super::ticks::shortened;
+use crate::scene::Space;
 use crate::view::View;
 use crate::view::camera::middle;
 
@@ -78,11 +79,12 @@ impl Orientation {
         };
         // Else it stands among the facts below the picture.
         if view.notes.facts.is_none() {
-            layout.exaggeration(view.world.vertical_exaggeration);
+            layout.exaggeration(view);
         }
-        triad::add(&mut layout, &view.camera);
+        triad::add(&mut layout, view);
         let room = layout.paper.size.min_element() / layout.paper.unit;
-        if room >= ROOM[0] {
+        // Numbers of cells have no length.
+        if room >= ROOM[0] && view.world.space.is_map() {
             layout.scale_bar(view, length_unit);
         }
         if room >= ROOM[1] {
@@ -140,9 +142,12 @@ impl Arrangement<'_> {
     }
 
     /// The vertical exaggeration, bottom left, as far as there is room.
-    fn exaggeration(&mut self, factor: f64) {
-        let factor = format!("{factor:.2}");
-        let full = format!("Vertical exaggeration ×{}", shortened(&factor));
+    fn exaggeration(&mut self, view: &View) {
+        let factor = format!("{:.2}", view.world.vertical_exaggeration);
+        let full = match view.world.space {
+            Space::Map => format!("Vertical exaggeration ×{}", shortened(&factor)),
+            Space::Ijk => format!("Layers ×{}", shortened(&factor)),
+        };
         let unit = self.paper.unit;
         let room = self.paper.size.x - 2.0 * unit;
         let short = format!("×{}", shortened(&factor));
@@ -333,6 +338,40 @@ mod tests {
             let elsewhere = (across(300.0, length) - a.distance(b)).abs();
             assert_eq!(elsewhere > 1.0, projection.is_default());
         }
+    }
+
+    #[test]
+    fn index_space_has_whole_numbers_and_no_lengths() {
+        let mut view = view([800, 600], 1.0);
+        view.world.space = Space::Ijk;
+        view.world.spaces = crate::model::Spaces::new(None, 2.0);
+        // Three columns, twelve rows, four layers twice as high as they are wide.
+        let [low, high] = [[0.5, 0.5, -9.0], [3.5, 12.5, -1.0]].map(DVec3::from_array);
+        view.world.corners = std::array::from_fn(|n| {
+            let far = |axis: usize| if n >> axis & 1 == 1 { high } else { low };
+            // The first layer is the upper one.
+            let z = if n >> 2 & 1 == 1 { low.z } else { high.z };
+            DVec3::new(far(0).x, far(1).y, z)
+        });
+        view.world.subject = crate::view::Subject::of_box(view.world.corners).into();
+        let corners = view.world.corners;
+        let aspect = view.aspect();
+        let camera = Camera::framing(&corners, 3.6, 0.6, 1.0, aspect, Projection::Perspective);
+        view.camera = camera.unwrap();
+        let texts: Vec<String> = laid_out(&view).texts.into_iter().map(|t| t.text).collect();
+        for (name, count) in [("I", 2), ("J", 2), ("K", 2), ("E", 0), ("N", 0), ("Up", 0)] {
+            let found = texts.iter().filter(|t| *t == name).count();
+            assert_eq!(found, count, "{name} {texts:?}");
+        }
+        let numbers: Vec<f64> = texts.iter().filter_map(|t| t.parse().ok()).collect();
+        assert!(numbers.len() >= 6, "{texts:?}");
+        let is_cell = |v: &f64| v.fract() == 0.0 && (1.0..=12.0).contains(v);
+        assert!(numbers.iter().all(is_cell), "{texts:?}");
+        assert!(!texts.iter().any(|t| t.contains("m")), "{texts:?}");
+        // The same view as a map has the scale bar.
+        view.world.space = Space::Map;
+        let texts = laid_out(&view).texts;
+        assert!(texts.iter().any(|t| t.text.ends_with(" m")));
     }
 
     #[test]

@@ -1,11 +1,13 @@
-//! East, north and up as the camera sees them; north stands out.
+//! East, north and up as the camera sees them, north standing out; in index space I, J and K.
 
 use glam::{DVec2, DVec3};
 
 use super::{Arrangement, Arrow, Text};
-use crate::view::Camera;
+use crate::scene::Space;
+use crate::view::View;
 
 /// A direction of the world.
+#[derive(Clone, Copy)]
 struct Direction {
     axis: DVec3,
     name: &'static str,
@@ -36,6 +38,40 @@ const DIRECTIONS: [Direction; 3] = [
     },
 ];
 
+/// I, J and K, all alike; where they go is the view's.
+const INDICES: [Direction; 3] = [
+    Direction {
+        axis: DVec3::X,
+        name: "I",
+        colors: [[205, 45, 40], [242, 96, 86]],
+        size: 1.0,
+    },
+    Direction {
+        axis: DVec3::Y,
+        name: "J",
+        colors: [[30, 130, 60], [90, 200, 120]],
+        size: 1.0,
+    },
+    Direction {
+        axis: DVec3::NEG_Z,
+        name: "K",
+        colors: [[45, 85, 210], [110, 155, 255]],
+        size: 1.0,
+    },
+];
+
+/// The directions of the space that a view shows.
+fn directions(view: &View) -> [Direction; 3] {
+    let to_world = &view.world.spaces.world_from_grid;
+    match view.world.space {
+        Space::Map => DIRECTIONS,
+        Space::Ijk => std::array::from_fn(|n| Direction {
+            axis: to_world.transform_vector3(DVec3::AXES[n]).normalize(),
+            ..INDICES[n]
+        }),
+    }
+}
+
 /// Length of an arrow of common size in text heights, and as a part of the smaller side at most.
 const LENGTH: f64 = 3.0;
 const LONGEST: f64 = 0.09;
@@ -43,7 +79,8 @@ const LONGEST: f64 = 0.09;
 const WIDEST: f64 = 0.35;
 
 /// Adds arrows and names, bottom left, where there is room.
-pub fn add(layout: &mut Arrangement<'_>, camera: &Camera) {
+pub fn add(layout: &mut Arrangement<'_>, view: &View) {
+    let camera = &view.camera;
     let unit = layout.paper.unit;
     let side = layout.paper.size.min_element();
     let length = (LENGTH * unit).min(LONGEST * side);
@@ -59,7 +96,7 @@ pub fn add(layout: &mut Arrangement<'_>, camera: &Camera) {
         2.2
     } * unit;
     let center = DVec2::new(0.8 * unit + reach, layout.paper.size.y - below - reach);
-    let mut arrows = DIRECTIONS.map(|d| {
+    let mut arrows = directions(view).map(|d| {
         let seen = DVec2::new(d.axis.dot(camera.right), -d.axis.dot(camera.up));
         let tip = center + d.size * length * seen;
         (d.axis.dot(camera.forward), tip, d)

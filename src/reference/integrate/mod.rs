@@ -255,16 +255,21 @@ pub fn value_at(
     value.is_finite().then_some(value)
 }
 
-/// Locates points of grid space, and gives the value of a field there; `None` where a point lies in no active cell,
-/// or where there is no value.
+/// Locates points of grid space in the cells that no local grid refines, and gives the value of a field there; `None`
+/// where a point lies in no active cell, or where there is no value.
 pub fn values_at(
     grid: &Grid,
     field: &CellField,
     interpolation: Interpolation,
     points: &[DVec3],
 ) -> Vec<Option<(Located, f64)>> {
-    let locator = Locator::new(grid);
-    let vertices = (interpolation == Interpolation::Vertex).then(|| VertexField::new(grid, field));
+    let finest = grid.finest();
+    let locator = match &finest {
+        Some(finest) => Locator::of_drawn(grid, finest),
+        None => Locator::new(grid),
+    };
+    let vertices = (interpolation == Interpolation::Vertex)
+        .then(|| VertexField::of(grid, field, finest.as_deref()));
     let answer = |&point: &DVec3| {
         let located = locator.locate(point)?;
         let value = value_at(grid, &located, field, vertices.as_ref())?;

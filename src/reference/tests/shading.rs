@@ -8,9 +8,9 @@ use super::{
 use crate::model::{CellField, Grid};
 use crate::scene::lighting::{OcclusionSpec, ShadowSpec};
 use crate::scene::{Interpolation, LightMode, LightingSpec};
-use crate::view::View;
 use crate::view::ghosts::Ghosts;
 use crate::view::lighting::{GRADIENT_FADE, SHININESS, SPECULAR};
+use crate::view::{ShownGrids, View};
 
 #[test]
 fn gradients_are_those_of_the_interpolated_value() {
@@ -131,7 +131,7 @@ fn dark_ghosts(exact_colors: bool) -> [f64; 4] {
     }
     .grid();
     let mut view = view(&grid, constant(&grid), 0.07, 0.3);
-    view.shown.cells.ghosts = Some(Ghosts::new(&grid, &[true; 4]).into());
+    view.shown.cells.ghosts = Some(Ghosts::new(&grid, &ShownGrids::default(), &[true; 4]).into());
     view.world.bounds[0].x -= 10.0;
     let spec = LightingSpec {
         lights: vec![directional([-1.0, 0.0, 0.0])],
@@ -170,7 +170,7 @@ fn a_ghost_between_values_has_no_gradient() {
         let middle = integrator.sample(DVec3::new(15.0, 10.0, -203.0)).unwrap();
         integrator.gradient(&middle)
     };
-    view.shown.cells.ghosts = Some(Ghosts::new(&grid, &[true; 2]).into());
+    view.shown.cells.ghosts = Some(Ghosts::new(&grid, &ShownGrids::default(), &[true; 2]).into());
     // All of its vertices have values, of the cells beside it.
     assert_eq!(gradient(&grid, &view), None);
     // With a value of its own it has one.

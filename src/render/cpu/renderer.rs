@@ -103,7 +103,7 @@ impl CpuRenderer {
         self.light.update(&source, &progress).await;
         if strategy == Strategy::Srg {
             let (grid, _) = view.shown.cells.in_grid(model);
-            self.srg.update(&source, grid.dims(), &progress).await;
+            self.srg.update(&source, grid.main_dims(), &progress).await;
         }
         let (grid, drawn) = view.shown.cells.in_grid(model);
         let visible = match can_be_passed(view, &self.grid.compact.facts) {

@@ -10,11 +10,12 @@ use std::thread::JoinHandle;
 
 use super::state::CompareLayout;
 use crate::case::Case;
+use crate::export::{self, Contents, ExportError};
 use crate::picture::film::{Film, FilmFormat, FilmShape};
 use crate::picture::filming::{FilmingError, shoot};
 use crate::render::{self, RenderError};
-use crate::scene::Scene;
-use crate::view::{Sequence, Turn, step};
+use crate::scene::{Scene, Space};
+use crate::view::{Sequence, Shown, Turn, resolve, step};
 
 /// What is to be made.
 #[derive(Clone)]
@@ -51,6 +52,7 @@ impl ExportSpec {
     pub fn ending(&self) -> Option<&'static str> {
         match self.kind {
             ExportKind::Still => Some("png"),
+            ExportKind::Cells => Some("vtu"),
             _ => self.format.ending(),
         }
     }
@@ -61,6 +63,8 @@ impl ExportSpec {
 pub enum ExportKind {
     /// A picture.
     Still,
+    /// The drawn cells with their values, or surfaces, in the format of the file's ending.
+    Cells,
     /// A film of all time steps.
     Steps {
         /// Pictures a second.
@@ -107,7 +111,9 @@ impl Export {
                 !shared_cancel.load(Ordering::Relaxed)
             };
             let made = match make(&spec, &path, &progress) {
-                Ok(()) => Ok(format!("saved {}", path.display())),
+                Ok(notes) => Ok([vec![format!("saved {}", path.display())], notes]
+                    .concat()
+                    .join("; ")),
                 Err(error) if is_canceled(&*error) => Err(format!(
                     "{} was canceled; nothing was written",
                     path.display()
@@ -166,15 +172,28 @@ pub(super) type Fallible<T> = Result<T, Box<dyn std::error::Error>>;
 fn is_canceled(error: &(dyn std::error::Error + 'static)) -> bool {
     let of_image = error.downcast_ref::<RenderError>();
     let of_film = error.downcast_ref::<FilmingError>();
+    let of_cells = error.downcast_ref::<ExportError>();
     matches!(of_image, Some(RenderError::Canceled))
+        || matches!(of_cells, Some(ExportError::Canceled))
         || matches!(of_film, Some(FilmingError::Render(RenderError::Canceled)))
 }
 
-/// Makes the file.
-fn make(spec: &ExportSpec, path: &Path, progress: &dyn Fn(f64) -> bool) -> Fallible<()> {
-    let case = &spec.case;
+/// Writes the cells that the scene draws, where they are on the map, with the values of its property at its step; what
+/// to say of it.
+fn cells(spec: &ExportSpec, path: &Path, progress: &dyn Fn(f64) -> bool) -> Fallible<Vec<String>> {
+    let view = resolve(&spec.scene.clone().in_space(Space::Map), &spec.case)?;
+    let Shown { property, step, .. } = &view.shown;
+    let names = [property.clone()];
+    let contents = Contents::new(&spec.case, Some(&view), &names, &[*step])?;
+    Ok(export::write(&contents, path, progress)?.notes)
+}
+
+/// Makes the file; what to say of it.
+fn make(spec: &ExportSpec, path: &Path, progress: &dyn Fn(f64) -> bool) -> Fallible<Vec<String>> {
+    let case = &spec.case.in_space(spec.scene.space);
     let (fps, sequence) = match spec.kind {
-        ExportKind::Still => return still::still(spec, path, progress),
+        ExportKind::Still => return still::still(spec, path, progress).map(|()| Vec::new()),
+        ExportKind::Cells => return cells(spec, path, progress),
         ExportKind::Steps { fps } => {
             let steps = step::steps(case, None, 1)?;
             // Looking at all values is a small part of the work.
@@ -200,14 +219,8 @@ fn make(spec: &ExportSpec, path: &Path, progress: &dyn Fn(f64) -> bool) -> Falli
     };
     let film = Film::create(path, shape)?;
     let mut renderer = render::executor(None)?.renderer(&case.grid)?;
-    Ok(shoot(
-        &mut *renderer,
-        case,
-        &sequence,
-        film,
-        spec.plain,
-        progress,
-    )?)
+    shoot(&mut *renderer, case, &sequence, film, spec.plain, progress)?;
+    Ok(Vec::new())
 }
 
 #[cfg(test)]
@@ -242,6 +255,29 @@ mod tests {
             }
             std::thread::sleep(std::time::Duration::from_millis(10));
         }
+    }
+
+    #[test]
+    fn cells_are_written_as_the_ending_says() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = |name: &str| folder.path().join(name);
+        let cells = |property: &str| {
+            let mut spec = spec(ExportKind::Cells);
+            spec.scene.property = Some(property.into());
+            spec
+        };
+        let said = made(cells("SWAT"), file("a.vtu"), false).unwrap();
+        assert_eq!(said, format!("saved {}", file("a.vtu").display()));
+        let said = made(cells("THICKNESS"), file("a.grdecl"), false).unwrap();
+        assert!(
+            said.ends_with("; THICKNESS is written as THICKNES"),
+            "{said}"
+        );
+        let error = made(cells("SWAT"), file("a.csv"), true).unwrap_err();
+        assert!(error.contains("canceled"), "{error}");
+        let error = made(cells("SWAT"), file("a.obj"), false).unwrap_err();
+        assert!(error.contains(".parquet"), "{error}");
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 2);
     }
 
     #[test]

@@ -29,8 +29,9 @@ pub fn still(spec: &ExportSpec, path: &Path, progress: &dyn Fn(f64) -> bool) -> 
             )
             .into());
         }
-        let shot = Shot::of(&spec.scene, &spec.case, true)?;
-        let image = renderer.image(&spec.case, &shot.view, progress)?;
+        let case = spec.case.in_space(spec.scene.space);
+        let shot = Shot::of(&spec.scene, &case, true)?;
+        let image = renderer.image(&case, &shot.view, progress)?;
         write_exr(path, &image)?;
         return Ok(());
     }
@@ -89,6 +90,7 @@ impl StillRenderer {
         scene: &Scene,
         progress: &dyn Fn(f64) -> bool,
     ) -> Fallible<Finished> {
+        let case = &case.in_space(scene.space);
         let shot = Shot {
             marked: spec.marked.clone(),
             ..Shot::of(scene, case, spec.plain)?

@@ -1,4 +1,4 @@
-//! Which cells are drawn by I, J and K, single slices, and the vertical exaggeration.
+//! Which cells are drawn by I, J and K, single slices, local grids, and the vertical exaggeration.
 
 use eframe::egui::{self, Color32, Id, Role, Ui, WidgetInfo};
 
@@ -14,7 +14,7 @@ const FIELD: f32 = 84.0;
 const FORM: &str = "2,4-6,10-30:2";
 
 pub fn show(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action>) {
-    let dims = about.case.grid.dims();
+    let dims = about.case.grid.main_dims();
     let mut filter = about.scene.filter.clone();
     for (axis, name) in AXES.into_iter().enumerate() {
         ui.push_id(name, |ui| {
@@ -30,7 +30,37 @@ pub fn show(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action>) {
     if filter != about.scene.filter {
         actions.push(Action::Filter(filter));
     }
+    local_grids(ui, about, actions);
     exaggeration(ui, about, actions);
+}
+
+/// Switches local grids on and off; nothing where there are none.
+fn local_grids(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action>) {
+    let locals = about.case.grid.patches().iter().skip(1);
+    let mut grids = about.scene.grids.clone();
+    for patch in locals {
+        let hidden = grids.hidden.iter();
+        let at = hidden
+            .clone()
+            .position(|name| name.eq_ignore_ascii_case(&patch.name));
+        let mut is_shown = at.is_none();
+        let dims = patch.file_dims();
+        let text = format!(
+            "Local grid {} ({} x {} x {})",
+            patch.name, dims.ni, dims.nj, dims.nk
+        );
+        let switch = ui.checkbox(&mut is_shown, text).on_hover_text(
+            "On: its cells in place of those that it refines. Off: the cells that it refines",
+        );
+        match at {
+            _ if !switch.changed() => {}
+            Some(at) => drop(grids.hidden.remove(at)),
+            None => grids.hidden.push(patch.name.clone()),
+        }
+    }
+    if grids != about.scene.grids {
+        actions.push(Action::Grids(grids));
+    }
 }
 
 /// Clears all filters.
@@ -131,7 +161,7 @@ fn wrong(ui: &Ui) -> Color32 {
 
 /// Steps through single slices of an axis.
 fn slices(ui: &mut Ui, about: &PanelContext<'_>, filter: &mut Filter, actions: &mut Vec<Action>) {
-    let dims = about.case.grid.dims();
+    let dims = about.case.grid.main_dims();
     let before = about.state.slicing;
     let mut slicing = before;
     ui.horizontal_wrapped(|ui| {

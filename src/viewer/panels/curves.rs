@@ -6,7 +6,6 @@ use egui_plot::{Line, Points, VLine};
 use super::PanelContext;
 use super::controls::significant;
 use super::over_time::{TimeAxis, keep_pointed, nearest_step, pointed_before, touched};
-use super::values::named;
 use super::{vector_list, vector_plots};
 use crate::viewer::action::Action;
 use crate::viewer::keys::Command;
@@ -177,7 +176,7 @@ fn curve(
                 .of
                 .cells
                 .get(n)
-                .map_or_else(String::new, |c| named(*c));
+                .map_or_else(String::new, |c| case.grid.name_of(*c).to_string());
             plot.line(Line::new(name, points).color(marks::color(n, count)));
         }
         for step in shown.into_iter().chain(pointed) {
@@ -205,7 +204,8 @@ fn values(ui: &mut Ui, curves: &Curves, curve: &TimeCurve, step: Option<usize>) 
         for (n, (cell, points)) in curves.of.cells.iter().zip(&curve.points).enumerate() {
             let value = points.iter().find(|(at, _)| Some(*at) == step);
             let value = value.map_or("-".into(), |(_, v)| significant(f64::from(*v)));
-            ui.colored_label(marks::color(n, count), format!("{}: {value}", named(*cell)));
+            let name = curves.of.case.grid.name_of(*cell);
+            ui.colored_label(marks::color(n, count), format!("{name}: {value}"));
         }
     });
 }

@@ -4,7 +4,6 @@ use eframe::egui::{self, Ui};
 
 use super::cells::clear;
 use super::controls::significant;
-use super::values::named;
 use super::{PanelContext, table, values};
 use crate::case::Case;
 use crate::model::Ijk;
@@ -86,7 +85,7 @@ fn value(property: &str, value: f64, case: &Case) -> String {
 /// A fault with its throw, and the cells on its near and far side.
 fn of_fault(fault: &Fault, case: &Case) -> String {
     let unit = short_unit(&case.about.length_unit);
-    let [near, far] = [fault.near, fault.far].map(|cell| named(cell.one_based()));
+    let [near, far] = [fault.near, fault.far].map(|cell| case.grid.cell_name(cell));
     format!(
         "{}\nBetween {near} and, beyond it, {far}",
         fault.in_words(&unit)
@@ -98,7 +97,7 @@ pub fn hover_text(pick: &Pick, case: &Case) -> Option<String> {
     let mut lines = Vec::new();
     lines.extend(pick.well.as_ref().map(Head::in_words));
     if let Some(hit) = &pick.hit {
-        let cell = named(hit.ijk.one_based());
+        let cell = case.grid.cell_name(hit.ijk);
         let value = value(&pick.property, hit.value, case);
         lines.push(format!("{cell}   {value}"));
         lines.extend(between_cells(pick, hit, case));
@@ -131,11 +130,19 @@ fn along_ray(ui: &mut Ui, pick: &Pick, cell: Ijk, actions: &mut Vec<Action>) {
     });
 }
 
-/// A cell by its numbers.
+/// I, J and K from 1 of the cell selected last; of one in a local grid those of the main grid's cell that it lies in.
+fn last_of_main(about: &PanelContext<'_>) -> Option<[usize; 3]> {
+    let grid = &about.case.grid;
+    let last = grid.dims().one_based(*about.state.selected.last()?)?;
+    Some(grid.main_cell(last).one_based())
+}
+
+/// A cell of the main grid by its numbers.
 fn go_to(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action>) {
-    let dims = about.case.grid.dims();
+    let grid = &about.case.grid;
+    let dims = grid.main_dims();
     let id = ui.scope_id().with("cell");
-    let start = about.state.selected.last().copied().unwrap_or([1; 3]);
+    let start = last_of_main(about).unwrap_or([1; 3]);
     // What was typed counts until another cell is selected.
     let typed: Option<([usize; 3], [usize; 3])> = ui.data(|d| d.get_temp(id));
     let typed = typed.filter(|(of, _)| *of == start);
@@ -196,7 +203,7 @@ fn buttons(ui: &mut Ui, about: &PanelContext<'_>, table: &Table, actions: &mut V
     });
     ui.horizontal(|ui| {
         ui.label("Isolate");
-        let Some([i, j, k]) = about.state.selected.last().copied() else {
+        let Some([i, j, k]) = last_of_main(about) else {
             return;
         };
         let filter = &about.scene.filter;

@@ -1,44 +1,34 @@
 //! The values of the selected cells as a text table: one row per cell, step and property.
 
+use std::io;
+
 use crate::case::Case;
+use crate::export::table::{CsvTable, Row};
 use crate::viewer::reader::{Curves, Table};
 
-const HEADS: [&str; 10] = [
-    "case", "grid", "i", "j", "k", "date", "step", "property", "value", "unit",
-];
-
-/// Values of the step, then those of the curves at all other steps, as comma-separated text. Values that do
-/// not change with time have no date and no step.
+/// Values of the step, then those of the curves at all other steps, as comma-separated text.
 ///
 /// # Errors
 /// When it cannot be written; the sentence is for people.
 pub fn csv(table: &Table, curves: Option<&Curves>) -> Result<String, String> {
-    let why = |e: &dyn std::fmt::Display| format!("the table cannot be written: {e}");
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    let mut write = |row: [&str; 10]| writer.write_record(row).map_err(|e| why(&e));
-    write(HEADS)?;
-    let case = &*table.of.case;
+    let bytes = written(table, curves);
+    let text = bytes.and_then(|bytes| String::from_utf8(bytes).map_err(io::Error::other));
+    text.map_err(|e| format!("the table cannot be written: {e}"))
+}
+
+fn written(table: &Table, curves: Option<&Curves>) -> io::Result<Vec<u8>> {
+    let mut out = CsvTable::new(&table.of.case, Vec::new())?;
     for (cell, values) in by_cell(table, curves) {
         for (property, step, value) in values {
-            let [i, j, k] = cell.map(|n| n.to_string());
-            let at = step.and_then(|n| case.steps.get(n).map(|s| (s.date.clone(), n.to_string())));
-            let (date, number) = at.unwrap_or_default();
-            write([
-                &case.about.name,
-                "global",
-                &i,
-                &j,
-                &k,
-                &date,
-                &number,
+            out.row(&Row {
+                cell: table.of.case.grid.name_of(cell),
+                step,
                 property,
-                &value.to_string(),
-                case.unit(property),
-            ])?;
+                value,
+            })?;
         }
     }
-    let bytes = writer.into_inner().map_err(|e| why(&e))?;
-    String::from_utf8(bytes).map_err(|e| why(&e))
+    out.finish()
 }
 
 /// Property, step (none where the property does not change) and value.

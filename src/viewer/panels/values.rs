@@ -71,11 +71,12 @@ pub fn show(ui: &mut Ui, table: &Table, shown: Option<&str>) {
         for column in columns {
             let at = pos2(place(column, 0).left(), heads.top());
             let at = Rect::from_min_size(at, vec2(CELL, ROW));
-            let [i, j, k] = cells[column];
+            let cell = table.of.case.grid.name_of(cells[column]);
+            let [i, j, k] = cell.ijk;
             let text =
                 RichText::new(format!("{i}, {j}, {k}")).color(marks::color(column, cells.len()));
             ui.put(at, Label::new(text).truncate())
-                .on_hover_text(named(cells[column]));
+                .on_hover_text(cell.to_string());
         }
         let corner = heads.with_max_x(names.right());
         ui.painter().rect_filled(corner, 0.0, ground);
@@ -90,9 +91,4 @@ fn head(ui: &Ui, corner: Rect, font: FontId) {
     let at = corner.left_center();
     ui.painter()
         .text(at, Align2::LEFT_CENTER, "I, J, K", font, ink);
-}
-
-/// A cell by its numbers.
-pub fn named([i, j, k]: [usize; 3]) -> String {
-    format!("I {i}  J {j}  K {k}")
 }

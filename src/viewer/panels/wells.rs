@@ -219,7 +219,7 @@ fn row(
 }
 
 fn cells<'a>(about: &PanelContext<'a>, well: &'a Well) -> impl Iterator<Item = Ijk> + use<'a> {
-    well.global_cells(about.case.grid.dims())
+    well.finest_cells(&about.case.grid)
 }
 
 /// Selects a well and the cells that it is connected to.

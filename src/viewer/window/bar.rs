@@ -3,7 +3,7 @@
 use eframe::egui::{self, Color32, Context, Ui};
 
 use super::Window;
-use crate::scene::Mode;
+use crate::scene::{Mode, Space};
 use crate::viewer::action::Action;
 use crate::viewer::keys::{self, CameraMove, Command};
 use crate::viewer::panels::{self, PlayerRequest};
@@ -22,6 +22,7 @@ const MENUS: [(&str, &[Command]); 5] = [
             Command::Film,
             Command::SaveTable,
             Command::SaveVectors,
+            Command::ExportCells,
             Command::CopyLine,
             Command::Close,
             Command::Reopen,
@@ -50,6 +51,7 @@ const MENUS: [(&str, &[Command]); 5] = [
         "Image",
         &[
             Command::Mode,
+            Command::Space,
             Command::NextStrategy,
             Command::Light,
             Command::Compare,
@@ -79,6 +81,7 @@ pub fn top(window: &mut Window, ui: &mut Ui, ctx: &Context) {
                 });
             }
             modes(window, ui, ctx);
+            space(window, ui, ctx);
             // All of these are in the menus too.
             if ui.available_width() < WIDTH_OF_BUTTONS {
                 return;
@@ -129,6 +132,21 @@ fn modes(window: &mut Window, ui: &mut Ui, ctx: &Context) {
         if button.on_hover_text(format!("{what}\n{key}")).clicked() && mode != other {
             window.apply(Action::Mode(other));
         }
+    }
+}
+
+/// The switch between true places and those by I, J and K.
+fn space(window: &mut Window, ui: &mut Ui, ctx: &Context) {
+    let document = window.document().filter(|d| d.case.is_some());
+    let Some(space) = document.map(|d| d.state.setup.scene.space) else {
+        return;
+    };
+    ui.separator();
+    let what = "Flat layers and square columns by I, J and K (simbox), values unchanged";
+    let key = hint(ctx, Command::Space);
+    let button = ui.selectable_label(space == Space::Ijk, "IJK");
+    if button.on_hover_text(format!("{what}\n{key}")).clicked() {
+        window.apply(Action::Space(space.other()));
     }
 }
 

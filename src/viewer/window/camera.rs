@@ -29,7 +29,10 @@ impl Window {
         let selected = &document.state.selected;
         let camera = match (change, now) {
             (CameraMove::From(n), _) => Some(orbit::standard(n, camera.projection())),
-            (_, Some(now)) => changed(change, camera, &now, &case, selected),
+            (_, Some(now)) => {
+                let case = case.in_space(now.world.space);
+                changed(change, camera, &now, &case, selected)
+            }
             (_, None) => None,
         };
         match camera {

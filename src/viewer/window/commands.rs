@@ -36,6 +36,7 @@ impl Window {
             Command::LoadScene => self.ask_file(ctx, Purpose::LoadScene),
             Command::SaveTable => self.ask_file(ctx, Purpose::SaveTable),
             Command::SaveVectors => self.ask_file(ctx, Purpose::SaveVectors),
+            Command::ExportCells => self.export_cells(ctx),
             Command::Screenshot => self.sheets.export = Some(false),
             Command::Film => self.sheets.export = Some(true),
             Command::CopyLine => self.copy_command(ctx),
@@ -197,7 +198,7 @@ fn change(document: &mut Document, command: Command) -> Option<String> {
             document.move_step(if last { isize::MAX / 2 } else { isize::MIN / 2 }, false);
         }
         Command::Slice(by) => {
-            let dims = document.case.as_ref()?.grid.dims();
+            let dims = document.case.as_ref()?.grid.main_dims();
             let State { setup, slicing, .. } = &document.state;
             let (slicing, filter) = (*slicing, slicing.stepped(&setup.scene.filter, dims, by));
             let told = slicing.words(&filter, dims);
@@ -205,7 +206,7 @@ fn change(document: &mut Document, command: Command) -> Option<String> {
             return Some(told);
         }
         Command::SliceAxis(by) => {
-            let dims = document.case.as_ref()?.grid.dims();
+            let dims = document.case.as_ref()?.grid.main_dims();
             let State { setup, slicing, .. } = &document.state;
             let axis = (slicing.axis as isize + by).rem_euclid(3) as usize;
             let (slicing, filter) = slicing.along(axis, &setup.scene.filter, dims);
@@ -218,6 +219,10 @@ fn change(document: &mut Document, command: Command) -> Option<String> {
             let mode = document.state.setup.scene.mode;
             document.apply(Action::Mode(mode.other()));
         }
+        Command::Space => {
+            let space = document.state.setup.scene.space;
+            document.apply(Action::Space(space.other()));
+        }
         Command::NextStrategy => {
             let next = next_strategy(document.state.setup.scene.strategy);
             document.apply(Action::Strategy(next));
@@ -228,18 +233,7 @@ fn change(document: &mut Document, command: Command) -> Option<String> {
             let soft = LightingSpec::preset("soft").filter(|_| is_off);
             document.apply(Action::Lighting(soft.unwrap_or_default()));
         }
-        Command::Compare => {
-            let setup = &document.state.setup;
-            let next = match (&setup.comparison, &document.case) {
-                (None, Some(case)) => Some(Comparison::opening(case, &setup.scene)),
-                _ => None,
-            };
-            let told = next.is_some().then(|| {
-                "more steps, properties, cases and strategies are in the Compare panel".into()
-            });
-            document.apply(Action::Compare(next));
-            return told;
-        }
+        Command::Compare => return compare(document),
         Command::Curves => {
             let curves = &document.state.curves;
             document.apply(Action::Curves(CurvePlots {
@@ -255,6 +249,20 @@ fn change(document: &mut Document, command: Command) -> Option<String> {
         _ => {}
     }
     None
+}
+
+/// Opens a second picture, or closes it.
+fn compare(document: &mut Document) -> Option<String> {
+    let setup = &document.state.setup;
+    let next = match (&setup.comparison, &document.case) {
+        (None, Some(case)) => Some(Comparison::opening(case, &setup.scene)),
+        _ => None,
+    };
+    let told = next
+        .is_some()
+        .then(|| "more steps, properties, cases and strategies are in the Compare panel".into());
+    document.apply(Action::Compare(next));
+    told
 }
 
 /// Why there is no cell to step to along the line of sight.

@@ -132,14 +132,10 @@ impl Window {
     /// Selects a well that was clicked in the picture.
     fn select_well(&mut self, head: &Head) {
         let well = self.document().and_then(|document| {
-            let dims = document.case.as_ref()?.grid.dims();
             let mut wells = document.wells.as_ref()?.wells.iter();
             let well = wells.find(|well| well.name == head.name)?;
-            Some(
-                well.global_cells(dims)
-                    .map(|cell| cell.one_based())
-                    .collect(),
-            )
+            let cells = well.finest_cells(&document.case.as_ref()?.grid);
+            Some(cells.map(|cell| cell.one_based()).collect())
         });
         self.apply(Action::Well(head.name.clone(), well.unwrap_or_default()));
         self.tell(head.in_words());

@@ -107,13 +107,12 @@ impl Window {
         let document = self.document()?;
         document.state.setup.comparison.as_ref()?.case.as_ref()?;
         let other = self.other_case()?;
-        let exaggeration = document.state.setup.scene.vertical_exaggeration;
+        let scene = &document.state.setup.scene;
+        let corners = |case: &Arc<Case>| {
+            model_corners(&case.in_space(scene.space), scene.vertical_exaggeration)
+        };
         let case = document.case.as_ref()?;
-        let corners = model_corners(case, exaggeration)?;
-        Some(Link::between(
-            &corners,
-            &model_corners(&other, exaggeration)?,
-        ))
+        Some(Link::between(&corners(case)?, &corners(&other)?))
     }
 
     /// Asks for the values that panels show, and for those of the next steps.

@@ -138,6 +138,24 @@ impl Window {
         }
     }
 
+    /// Asks where to write the drawn cells; the ending that is chosen says the format.
+    pub(super) fn export_cells(&mut self, ctx: &Context) {
+        let Some((case, scene)) = self.subject() else {
+            self.fail("open a case first");
+            return;
+        };
+        let spec = ExportSpec {
+            case,
+            scene,
+            kind: ExportKind::Cells,
+            format: FilmFormat::default(),
+            plain: true,
+            compared: None,
+            marked: Vec::new(),
+        };
+        self.ask_file(ctx, Purpose::Export(Box::new(spec)));
+    }
+
     fn export_sheet(&mut self, ctx: &Context, is_film: bool) {
         let pace = self.document().map(|d| d.state.pace);
         let Some(((case, scene), pace)) = self.subject().zip(pace) else {

@@ -192,6 +192,13 @@ fn f24_cells_below_the_least_pore_volume() {
         ("FIELD", "MINPV\n 2849 /\n", 60),
         ("FIELD", "MINPV\n 2851 /\n", 0),
         ("METRIC", "EDIT\nPORV\n 30*5 30* 60*7 /\n", 90),
+        ("METRIC", "EDIT\nEQUALS\n PORV 7 1 6 1 5 1 1 /\n/\n", 90),
+        // Net to gross and factors on pore volumes leave no pores; what EDIT gives does.
+        ("METRIC", "NTG\n 90*1 30*0 /\n", 30),
+        ("METRIC", "EDIT\nMULTPV\n 90*1 30*0 /\n", 30),
+        ("METRIC", "EDIT\nMULTIPLY\n PORV 0 1 6 1 5 4 4 /\n/\n", 30),
+        ("METRIC", "NTG\n 90*1 30*0 /\nEDIT\nPORV\n 90* 30*5 /\n", 60),
+        ("METRIC", "PINCH\n/\n", 60),
     ] {
         assert_eq!(
             active(&open(&deck(units, rest))),

@@ -201,7 +201,7 @@ impl RenderStrategy for Srg {
             let budget = settings.budget_bytes();
             let limit = what.gpu.device.limits().max_texture_dimension_3d;
             let ghosts = view.shown.cells.ghosts.is_some();
-            let shape = shape(what.model.dims(), &settings, ghosts, budget, limit);
+            let shape = shape(what.model.main_dims(), &settings, ghosts, budget, limit);
             self.fill(what, shape).await?;
             self.classify(what, &settings).await
         })

@@ -1,16 +1,18 @@
-//! From a synthetic model to the files of a case: the counterpart of [`crate::case::load`].
+//! A synthetic model as the files of a case.
 
-use std::fs::File;
 use std::io;
 use std::path::{Path, PathBuf};
 
 use strataray_parsers::cells::Head;
-use strataray_parsers::deck::{self, DeckWriter, GridText};
+use strataray_parsers::deck::DeckWriter;
 use strataray_parsers::egrid::{self, Egrid, PorosityModel};
 use strataray_parsers::init;
 use strataray_parsers::restart::RestartWriter;
 use strataray_parsers::units::UnitSystem;
 
+use super::error::{ExportError, failed};
+use super::grdecl;
+use super::output::Output;
 use crate::model::synthetic::{Fields, Geometry, Step, Synthetic};
 
 /// Length unit of synthetic models and of their map.
@@ -19,22 +21,6 @@ const METRES: &str = "METRES";
 const PHASES: i32 = 7;
 /// How much longer a value takes as text than as binary data.
 const TEXT: usize = 4;
-
-/// Why a model could not be written.
-#[derive(Debug, thiserror::Error)]
-pub enum SaveError {
-    /// The file or folder cannot be written.
-    #[error("cannot write {}: {cause}", path.display())]
-    Io {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        cause: io::Error,
-    },
-    /// Whoever asked does not want it anymore.
-    #[error("writing was canceled")]
-    Canceled,
-}
 
 /// Where to write a model.
 #[derive(Debug, Clone, Copy)]
@@ -47,87 +33,75 @@ pub struct Target<'a> {
     pub text: bool,
 }
 
-/// Writes `NAME.EGRID`, `.INIT`, `.UNRST` and perhaps `.GRDECL`; returns their paths.
+/// Writes `NAME.EGRID`, `.INIT`, `.UNRST` and perhaps `.GRDECL`, all of them or none; returns their paths.
 ///
 /// `progress` gets the part done and returns false to cancel.
 ///
 /// # Errors
 /// When a file cannot be written, or `progress` cancels.
-pub fn synthetic(
+pub fn write(
     model: Synthetic,
     target: &Target<'_>,
     progress: &dyn Fn(f64) -> bool,
-) -> Result<Vec<PathBuf>, SaveError> {
+) -> Result<Vec<PathBuf>, ExportError> {
     let Target { folder, name, text } = *target;
-    std::fs::create_dir_all(folder).map_err(|e| failed(folder, e))?;
+    std::fs::create_dir_all(folder).map_err(failed(folder))?;
     let Synthetic {
         geometry,
         steps,
         fields,
     } = model;
     let head = head(&geometry);
-    let mut progress = WriteProgress::new(&head, steps.len(), text, progress);
+    let work = Work::of(&head);
+    let mut output = Output::new(&[], progress);
+    output.expect(work.total(steps.len(), text));
     let path = |extension: &str| folder.join(format!("{name}.{extension}"));
-    let mut files = vec![path("EGRID"), path("INIT"), path("UNRST")];
     let egrid = to_egrid(geometry);
-    write(&files[0], |file| egrid.write(file).map(drop))?;
-    progress.advance(progress.geometry)?;
-    write(&files[1], |file| {
+    output.write(&path("EGRID"), |file| egrid.write(file).map(drop))?;
+    output.advance(work.geometry)?;
+    output.write(&path("INIT"), |file| {
         init::write(file, &head, arrays(&fields, &Fields::STATIC, 0.0)).map(drop)
     })?;
-    progress.advance(progress.statics)?;
-    let restart = |e| failed(&files[2], e);
-    let mut writer = RestartWriter::new(create(&files[2])?);
+    output.advance(work.statics)?;
+    let restart = path("UNRST");
+    let mut writer = RestartWriter::new(output.file(&restart)?);
     for step in &steps {
-        write_step(&mut writer, step, &head, &fields).map_err(restart)?;
-        progress.advance(progress.step)?;
+        write_step(&mut writer, step, &head, &fields).map_err(failed(&restart))?;
+        output.advance(work.step)?;
     }
-    writer.finish().map_err(restart)?;
+    writer.finish().map_err(failed(&restart))?;
     if text {
-        files.push(path("GRDECL"));
-        write(&files[3], |file| write_text(file, &egrid, &fields))?;
-        progress.advance(progress.text)?;
+        output.write(&path("GRDECL"), |file| write_text(file, &egrid, &fields))?;
+        output.advance(work.text)?;
     }
-    Ok(files)
+    Ok(output.keep()?.files)
 }
 
-/// Values still to write, by what they are written to.
-struct WriteProgress<'a> {
+/// How many values are written to each.
+struct Work {
     geometry: usize,
     statics: usize,
     step: usize,
     text: usize,
-    total: usize,
-    done: usize,
-    tell: &'a dyn Fn(f64) -> bool,
 }
 
-impl<'a> WriteProgress<'a> {
-    fn new(head: &Head, steps: usize, text: bool, tell: &'a dyn Fn(f64) -> bool) -> Self {
+impl Work {
+    fn of(head: &Head) -> Self {
         let cells = head.dims.iter().map(|n| *n as usize).product::<usize>();
         let active = head.active as usize;
         // Eight corners and the activity of a cell.
         let geometry = 9 * cells;
-        let statics = Fields::STATIC.len() * active;
-        let step = Fields::DYNAMIC.len() * active;
-        let text = usize::from(text) * TEXT * (geometry + Fields::STATIC.len() * cells);
         Self {
             geometry,
-            statics,
-            step,
-            text,
-            total: geometry + statics + steps * step + text,
-            done: 0,
-            tell,
+            statics: Fields::STATIC.len() * active,
+            step: Fields::DYNAMIC.len() * active,
+            text: TEXT * (geometry + Fields::STATIC.len() * cells),
         }
     }
 
-    fn advance(&mut self, work: usize) -> Result<(), SaveError> {
-        self.done += work;
-        match (self.tell)(self.done as f64 / self.total as f64) {
-            true => Ok(()),
-            false => Err(SaveError::Canceled),
-        }
+    fn total(&self, steps: usize, text: bool) -> usize {
+        let text = if text { self.text } else { 0 };
+        self.geometry + self.statics + steps * self.step + text
     }
 }
 
@@ -140,19 +114,6 @@ fn head(geometry: &Geometry) -> Head {
         phases: PHASES,
         ..Head::default()
     }
-}
-
-fn failed(path: &Path, cause: io::Error) -> SaveError {
-    let path = path.to_owned();
-    SaveError::Io { path, cause }
-}
-
-fn create(path: &Path) -> Result<File, SaveError> {
-    File::create(path).map_err(|e| failed(path, e))
-}
-
-fn write(path: &Path, content: impl FnOnce(File) -> io::Result<()>) -> Result<(), SaveError> {
-    content(create(path)?).map_err(|e| failed(path, e))
 }
 
 fn to_egrid(geometry: Geometry) -> Egrid {
@@ -193,7 +154,7 @@ fn arrays<'a>(
 }
 
 fn write_step(
-    writer: &mut RestartWriter<File>,
+    writer: &mut RestartWriter<std::fs::File>,
     step: &Step,
     head: &Head,
     fields: &Fields,
@@ -206,21 +167,9 @@ fn write_step(
     writer.step(step.report, step.days, &head, fields.wells(), arrays)
 }
 
-fn write_text(file: File, egrid: &Egrid, fields: &Fields) -> io::Result<()> {
-    let unit = deck::GridUnit {
-        name: METRES.into(),
-        is_map: false,
-    };
+fn write_text(file: std::fs::File, egrid: &Egrid, fields: &Fields) -> io::Result<()> {
     let mut writer = DeckWriter::new(file);
-    writer.grid(&GridText {
-        dims: egrid.dims,
-        coord: &egrid.coord,
-        zcorn: &egrid.zcorn,
-        actnum: egrid.actnum.as_deref(),
-        map_axes: egrid.map_axes,
-        map_units: egrid.map_units.as_deref(),
-        grid_unit: Some(&unit),
-    })?;
+    grdecl::grid(&mut writer, egrid)?;
     let actnum = egrid.actnum.as_deref().unwrap_or_default();
     for (name, values) in arrays(fields, &Fields::STATIC, 0.0) {
         // Text has a value for inactive cells too.

@@ -1,0 +1,281 @@
+//! Local grids of an EGRID file: their cells beside those of the main grid, and their values from the same files.
+
+use std::collections::HashMap;
+
+use strataray_parsers::ParseError;
+use strataray_parsers::cells::CellArrays;
+use strataray_parsers::egrid::{GridConnections, LocalGrid as FileGrid};
+
+use super::radial;
+use super::slots::{CellFlags, CellSlots, ResultCells};
+use crate::model::{CellIndex, Dims, Grid, GridInput, Ijk, LocalGrid};
+
+/// A local grid, and where in files its values stand.
+pub struct Local {
+    pub grid: LocalGrid,
+    /// Of its file's cells.
+    slots: CellSlots,
+    /// The number by which connections know it.
+    number: i32,
+}
+
+/// The local grids of a file that can be shown beside `main`; why one cannot goes into the notes.
+///
+/// `init` has its arrays, of which PORV says which cells are active where the results are for fewer.
+pub fn read(
+    files: Vec<FileGrid>,
+    main: &Grid,
+    init: Option<&CellArrays>,
+    notes: &mut Vec<String>,
+) -> Vec<Local> {
+    let inits = init.and_then(|init| init.local_grids().ok());
+    let mut locals: Vec<Local> = Vec::new();
+    for file in by_parents(files, notes) {
+        let arrays = inits.iter().flatten().find(|a| a.name == file.name);
+        let parent = match file.parent.is_empty() {
+            true => 0,
+            // Parents come first.
+            false => {
+                1 + locals
+                    .iter()
+                    .position(|l| l.grid.name == file.parent)
+                    .unwrap_or(locals.len())
+            }
+        };
+        let name = file.name.clone();
+        let of_parent = match parent.checked_sub(1) {
+            None => Some(main),
+            Some(number) => locals.get(number).map(|l| &l.grid.grid),
+        };
+        let made = match of_parent {
+            Some(of_parent) => local(file, of_parent, main, arrays.map(|a| &a.arrays), notes),
+            None => Err("the grid that it refines is not shown".to_owned()),
+        };
+        match made {
+            Ok(mut made) => {
+                made.grid.parent = parent;
+                locals.push(made);
+            }
+            Err(why) => notes.push(format!(
+                "local grid {name} is not shown; its place shows the host cells: {why}"
+            )),
+        }
+    }
+    locals
+}
+
+/// Each grid behind the one that it refines; those that refine no grid of the file become notes.
+fn by_parents(mut files: Vec<FileGrid>, notes: &mut Vec<String>) -> Vec<FileGrid> {
+    let mut sorted: Vec<FileGrid> = Vec::with_capacity(files.len());
+    loop {
+        let is_known = |file: &FileGrid| {
+            file.parent.is_empty() || sorted.iter().any(|known| known.name == file.parent)
+        };
+        let (ready, rest): (Vec<_>, Vec<_>) = files.into_iter().partition(is_known);
+        if ready.is_empty() {
+            notes.extend(rest.iter().map(|file| {
+                format!(
+                    "local grid {} is not shown; its place shows the host cells: there is no grid {}, which it refines",
+                    file.name, file.parent
+                )
+            }));
+            return sorted;
+        }
+        sorted.extend(ready);
+        files = rest;
+    }
+}
+
+fn local(
+    mut file: FileGrid,
+    parent: &Grid,
+    main: &Grid,
+    init: Option<&CellArrays>,
+    notes: &mut Vec<String>,
+) -> Result<Local, String> {
+    let dims = dims(file.dims);
+    let hosts = hosts(&file, parent.dims())?;
+    // Several coordinate systems follow each other; layers of the first one are those of all but rare grids.
+    if file.coord.len() > 6 * dims.pillars() {
+        let systems = file.coord.len() / (6 * dims.pillars());
+        notes.push(format!(
+            "local grid {} has {systems} coordinate systems, of which the first is used",
+            file.name
+        ));
+        file.coord.truncate(6 * dims.pillars());
+    }
+    let mut grid = Grid::new(&GridInput {
+        dims,
+        coord: &file.coord,
+        zcorn: &file.zcorn,
+        actnum: file.actnum.as_deref(),
+        map_axes: None,
+    })
+    .map_err(|e| e.to_string())?;
+    let results = ResultCells {
+        active: init
+            .and_then(|init| init.head().ok())
+            .and_then(|head| usize::try_from(head.active).ok())
+            .filter(|active| *active > 0),
+        init,
+    };
+    let slots = CellSlots::new(&mut grid, &CellFlags::default(), &results, notes);
+    let mut grid = LocalGrid {
+        name: file.name.clone(),
+        parent: 0,
+        grid,
+        split: 1,
+        hosts,
+    };
+    if file.is_radial {
+        grid = radial::straightened(&file, grid, parent, main)?;
+        notes.push(format!(
+            "local grid {} is radial: it is shown with flat faces, and its outer rings reach the sides of the cells that \
+             it refines",
+            file.name
+        ));
+    }
+    Ok(Local {
+        grid,
+        slots,
+        number: file.number,
+    })
+}
+
+/// The parent's cell of each cell.
+fn hosts(file: &FileGrid, parent: Dims) -> Result<Vec<CellIndex>, String> {
+    let all = dims(file.dims);
+    if !file.host.is_empty() {
+        let hosts = file.host.iter().map(|&number| {
+            let host = u32::try_from(number).ok()?.checked_sub(1)?;
+            ((host as usize) < parent.cells()).then_some(CellIndex(host))
+        });
+        let hosts: Option<Vec<CellIndex>> = hosts.collect();
+        return hosts.ok_or_else(|| "HOSTNUM names cells outside the grid that it refines".into());
+    }
+    let Some([first, last]) = file.host_box else {
+        return Err("neither HOSTNUM nor GRIDHEAD says which cells it refines".into());
+    };
+    let outside = || "GRIDHEAD names cells outside the grid that it refines".to_owned();
+    let ends = [first, last].map(|end| end.map(|n| usize::try_from(n).unwrap_or(0)));
+    let ends = ends.map(|end| parent.one_based(end));
+    let [Some(first), Some(last)] = ends else {
+        return Err(outside());
+    };
+    // As many cells in each host, or one more.
+    let along = |at: usize, count: usize, [first, last]: [usize; 2]| {
+        let hosts = last.checked_sub(first)? + 1;
+        Some(first + at * hosts / count)
+    };
+    let host = |cell: u32| {
+        let own = all.ijk(CellIndex(cell));
+        Some(parent.cell(Ijk {
+            i: along(own.i, all.ni, [first.i, last.i])?,
+            j: along(own.j, all.nj, [first.j, last.j])?,
+            k: along(own.k, all.nk, [first.k, last.k])?,
+        }))
+    };
+    let hosts: Option<Vec<CellIndex>> = (0..all.cells() as u32).map(host).collect();
+    hosts.ok_or_else(outside)
+}
+
+/// Where the values of a lattice's cells stand.
+pub struct Places {
+    locals: Vec<(String, CellSlots)>,
+    /// By active cell of the lattice the grid, and the rank of the cell among its active ones.
+    of: Vec<(u32, u32)>,
+}
+
+/// The main grid and local grids in one lattice, the places of values, and the connections between the grids.
+///
+/// # Errors
+/// When the lattice would be too large; the main grid is as it was then.
+pub fn join(
+    main: &Grid,
+    slots: &CellSlots,
+    locals: Vec<Local>,
+    connections: &[GridConnections],
+) -> Result<(Grid, Places, Vec<[Ijk; 2]>), String> {
+    let (grids, kept): (Vec<_>, Vec<_>) = locals
+        .into_iter()
+        .map(|l| (l.grid, (l.slots, l.number)))
+        .unzip();
+    let joined = main.clone().with_local_grids(&grids);
+    let grid = joined.map_err(|e| e.to_string())?;
+    let numbers: HashMap<i32, usize> = [(0, 0)]
+        .into_iter()
+        .chain(
+            kept.iter()
+                .enumerate()
+                .map(|(n, (_, number))| (*number, n + 1)),
+        )
+        .collect();
+    let cell = |number: i32, cell: i32| {
+        let patch = *numbers.get(&number)?;
+        let cell = CellIndex(u32::try_from(cell).ok()?.checked_sub(1)?);
+        let dims = grid.patches()[patch].file_dims();
+        ((cell.0 as usize) < dims.cells()).then(|| grid.in_lattice(patch, dims.ijk(cell)))?
+    };
+    let pairs = connections.iter().flat_map(|list| {
+        let [a, b] = list.grids;
+        let pairs = list.cells.iter();
+        pairs.map(move |pair| [(a, pair[0]), (b, pair[1])])
+    });
+    let pairs = pairs.filter_map(|[a, b]| Some([cell(a.0, a.1)?, cell(b.0, b.1)?]));
+    let pairs: Vec<[Ijk; 2]> = pairs.collect();
+    let locals: Vec<(String, CellSlots)> = grids
+        .into_iter()
+        .zip(kept)
+        .map(|(grid, (slots, _))| (grid.name, slots))
+        .collect();
+    let of = grid.active_cells().iter().map(|&cell| {
+        let (patch, cell) = grid.file_cell(grid.dims().ijk(cell));
+        let slots = match patch {
+            0 => slots,
+            number => &locals[number - 1].1,
+        };
+        (patch as u32, slots.rank(cell).unwrap_or(u32::MAX))
+    });
+    let of = of.collect();
+    Ok((grid, Places { locals, of }, pairs))
+}
+
+impl Places {
+    /// Values of all grids: those of the main one, and those that local grids have of an array. A grid that does not have
+    /// it has no values.
+    ///
+    /// # Errors
+    /// When a file is damaged.
+    pub fn values(
+        &self,
+        main: &[f32],
+        arrays: Option<&CellArrays>,
+        name: &str,
+    ) -> Result<Vec<f32>, ParseError> {
+        let grids = arrays.map(CellArrays::local_grids).transpose()?;
+        let grids = grids.unwrap_or_default();
+        let of_local = |(local, slots): &(String, CellSlots)| -> Result<Vec<f32>, ParseError> {
+            let arrays = grids.iter().find(|grid| grid.name == *local);
+            let arrays = arrays.map(|grid| &grid.arrays);
+            let found = arrays.and_then(|arrays| Some((arrays, arrays.find(name)?)));
+            match found.filter(|(_, e)| e.is_numeric() && slots.fits(e.count as usize)) {
+                Some((arrays, entry)) => Ok(slots.pick(&arrays.values(entry)?)),
+                None => Ok(Vec::new()),
+            }
+        };
+        let locals: Result<Vec<_>, _> = self.locals.iter().map(of_local).collect();
+        let locals = locals?;
+        let value = |&(grid, rank): &(u32, u32)| {
+            let values = match grid {
+                0 => main,
+                number => &locals[number as usize - 1],
+            };
+            values.get(rank as usize).copied().unwrap_or(f32::NAN)
+        };
+        Ok(self.of.iter().map(value).collect())
+    }
+}
+
+fn dims([ni, nj, nk]: [usize; 3]) -> Dims {
+    Dims { ni, nj, nk }
+}
