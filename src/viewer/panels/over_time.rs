@@ -15,6 +15,9 @@ const MARKS: [i64; 7] = [1, 3, 6, 12, 60, 120, 600];
 const MONTH: f64 = 30.44;
 /// Points beside a plot for the numbers of its axis: plots below each other have the same times at the same place.
 const NUMBERS: f32 = 56.0;
+/// Points of the height that a number has, and marks at most.
+const NUMBER: f32 = 32.0;
+const MOST_NUMBERS: usize = 100;
 
 /// The axis of time that plots share: days since the start of the run.
 #[derive(Debug, Clone, Copy)]
@@ -59,7 +62,8 @@ impl TimeAxis {
             .allow_scroll(false)
             .link_axis(Id::unique("curves over time"), [true, false])
             .label_formatter(|_| None)
-            .y_axis_label(if unit.is_empty() { "-" } else { unit })
+            .y_axis_label(unit)
+            .y_grid_spacer(move |input| numbers(input.bounds, f64::from(height / NUMBER)))
             .y_axis_min_width(NUMBERS)
             .x_axis_formatter(move |mark: GridMark, _: &RangeInclusive<f64>| self.mark(mark.value))
             .y_axis_formatter(|mark: GridMark, _: &RangeInclusive<f64>| significant(mark.value));
@@ -111,6 +115,25 @@ pub fn keep_pointed(ui: &Ui, pointed: Option<f64>) {
     ui.data_mut(|d| d.insert_temp(pointed_id(), pointed));
 }
 
+/// About as many marks between two values as there is room for, at round numbers.
+fn numbers((low, high): (f64, f64), count: f64) -> Vec<GridMark> {
+    let least = (high - low) / count.max(1.0);
+    let power = 10_f64.powf(least.log10().floor());
+    let steps = [1.0, 2.0, 5.0, 10.0].map(|n| n * power);
+    let Some(step_size) = steps
+        .into_iter()
+        .find(|step| *step >= least && step.is_normal())
+    else {
+        return Vec::new();
+    };
+    let places = (low / step_size).ceil() as i64..=(high / step_size).floor() as i64;
+    let mark = |n: i64| GridMark {
+        value: n as f64 * step_size,
+        step_size,
+    };
+    places.map(mark).take(MOST_NUMBERS).collect()
+}
+
 /// Marks at the first of months or years: four thicknesses of them, of which the sparse ones have room for dates.
 fn months(calendar: Calendar, input: &GridInput) -> Vec<GridMark> {
     let (low, high) = input.bounds;
@@ -129,4 +152,32 @@ fn months(calendar: Calendar, input: &GridInput) -> Vec<GridMark> {
         }
     }
     marks
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn marks_lie_at_round_numbers() {
+        let of = |low: f64, high: f64, count: f64| -> Vec<f64> {
+            let marks = numbers((low, high), count);
+            marks.iter().map(|mark| mark.value).collect()
+        };
+        assert_eq!(of(-80.0, 7100.0, 3.0), [0.0, 5000.0]);
+        assert_eq!(of(-80.0, 7100.0, 4.0), [0.0, 2000.0, 4000.0, 6000.0]);
+        assert_eq!(of(0.1, 0.9, 4.0), [0.2, 0.4, 0.6000000000000001, 0.8]);
+        assert_eq!(of(-1.0, 1.0, 2.0), [-1.0, 0.0, 1.0]);
+        // Nothing between values that are no numbers or the same.
+        for (low, high) in [(f64::NAN, 1.0), (0.0, f64::INFINITY), (2.0, 2.0)] {
+            assert!(of(low, high, 4.0).is_empty());
+        }
+    }
+
+    #[test]
+    fn the_nearest_time_is_found() {
+        let near = |time| nearest([0.0, 10.0, 30.0].into_iter(), time);
+        assert_eq!([-5.0, 4.0, 6.0, 100.0].map(near), [0, 0, 1, 2].map(Some));
+        assert_eq!(nearest(std::iter::empty(), 1.0), None);
+    }
 }

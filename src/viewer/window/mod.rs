@@ -27,7 +27,7 @@ use super::loading::Loading;
 use super::pictures::{DraftCount, Pictures};
 use super::reader::Reader;
 use super::settings::Settings;
-use super::state::State;
+use super::state::{CurvePlots, State};
 use crate::case::load::{self, CasePaths};
 use crate::picking::Pick;
 use difference::CaseDifference;
@@ -201,11 +201,13 @@ impl Window {
             }
             (Action::Filter(_), _) => document.apply_filter(action, held),
             (Action::Well(..), Some(case)) => {
-                let has_curves = !case.about.summary.is_empty();
+                let opens = !case.about.summary.is_empty();
                 document.apply(action);
-                if has_curves {
-                    document.state.curves.is_open = true;
-                }
+                let curves = document.state.curves.clone();
+                document.apply(Action::Curves(CurvePlots {
+                    is_open: opens || curves.is_open,
+                    ..curves
+                }));
             }
             _ => document.apply(action),
         }
