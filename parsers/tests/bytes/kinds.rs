@@ -295,13 +295,12 @@ fn unsupported() {
         read_egrid(egrid()),
     );
     let folder = tempfile::tempdir().unwrap();
-    let [grid, summary, init] =
-        ["A.EGRID", "A.SMSPEC", "A.INIT"].map(|name| folder.path().join(name));
-    for path in [&grid, &summary, &init] {
+    let [grid, model, init] = ["A.EGRID", "A.EPC", "A.INIT"].map(|name| folder.path().join(name));
+    for path in [&grid, &model, &init] {
         fs::write(path, cell().write(Vec::new()).unwrap()).unwrap();
     }
     let with = |added: &Path| case::find_with(&grid, &[added.to_owned()]);
-    check(ErrorKind::Unsupported, with(&summary), with(&init));
+    check(ErrorKind::Unsupported, with(&model), with(&init));
 }
 
 #[test]

@@ -610,7 +610,12 @@ fn of_cases(all: &mut Sentences) {
         with("GONE.INIT"),
     );
     all.add("case: a grid as an added file", &none, with("CASE.EGRID"));
-    all.add("case: curves as an added file", &none, with("CASE.SMSPEC"));
+    all.add("case: RESQML as an added file", &none, with("CASE.EPC"));
+    all.add(
+        "case: half of the curves as an added file",
+        &none,
+        with("CASE.SMSPEC"),
+    );
     let lonely = case::find_summary(&at("CASE.EGRID")).map(drop);
     all.add("case: no curves", &none, lonely.map_err(told));
     let read = Egrid::read(&at("GONE.EGRID"), &mut Warnings::default());
