@@ -36,6 +36,19 @@ impl Grid {
         flat.is_some_and(|flat| flat.left_out.get(patch) == Some(&true))
     }
 
+    /// The cell that stands for one: itself, or, of a grid that is left out, the one that it lies in.
+    pub fn placed(&self, at: Ijk) -> Ijk {
+        let is_left_out = |cell: Ijk| {
+            let patch = self.patch_of(cell);
+            patch.is_some_and(|patch| self.leaves_out(patch))
+        };
+        let mut cell = at;
+        while let Some(host) = self.host(cell).filter(|_| is_left_out(cell)) {
+            cell = host;
+        }
+        cell
+    }
+
     /// The same cells in index space.
     ///
     /// J runs so that the handedness of the model on the map is kept; there are no other map axes.

@@ -3,27 +3,34 @@
 use glam::DVec3;
 
 use crate::case::Case;
-use crate::model::Spaces;
+use crate::model::{Space, Spaces};
 
 /// Corners of the model's box in world space, at a vertical exaggeration or the one that suits it; `None` of a
 /// model without active cells.
 pub fn model_corners(case: &Case, exaggeration: Option<f64>) -> Option<[DVec3; 8]> {
     let bounds = case.grid.bounds()?;
-    let factor = exaggeration.unwrap_or_else(|| automatic_exaggeration(bounds));
+    let factor = exaggeration.unwrap_or_else(|| automatic_exaggeration(bounds, case.grid.space()));
     let spaces = Spaces::new(case.grid.map_axes(), factor);
     Some(box_corners(&spaces, bounds))
 }
 
-/// Makes the model a quarter as high as it is wide, in the steps that engineers use.
-pub(super) fn automatic_exaggeration(bounds: [DVec3; 2]) -> f64 {
+/// Makes the model a quarter as high as it is wide, in the steps that engineers use; in index space, where nothing has a
+/// true shape, one that is higher than wide about as high as wide.
+pub(super) fn automatic_exaggeration(bounds: [DVec3; 2], space: Space) -> f64 {
     let size = bounds[1] - bounds[0];
-    let wanted = 0.25 * size.x.max(size.y) / size.z.max(1e-9);
-    let steps = [1.0, 2.0, 3.0, 5.0, 10.0, 15.0, 20.0, 30.0, 50.0];
+    let width = size.x.max(size.y) / size.z.max(1e-9);
+    let wanted = match space {
+        Space::Ijk if width < 1.0 => width,
+        _ => (0.25 * width).max(1.0),
+    };
+    let steps = [
+        0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 3.0, 5.0, 10.0, 15.0, 20.0, 30.0, 50.0,
+    ];
     steps
         .into_iter()
         .rev()
         .find(|&s| s <= wanted)
-        .unwrap_or(1.0)
+        .unwrap_or(0.02)
 }
 
 /// Corners of the model's box, whose sides follow the grid's axes, in world space.

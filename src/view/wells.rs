@@ -248,7 +248,8 @@ fn pieces(grid: &Grid, well: &Well, spaces: &Spaces) -> Vec<([DVec3; 2], bool)> 
 
 /// Middles of the two faces through which a well passes a cell, in grid space; `None` where that lies in no grid.
 fn ends(grid: &Grid, connection: &Connection) -> Option<[DVec3; 2]> {
-    let corners = grid.hexahedron(connection.cell_in(grid)?).0;
+    let cell = grid.placed(connection.cell_in(grid)?);
+    let corners = grid.hexahedron(cell).0;
     let bit = match connection.axis {
         ConnectionAxis::I => 0,
         ConnectionAxis::J => 1,

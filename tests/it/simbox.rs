@@ -325,6 +325,12 @@ fn a_local_grid_whose_rows_follow_no_rows_is_left_out() {
     let [map, flat] = both(case);
     assert_eq!([1, 2].map(|n| flat.grid.leaves_out(n)), [false, true]);
     assert!(flat.about.notes.iter().any(|note| note.contains("RING")));
+    // What is connected to its cells is so to their hosts.
+    let first = |patch, case: &Case| case.grid.hosts_of(patch).next().unwrap();
+    let [(in_square, _), (in_ring, host)] = [1, 2].map(|patch| first(patch, &flat));
+    assert_eq!(flat.grid.placed(in_ring), host);
+    assert_eq!(flat.grid.placed(in_square), in_square);
+    assert_eq!(map.grid.placed(in_ring), in_ring);
     let drawn = |case: &Case| {
         let view = view(case, &json!({"property": "VALUE"}));
         [0, 1, 2].map(|patch| {
@@ -382,6 +388,21 @@ fn a_scene_in_another_space_has_no_places_of_the_first() {
         [&written[0]["space"], &written[1]["space"]],
         [&Value::Null, &json!("ijk")]
     );
+}
+
+#[test]
+fn layers_are_seen_whatever_their_number() {
+    let factor = |[i, j, k]: [usize; 3]| {
+        let planes = |count: usize| (0..=count).map(|n| 10.0 * n as f64).collect::<Vec<f64>>();
+        let case = boxes(&planes(i), &planes(j), &planes(k), &|_| 0.5);
+        let [map, flat] = both(case);
+        let of = |case: &Case| view(case, &json!({})).world.vertical_exaggeration;
+        [of(&map), of(&flat)]
+    };
+    // A true shape is never squeezed.
+    assert_eq!(factor([2, 3, 18]), [1.0, 0.1]);
+    assert_eq!(factor([6, 5, 4]), [1.0, 1.0]);
+    assert_eq!(factor([30, 2, 3]), [2.0, 2.0]);
 }
 
 #[test]
