@@ -173,7 +173,7 @@ fn lighting(scene: &Scene, case: &Case, corners: &[DVec3; 8]) -> Result<Lighting
 fn exaggeration(scene: &Scene, bounds: [DVec3; 2]) -> Result<f64, SceneError> {
     match scene.vertical_exaggeration {
         Some(v) => positive("vertical_exaggeration", v),
-        None => Ok(automatic_exaggeration(bounds, scene.space)),
+        None => Ok(automatic_exaggeration(bounds, scene.space.into())),
     }
 }
 
