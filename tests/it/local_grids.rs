@@ -310,3 +310,22 @@ fn filters_by_index_go_by_the_cells_that_are_refined() {
     let names: std::collections::HashSet<String> = names.collect();
     assert_eq!(names.len(), 3, "{names:?}");
 }
+
+#[test]
+fn arrays_that_only_a_local_grid_has_are_named() {
+    let Some(path) = common::data("lgr_nnc/LGR_TESTMOD.EGRID") else {
+        return;
+    };
+    let case = load::open(&path).unwrap();
+    let of = |name: &str| {
+        let told = format!("of local grid {name} are not shown");
+        let mut notes = case.about.notes.iter();
+        notes.find(|note| note.contains(&told)).cloned()
+    };
+    // The radial one has permeabilities along the radius.
+    let told = of("LGR2").unwrap();
+    assert!(told.contains("PERMR") && !told.contains("PORO"), "{told}");
+    assert_eq!(of("LGR1"), None);
+    // Its connections count for the property too.
+    assert!(case.property("NNC").is_ok());
+}

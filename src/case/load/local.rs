@@ -5,6 +5,7 @@ use std::collections::HashMap;
 use strataray_parsers::ParseError;
 use strataray_parsers::cells::CellArrays;
 use strataray_parsers::egrid::{GridConnections, LocalGrid as FileGrid};
+use strataray_parsers::records::Kind;
 
 use super::radial;
 use super::slots::{CellFlags, CellSlots, ResultCells};
@@ -177,6 +178,33 @@ fn hosts(file: &FileGrid, parent: Dims) -> Result<Vec<CellIndex>, String> {
     };
     let hosts: Option<Vec<CellIndex>> = (0..all.cells() as u32).map(host).collect();
     hosts.ok_or_else(outside)
+}
+
+/// One sentence for each local grid that has arrays of cells which the main grid does not have: these are no properties.
+pub fn arrays_left_out(locals: &[Local], arrays: &[&CellArrays]) -> Vec<String> {
+    let of_local = |local: &Local| {
+        let mut names: Vec<String> = Vec::new();
+        for arrays in arrays {
+            let grids = arrays.local_grids().unwrap_or_default();
+            let own = grids.iter().find(|grid| grid.name == local.grid.name);
+            for entry in own.iter().flat_map(|own| own.arrays.iter()) {
+                let is_of_cells =
+                    entry.kind == Kind::Real && local.slots.fits(entry.count as usize);
+                let is_new = !names.iter().any(|name| name == entry.name());
+                if is_of_cells && is_new && arrays.find(entry.name()).is_none() {
+                    names.push(entry.name().to_owned());
+                }
+            }
+        }
+        (!names.is_empty()).then(|| {
+            format!(
+                "{} of local grid {} are not shown: the main grid does not have them",
+                names.join(", "),
+                local.grid.name
+            )
+        })
+    };
+    locals.iter().filter_map(of_local).collect()
 }
 
 /// Where the values of a lattice's cells stand.

@@ -21,6 +21,7 @@ use strataray_parsers::restart::{self, Step as FileStep};
 use strataray_parsers::{At, ParseError, Warnings, init};
 
 use self::grids::Loaded;
+use self::local::Local;
 use self::properties::Setting;
 use self::slots::{CellSlots, ResultCells};
 use self::source::FileSource;
@@ -187,13 +188,14 @@ fn build(
         local: None,
         init: None,
         steps: Vec::new(),
-        texts: loaded.texts,
+        texts: std::mem::take(&mut loaded.texts),
         summary,
     };
     source.take_fitting(init, steps, &mut about);
     leave_unfinished(&mut source.steps, &mut about.notes);
     about.notes.extend(source.misfits());
     read_wells(&source, &mut about);
+    add_local_grids(&mut loaded, &mut source, locals, &mut about);
     let setting = Setting {
         units,
         length,
@@ -202,23 +204,6 @@ fn build(
     };
     let properties = properties::of(&source, &setting, &mut about);
     about.notes.extend(warnings.iter().map(ToString::to_string));
-    if !locals.is_empty() {
-        match local::join(
-            &loaded.grid,
-            &source.cells,
-            locals,
-            &loaded.local_connections,
-        ) {
-            Ok((grid, places, connections)) => {
-                loaded.grid = grid;
-                loaded.connections.extend(connections);
-                source.local = Some(places);
-            }
-            Err(why) => about
-                .notes
-                .push(format!("local grids are not shown: {why}")),
-        }
-    }
     Case {
         grid: Arc::new(loaded.grid),
         about,
@@ -232,6 +217,33 @@ fn build(
         wells: Arc::new(WellsOfSteps::default()),
         minus: None,
         simbox: Simbox::default(),
+    }
+}
+
+/// Lays local grids beside the main one; what of them is not shown becomes a note.
+fn add_local_grids(
+    loaded: &mut Loaded,
+    source: &mut FileSource,
+    locals: Vec<Local>,
+    about: &mut About,
+) {
+    if locals.is_empty() {
+        return;
+    }
+    let last = source.steps.last().map(|step| &step.arrays);
+    let arrays: Vec<_> = source.init.iter().chain(last).collect();
+    let left_out = local::arrays_left_out(&locals, &arrays);
+    about.notes.extend(left_out);
+    let connections = &loaded.local_connections;
+    match local::join(&loaded.grid, &source.cells, locals, connections) {
+        Ok((grid, places, connections)) => {
+            loaded.grid = grid;
+            loaded.connections.extend(connections);
+            source.local = Some(places);
+        }
+        Err(why) => about
+            .notes
+            .push(format!("local grids are not shown: {why}")),
     }
 }
 
