@@ -53,13 +53,12 @@ impl ShownGrids {
         if grid.patches().len() == 1 {
             return None;
         }
-        let mut counts = vec![false; grid.active_cells().len()];
-        for number in 0..grid.patches().len() {
-            for (active, cell) in grid.active_in(number) {
-                counts[active] = self.shows(grid, cell);
-            }
-        }
-        Some(counts)
+        let cells = grid.active_cells().iter();
+        let counts = cells.map(|cell| {
+            let at = grid.dims().ijk(*cell);
+            grid.is_first(at) && self.shows(grid, at)
+        });
+        Some(counts.collect())
     }
 
     /// True where a cell is of a grid that is drawn, and no other such grid refines it.
