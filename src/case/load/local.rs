@@ -48,7 +48,12 @@ pub fn read(
             None => Some(main),
             Some(number) => locals.get(number).map(|l| &l.grid.grid),
         };
+        let is_split = |number: usize| locals.get(number).is_some_and(|l| l.grid.split > 1);
         let made = match of_parent {
+            // HOSTNUM counts its sectors.
+            _ if parent.checked_sub(1).is_some_and(is_split) => Err(
+                "it refines a radial grid, whose sectors are shown as several cells each".into(),
+            ),
             Some(of_parent) => local(file, of_parent, main, arrays.map(|a| &a.arrays), notes),
             None => Err("the grid that it refines is not shown".to_owned()),
         };
