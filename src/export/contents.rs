@@ -3,7 +3,6 @@
 use std::sync::Arc;
 
 use glam::{DAffine3, DMat3};
-use rayon::prelude::*;
 
 use super::error::ExportError;
 use crate::case::{Case, CaseError};
@@ -232,31 +231,6 @@ fn has_values(case: &Case, name: &str, steps: &[usize]) -> Result<(), CaseError>
         }
     }
     missing.map_or(Ok(()), Err)
-}
-
-/// COORD and ZCORN of a grid, converted number by number.
-///
-/// **Shape**: as in [`crate::model::GridInput`].
-pub(super) fn corners<T: Send>(grid: &Grid, of: impl Fn(f64) -> T + Sync) -> (Vec<T>, Vec<T>) {
-    let ends = grid.pillars().iter().flat_map(|pillar| {
-        let ends = [pillar.top, pillar.bottom];
-        ends.into_iter().flat_map(|end| end.to_array())
-    });
-    let coord = ends.map(&of).collect();
-    let dims = grid.dims();
-    let [columns, rows] = [2 * dims.ni, 2 * dims.nj];
-    let depth = |n: usize| {
-        let [column, row, plane] = [n % columns, n / columns % rows, n / columns / rows];
-        let ijk = Ijk {
-            i: column / 2,
-            j: row / 2,
-            k: plane / 2,
-        };
-        let corner = (column & 1) + 2 * (row & 1) + 4 * (plane & 1);
-        of(grid.corner_depth(ijk, corner))
-    };
-    let zcorn = (0..8 * dims.cells()).into_par_iter().map(depth).collect();
-    (coord, zcorn)
 }
 
 /// True where all coordinates of a grid are 32-bit numbers.

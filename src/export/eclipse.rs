@@ -9,7 +9,7 @@ use strataray_parsers::init;
 use strataray_parsers::restart::RestartWriter;
 use strataray_parsers::units::{LengthUnit, UnitSystem};
 
-use super::contents::{Contents, Exported, corners};
+use super::contents::{Contents, Exported};
 use super::error::{ExportError, failed};
 use super::names::{keyword, note_keywords};
 use super::output::Output;
@@ -62,7 +62,7 @@ pub(super) fn egrid(contents: &Contents<'_>) -> Egrid {
     let grid = contents.grid();
     let about = &contents.case.about;
     let dims = grid.dims();
-    let (coord, zcorn) = corners(grid, |v| v as f32);
+    let (coord, zcorn) = grid.main_corners(|v| v as f32);
     Egrid {
         dims: [dims.ni, dims.nj, dims.nk],
         coord,

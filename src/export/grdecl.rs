@@ -7,7 +7,7 @@ use std::path::Path;
 use strataray_parsers::deck::{self, DeckWriter, GridText, Number};
 use strataray_parsers::egrid::Egrid;
 
-use super::contents::{Contents, Exported, corners, is_single};
+use super::contents::{Contents, Exported, is_single};
 use super::eclipse::egrid;
 use super::error::{ExportError, failed};
 use super::names::{keyword, note_keywords};
@@ -87,7 +87,7 @@ fn write_grid(contents: &Contents<'_>, writer: &mut DeckWriter<File>) -> io::Res
     if is_single(contents.grid()) {
         return self::grid(writer, &egrid);
     }
-    let (coord, zcorn) = corners(contents.grid(), |v| v);
+    let (coord, zcorn) = contents.grid().main_corners(|v| v);
     with_corners(writer, &egrid, &coord, &zcorn)
 }
 

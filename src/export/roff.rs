@@ -6,7 +6,7 @@ use std::path::Path;
 use glam::DVec3;
 use strataray_parsers::roff::{Pillars, RoffGrid, RoffWriter};
 
-use super::contents::{Contents, Exported, corners};
+use super::contents::{Contents, Exported};
 use super::error::{ExportError, failed};
 use super::output::Output;
 use crate::view::look;
@@ -82,7 +82,7 @@ fn pillars(contents: &Contents<'_>) -> Pillars {
     Pillars {
         dims: [dims.ni, dims.nj, dims.nk],
         coord: ends.flat_map(to_map).collect(),
-        zcorn: corners(grid, |depth| scale * depth).1,
+        zcorn: grid.main_corners(|depth| scale * depth).1,
         actnum: Some(contents.actnum()),
     }
 }

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use glam::DVec2;
+use rayon::prelude::*;
 
 use super::activity::Activity;
 use super::depth_lists::DepthList;
@@ -230,29 +231,35 @@ impl Grid {
         })
     }
 
+    /// COORD and ZCORN of the main grid, converted number by number.
+    ///
+    /// **Shape**: as in [`GridInput`].
+    pub fn main_corners<T: Send>(&self, of: impl Fn(f64) -> T + Sync) -> (Vec<T>, Vec<T>) {
+        let dims = self.main_dims();
+        let Dims { ni, nj, .. } = dims;
+        let pillars = (0..=nj).flat_map(|j| (0..=ni).map(move |i| i + (self.dims.ni + 1) * j));
+        let ends = pillars.flat_map(|at| [self.pillars[at].top, self.pillars[at].bottom]);
+        let coord = ends.flat_map(|end| end.to_array()).map(&of).collect();
+        let depth = |n: usize| {
+            let [x, y, plane] = [n % (2 * ni), n / (2 * ni) % (2 * nj), n / (4 * ni * nj)];
+            let cell = Ijk {
+                i: x / 2,
+                j: y / 2,
+                k: plane / 2,
+            };
+            of(self.corner_depth(cell, x % 2 + 2 * (y % 2) + 4 * (plane % 2)))
+        };
+        let zcorn = (0..8 * dims.cells()).into_par_iter().map(depth).collect();
+        (coord, zcorn)
+    }
+
     /// The main grid without its local grids.
     ///
     /// # Errors
     /// As [`Self::new`].
     pub fn main_alone(&self) -> Result<Self, ModelError> {
         let dims = self.main_dims();
-        let Dims { ni, nj, .. } = dims;
-        let rows = (0..=nj).flat_map(|j| (0..=ni).map(move |i| i + (self.dims.ni + 1) * j));
-        let ends = rows.map(|at| [self.pillars[at].top, self.pillars[at].bottom]);
-        let coord: Vec<f64> = ends
-            .flat_map(|ends| ends.map(|end| end.to_array()))
-            .flatten()
-            .collect();
-        let depth = |at: usize| {
-            let [x, y, plane] = [at % (2 * ni), at / (2 * ni) % (2 * nj), at / (4 * ni * nj)];
-            let cell = Ijk {
-                i: x / 2,
-                j: y / 2,
-                k: plane / 2,
-            };
-            self.corner_depth(cell, x % 2 + 2 * (y % 2) + 4 * (plane % 2))
-        };
-        let zcorn: Vec<f64> = (0..8 * dims.cells()).map(depth).collect();
+        let (coord, zcorn) = self.main_corners(|v| v);
         let mut actnum = vec![0; dims.cells()];
         for (_, cell) in self.active_in(0) {
             actnum[dims.cell(cell).0 as usize] = 1;
@@ -400,11 +407,8 @@ impl Grid {
 
     /// The active cells of a grid, with their active indices; of those that are one cell of the file the first.
     pub fn active_in(&self, patch: usize) -> impl Iterator<Item = (usize, Ijk)> + '_ {
-        let Patch { split, first, .. } = &self.patches.list[patch];
         let cells = self.active_cells().iter().enumerate();
         let cells = cells.map(|(active, cell)| (active, self.dims().ijk(*cell)));
-        cells.filter(move |(_, at)| {
-            self.patch_of(*at) == Some(patch) && (at.j - first[1]).is_multiple_of(*split)
-        })
+        cells.filter(move |(_, at)| self.patch_of(*at) == Some(patch) && self.is_first(*at))
     }
 }

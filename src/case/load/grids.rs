@@ -120,18 +120,14 @@ fn read_egrid(
     warnings: &mut Warnings,
 ) -> Result<Loaded, ParseError> {
     let egrid = Egrid::read(path, warnings)?;
-    let start = Instant::now();
-    let grid = Grid::new(&GridInput {
+    let input = GridInput {
         dims: dims(egrid.dims),
         coord: &egrid.coord,
         zcorn: &egrid.zcorn,
         actnum: egrid.actnum.as_deref(),
         map_axes: None,
-    })
-    .map_err(|e| model_error(path, &e))?;
-    about.load_times = LoadTimes {
-        model: start.elapsed(),
     };
+    let grid = built(path, &input, about)?;
     about.files.push(path.to_owned());
     about.map_axes = egrid.map_axes;
     about.nnc = egrid.nnc.len();
@@ -159,6 +155,24 @@ fn read_egrid(
     })
 }
 
+/// The grid of the arrays of a file; what building it takes is noted.
+fn built<C, Z>(
+    path: &Path,
+    input: &GridInput<'_, C, Z>,
+    about: &mut About,
+) -> Result<Grid, ParseError>
+where
+    C: Copy + Into<f64> + Sync,
+    Z: Copy + Into<f64> + Send + Sync,
+{
+    let start = Instant::now();
+    let grid = Grid::new(input).map_err(|e| model_error(path, &e))?;
+    about.load_times = LoadTimes {
+        model: start.elapsed(),
+    };
+    Ok(grid)
+}
+
 fn porosity_name(model: PorosityModel) -> &'static str {
     match model {
         PorosityModel::Single => "single",
@@ -168,18 +182,14 @@ fn porosity_name(model: PorosityModel) -> &'static str {
 }
 
 fn read_deck(path: &Path, deck: Grdecl, about: &mut About) -> Result<Loaded, ParseError> {
-    let start = Instant::now();
-    let grid = Grid::new(&GridInput {
+    let input = GridInput {
         dims: dims(deck.dims),
         coord: &deck.coord,
         zcorn: &deck.zcorn,
         actnum: deck.actnum.as_deref(),
         map_axes: None,
-    })
-    .map_err(|e| model_error(path, &e))?;
-    about.load_times = LoadTimes {
-        model: start.elapsed(),
     };
+    let grid = built(path, &input, about)?;
     about.files.extend(deck.files);
     about.map_axes = deck.map_axes;
     about.porosity_model = porosity_name(deck.porosity_model).into();
@@ -215,18 +225,14 @@ fn read_roff(path: &Path, about: &mut About) -> Result<Loaded, ParseError> {
         pillars,
         properties,
     } = roff::read(path)?;
-    let start = Instant::now();
-    let grid = Grid::new(&GridInput {
+    let input = GridInput {
         dims: dims(pillars.dims),
         coord: &pillars.coord,
         zcorn: &pillars.zcorn,
         actnum: pillars.actnum.as_deref(),
         map_axes: None,
-    })
-    .map_err(|e| model_error(path, &e))?;
-    about.load_times = LoadTimes {
-        model: start.elapsed(),
     };
+    let grid = built(path, &input, about)?;
     about.files.push(path.to_owned());
     about.porosity_model = "single".into();
     let note = "ROFF files say no units: lengths are taken as METRES";
