@@ -1,6 +1,7 @@
 //! Choices by name, as scene files have them, with a sentence for each.
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use strataray::scene::lighting::OcclusionMethod;
 use strataray::scene::{Interpolation, LightMode, Mode, Space, Storage, StrategyKind};
 use strataray::view::TurnAxis;
 
@@ -70,6 +71,14 @@ pub const LIGHT_MODES: [NamedChoice<LightMode>; 4] = [
     ),
 ];
 
+pub const OCCLUSION_METHODS: [NamedChoice<OcclusionMethod>; OcclusionMethod::ALL.len()] = {
+    const fn choice(method: OcclusionMethod) -> NamedChoice<OcclusionMethod> {
+        (method.name(), method, method.describe())
+    }
+    let [cones, surround, shells] = OcclusionMethod::ALL;
+    [choice(cones), choice(surround), choice(shells)]
+};
+
 pub const STRATEGIES: [NamedChoice<StrategyKind>; StrategyKind::ALL.len()] = {
     let all = StrategyKind::ALL;
     let mut choices = [strategy(all[0]); StrategyKind::ALL.len()];
@@ -117,7 +126,7 @@ mod tests {
     #[test]
     fn names_are_those_of_scene_files() {
         assert!(named(&MODES) && named(&INTERPOLATIONS) && named(&LIGHT_MODES));
-        assert!(named(&STRATEGIES));
+        assert!(named(&STRATEGIES) && named(&OCCLUSION_METHODS));
         assert!(!named(&[("cells", Mode::Volume, "")]));
     }
 }

@@ -55,6 +55,7 @@ mod statistics;
 mod storage;
 mod supersampling;
 mod surfaces;
+mod surround;
 mod synthetic;
 mod vectors;
 mod wells;
