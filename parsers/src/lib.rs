@@ -107,6 +107,7 @@ pub mod init;
 #[cfg(feature = "mmap")]
 mod mapped;
 mod parallel;
+pub mod paths;
 mod radial;
 pub mod records;
 pub mod restart;

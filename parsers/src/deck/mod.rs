@@ -19,6 +19,7 @@ mod include;
 mod lexer;
 mod numbers;
 mod scan;
+mod schedule;
 mod skip;
 mod source;
 mod write;
@@ -29,6 +30,7 @@ use crate::egrid::PorosityModel;
 use crate::error::{ParseError, Warnings};
 pub use crate::units::UnitSystem;
 pub use files::{DeckFiles, Folders, MemoryFiles};
+pub use schedule::Schedule;
 pub use write::{DeckWriter, GridText, Number};
 
 /// A corner-point grid as its deck gives it, without any geometry computed from it.
