@@ -202,7 +202,7 @@ impl Scan<'_> {
 }
 
 /// The path that stands at the cursor, and where.
-fn named_file(
+pub(super) fn named_file(
     source: &Source,
     cursor: &mut Cursor,
     keyword: &Keyword,

@@ -113,6 +113,11 @@ impl Schedule {
         scan::read(files, paths, start, warnings)
     }
 
+    /// True where a text begins with a keyword that only SCHEDULE has; `start` may end anywhere in the file.
+    pub fn begins(start: &[u8]) -> bool {
+        scan::begins(start)
+    }
+
     /// The wells when a report of some date is written, in days since 1970; at the end where there is none. What a deck
     /// says at that date holds from there on, and is not in the report.
     ///

@@ -1,11 +1,11 @@
 //! Walks through the files of decks to their SCHEDULE sections, and takes in order what is said of wells there.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
 use super::super::files::DeckFiles;
-use super::super::include::{Nesting, included};
+use super::super::include::{Nesting, included, named_file};
 use super::super::lexer::{Cursor, Item, Keyword, Mistake, keyword, line_end};
 use super::super::scan::{Flow, skip_region, skip_title};
 use super::super::skip::skip_records;
@@ -17,8 +17,8 @@ use crate::error::{ErrorKind, ParseError, Warnings};
 
 /// When time begins where nobody says it.
 const START: &str = "1983-01-01";
-/// Layers that all records together connect wells to, at most.
-const MOST_CONNECTIONS: usize = 5_000_000;
+/// Layers that wells are connected to and other changes of wells, at most.
+const MOST_CHANGES: usize = 3_000_000;
 
 /// Keywords whose records are read one by one, up to an empty one.
 const LISTS: &[&str] = &[
@@ -56,7 +56,10 @@ struct Walk<'a> {
     not_evaluated: BTreeSet<String>,
     /// Wells that nobody has made, and the first keyword that names each.
     unknown: BTreeMap<String, String>,
-    connections: usize,
+    /// Changes and layers so far.
+    count: usize,
+    /// Numbers of wells by their names in upper case.
+    numbers: HashMap<String, usize>,
 }
 
 /// Reads decks, one after the other.
@@ -82,7 +85,8 @@ pub(super) fn read(
         lists: BTreeMap::new(),
         not_evaluated: BTreeSet::new(),
         unknown: BTreeMap::new(),
-        connections: 0,
+        count: 0,
+        numbers: HashMap::new(),
     };
     for path in paths {
         walk.places = Places::new(files, path);
@@ -195,11 +199,11 @@ impl Walk<'_> {
         cursor: &mut Cursor,
         keyword: &Keyword,
     ) -> Result<Flow, ParseError> {
-        let is_passed = self.section == Section::Passed(source.path().to_owned());
-        let found = included(&self.places, source, cursor, keyword);
-        if is_passed {
+        if self.section == Section::Passed(source.path().to_owned()) {
+            named_file(source, cursor, keyword)?;
             return Ok(Flow::On);
         }
+        let found = included(&self.places, source, cursor, keyword);
         match found.and_then(|(at, file)| self.nesting.include(source, keyword, at, file)) {
             Ok((file, chain)) => self.file(file, chain),
             Err(error) if error.kind == ErrorKind::NotFound => {
@@ -257,14 +261,6 @@ impl Walk<'_> {
             "WELOPEN" => records::open(items)?,
             _ => records::injector(items),
         };
-        if let What::Connect { layers, .. } = &what {
-            self.connections += (layers[1] - layers[0]) as usize + 1;
-            if self.connections > MOST_CONNECTIONS {
-                let at = items.first().map_or(0, |item| item.at);
-                let message = format!("wells have more than {MOST_CONNECTIONS} connections");
-                return Err(Mistake::new(ErrorKind::TooLarge, at, message));
-            }
-        }
         let is_new = matches!(what, What::Head { .. }) && !well.contains(['*', '?']);
         let numbers = match is_new {
             true => vec![self.number(&well)],
@@ -272,6 +268,16 @@ impl Walk<'_> {
         };
         if numbers.is_empty() {
             self.unknown.entry(well).or_insert_with(|| name.to_owned());
+        }
+        let layers = match &what {
+            What::Connect { layers, .. } => (layers[1] - layers[0]) as usize + 1,
+            _ => 1,
+        };
+        self.count = self.count.saturating_add(layers * numbers.len());
+        if self.count > MOST_CHANGES {
+            let at = items.first().map_or(0, |item| item.at);
+            let message = format!("wells change more than {MOST_CHANGES} times");
+            return Err(Mistake::new(ErrorKind::TooLarge, at, message));
         }
         for well in numbers {
             let what = what.clone();
@@ -285,8 +291,7 @@ impl Walk<'_> {
     /// The number of a well, which is made where it is new.
     fn number(&mut self, well: &str) -> usize {
         let names = &mut self.schedule.names;
-        let known = names.iter().position(|n| n.eq_ignore_ascii_case(well));
-        known.unwrap_or_else(|| {
+        *self.numbers.entry(well.to_uppercase()).or_insert_with(|| {
             names.push(well.to_owned());
             names.len() - 1
         })
@@ -305,6 +310,10 @@ impl Walk<'_> {
                 .filter(|(_, n)| is_listed(n))
                 .map(|(n, _)| n)
                 .collect();
+        }
+        if !pattern.contains(['*', '?']) {
+            let known = self.numbers.get(&pattern.to_uppercase());
+            return known.copied().into_iter().collect();
         }
         let names = names.filter(|(_, name)| is_meant(pattern, name));
         names.map(|(number, _)| number).collect()
@@ -357,4 +366,18 @@ fn begins_another(cursor: &Cursor) -> bool {
         let name = found.name.as_str();
         found.alone && (LISTS.contains(&name) || matches!(name, "TSTEP" | "END" | "INCLUDE"))
     })
+}
+
+/// True where a text begins with a keyword that only SCHEDULE has.
+pub(super) fn begins(start: &[u8]) -> bool {
+    let start = start.strip_prefix(b"\xef\xbb\xbf").unwrap_or(start);
+    let mut cursor = Cursor::new(start, 0);
+    let only_here = [
+        "SCHEDULE", "TSTEP", "RPTSCHED", "WELSEGS", "GRUPTREE", "GCONPROD", "TUNING",
+    ];
+    cursor.skip_blank()
+        && keyword(start, cursor.at).is_some_and(|found| {
+            let name = found.name.as_str();
+            found.alone && (LISTS.contains(&name) || only_here.contains(&name))
+        })
 }
