@@ -16,6 +16,7 @@ use strataray_parsers::egrid::{self, Egrid, LocalGrid, PorosityModel};
 use strataray_parsers::records::Kind;
 use strataray_parsers::restart::{self, RestartWriter};
 use strataray_parsers::units::UnitSystem;
+use strataray_parsers::wells::Well;
 use strataray_parsers::{Warnings, init};
 
 /// A file with these bytes in a folder that lives as long as the first part.
@@ -165,7 +166,7 @@ fn ok_restart_reads_back_equal() {
     let mut writer = RestartWriter::new(Vec::new());
     let wells = ["PROD-1", "I2"];
     let arrays = [("PRESSURE", values(0)), ("SWAT", values(1))];
-    writer.step(0, 0.0, &undated, &[""; 0], arrays).unwrap();
+    writer.step(0, 0.0, &undated, &[], arrays).unwrap();
     writer
         .step(20, 181.25, &head, &wells, [("SWAT", values(2))])
         .unwrap();
@@ -237,9 +238,9 @@ fn err_cell_arrays_that_could_not_be_read() {
     assert!(init(&negative, "PORO", 3).contains("expected -1"));
     let mut writer = RestartWriter::new(Vec::new());
     let none: [(&str, Vec<f32>); 0] = [];
-    let said = refusal(writer.step(0, 0.0, &head(), &["A-LONG-NAME"], none.clone()));
+    let said = refusal(writer.step(0, 0.0, &head(), &[Well::named("A-LONG-NAME")], none.clone()));
     assert!(said.contains("A-LONG-NAME"), "{said}");
-    let said = refusal(writer.step(u32::MAX, 0.0, &head(), &["A"], none));
+    let said = refusal(writer.step(u32::MAX, 0.0, &head(), &[Well::named("A")], none));
     assert!(said.contains("4294967295"), "{said}");
 }
 

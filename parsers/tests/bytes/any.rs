@@ -11,6 +11,7 @@ use strataray_parsers::deck::{DeckWriter, Grdecl, GridText, MemoryFiles};
 use strataray_parsers::egrid::{Egrid, PorosityModel};
 use strataray_parsers::records::{RecordFile, RecordWriter};
 use strataray_parsers::restart::{self, RestartWriter};
+use strataray_parsers::wells::Well;
 use strataray_parsers::{Warnings, init};
 
 use super::fixtures::cell;
@@ -263,7 +264,7 @@ proptest! {
         let mut out = RestartWriter::new(Vec::new());
         for (report, days) in &steps {
             let pressure = [("PRESSURE", values.clone())];
-            out.step(*report, *days, &head, &["P1"], pressure).unwrap();
+            out.step(*report, *days, &head, &[Well::named("P1")], pressure).unwrap();
         }
         let bytes = out.finish().unwrap();
         let read = restart::unified_from_bytes(("A.UNRST", bytes), &mut Warnings::default()).unwrap();

@@ -179,7 +179,7 @@ impl State {
             return;
         };
         let made = place.get_or_insert_with(|| Made {
-            well: named(name),
+            well: Well::named(name.as_str()),
             known: HashMap::new(),
         });
         match &change.what {
@@ -203,21 +203,6 @@ impl State {
             What::Connect { .. } => made.connect(&change.what, self.dims),
             What::Connections { cell, is_open } => made.open(*cell, *is_open),
         }
-    }
-}
-
-fn named(name: &str) -> Well {
-    Well {
-        name: name.to_owned(),
-        group: None,
-        head: [0; 2],
-        depth: None,
-        kind: Kind::Undefined,
-        status: Status::Shut,
-        segments: 0,
-        completions: Vec::new(),
-        local: Vec::new(),
-        flow: None,
     }
 }
 
@@ -278,18 +263,9 @@ impl Made {
                 None => {
                     let order = i32::try_from(list.len() + 1).unwrap_or(i32::MAX);
                     list.push(Completion {
-                        cell: [i, j, k],
                         is_fracture,
                         is_open: *is_open,
-                        direction: Some(*direction),
-                        order,
-                        number: order,
-                        segment: 0,
-                        factor: None,
-                        depth: None,
-                        diameter: None,
-                        kh: None,
-                        skin: None,
+                        ..Completion::open([i, j, k], *direction, order)
                     });
                     let at = list.len() - 1;
                     self.known.insert(key, at);
