@@ -1,7 +1,7 @@
 //! Text decks: the grid, its faults and its cell properties from GRDECL and DATA files.
 //!
 //! The reader follows INCLUDE, skips what does not describe the grid, and stops at the SUMMARY or
-//! SCHEDULE section. It works in two steps: a scan over all files that notes where each array
+//! SCHEDULE section, of which [`Schedule`] takes the wells. It works in two steps: a scan over all files that notes where each array
 //! lies and what is done to it, and, once the dimensions are known, the parallel conversion of the
 //! arrays and, in the deck's order, what is done to them in boxes (EQUALS, COPY, ...), regions (EQUALREG, ...) and by
 //! formulas (OPERATE).

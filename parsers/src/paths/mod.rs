@@ -133,17 +133,17 @@ pub fn from_bytes(
 }
 
 /// True where a text begins as files with well paths do. `is_named_so` where the name of the file says that it has
-/// some: rows of numbers are enough then, which may be anything else elsewhere.
+/// some: then it is enough that it is no deck.
 ///
 /// `start` may end anywhere in the file.
 pub fn begin(start: &[u8], is_named_so: bool) -> bool {
     let text = String::from_utf8_lossy(start);
     let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
     if start.contains(&0) {
-        return false;
+        return is_named_so;
     }
     if json::is_json(text) {
-        return text.contains("\"path\"");
+        return is_named_so || text.contains("\"path\"");
     }
     if rms::is_rms(text) {
         return true;
@@ -163,7 +163,7 @@ pub fn begin(start: &[u8], is_named_so: bool) -> bool {
             Line::Blank | Line::Damaged { .. } => {}
         }
     }
-    has_rows && (is_named_so || has_columns || has_names)
+    is_named_so || has_rows && (has_columns || has_names)
 }
 
 /// An error at a line, counted from 1.

@@ -18,7 +18,7 @@ use super::fixtures::cell;
 use super::properties::{BINARY_HEAD, LEGACY_HEAD, READERS, TEXT_HEAD, behind, holds};
 
 /// Text that means something to a reader, so that bytes get beyond the first check.
-const WORDS: [&str; 48] = [
+const WORDS: [&str; 58] = [
     "SPECGRID\n",
     "DIMENS\n",
     "COORD\n",
@@ -67,6 +67,16 @@ const WORDS: [&str; 48] = [
     " 'PORO    '           2 'REAL'\n",
     " 'INTEHEAD'           1 'INTE'\n",
     "\r",
+    "WELSPECS\n",
+    "COMPDAT\n",
+    "WELOPEN\n",
+    "DATES\n",
+    "TSTEP\n",
+    "WLIST\n",
+    "'P*' ",
+    "1 JAN 2020 ",
+    "WELLNAME: A\n",
+    "1 2 3\n4 5 6\n",
 ];
 
 fn words() -> impl Strategy<Value = Vec<u8>> {

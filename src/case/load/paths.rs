@@ -103,7 +103,7 @@ fn note_distances(paths: &[WellPath], file: &Path, grid: &Grid, about: &mut Abou
     };
     if let Some(nearest) = far.iter().map(|(_, away)| *away).reduce(f64::min) {
         let hint = match fits_the_grid(&far, grid, bounds) {
-            true => "its numbers are near those of the grid without MAPAXES",
+            true => "the numbers are near those of the grid itself, without MAPAXES",
             false => "different coordinate systems or units?",
         };
         about.notes.push(format!(
