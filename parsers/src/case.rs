@@ -211,15 +211,8 @@ pub fn find(path: &Path) -> Result<CaseFiles, ParseError> {
         return find(&only);
     }
     let named = path.is_file().then(|| sniff(path));
-    if let Some(what) = without_grid(named) {
-        let message = format!("has {what} and no grid; add it to a case, as by --with");
-        return Err(ParseError::of(
-            ErrorKind::Unsupported,
-            path,
-            At::File,
-            "",
-            message,
-        ));
+    if let Some(error) = without_grid(path, named) {
+        return Err(error);
     }
     let (stem, files) = family(path, named)?;
     let first = |wanted: Role| {
@@ -259,22 +252,6 @@ pub fn find(path: &Path) -> Result<CaseFiles, ParseError> {
         _ => schedules,
     };
     let deck = deck.filter(|_| matches!(grid, GridSource::Egrid(_)));
-    let mut separate: Vec<(u32, PathBuf)> = Vec::new();
-    for (file, role) in &files {
-        if let Role::Separate(report) = role
-            && !separate.iter().any(|s| s.0 == *report)
-        {
-            separate.push((*report, file.clone()));
-        }
-    }
-    separate.sort();
-    let restart = match first(Role::Unified) {
-        Some(unified) if !matches!(named, Some(Role::Separate(_))) => {
-            RestartSource::Unified(unified)
-        }
-        _ if separate.is_empty() => RestartSource::None,
-        _ => RestartSource::Separate(separate),
-    };
     let reason = |role: &Role| {
         if let Role::NotRead(why) = role {
             Some(*why)
@@ -294,7 +271,7 @@ pub fn find(path: &Path) -> Result<CaseFiles, ParseError> {
         schedules: schedules.into_iter().collect(),
         paths: Vec::new(),
         init: first(Role::Init),
-        restart,
+        restart: restart_of(&files, named),
         summary: summary_of(&files, named),
         not_read: files
             .iter()
@@ -303,13 +280,37 @@ pub fn find(path: &Path) -> Result<CaseFiles, ParseError> {
     })
 }
 
-/// What a file has that belongs to a case, and cannot be one.
-fn without_grid(role: Option<Role>) -> Option<&'static str> {
-    match role? {
-        Role::Paths => Some("paths of wells"),
-        Role::Schedule => Some("a schedule of wells"),
-        _ => None,
+/// The restart among the files of a case; `named` is what the user named of them.
+fn restart_of(files: &[(PathBuf, Role)], named: Option<Role>) -> RestartSource {
+    let mut separate: Vec<(u32, PathBuf)> = Vec::new();
+    for (file, role) in files {
+        if let Role::Separate(report) = role
+            && !separate.iter().any(|s| s.0 == *report)
+        {
+            separate.push((*report, file.clone()));
+        }
     }
+    separate.sort();
+    let mut unified = files.iter().filter(|(_, role)| *role == Role::Unified);
+    match unified.next() {
+        Some((unified, _)) if !matches!(named, Some(Role::Separate(_))) => {
+            RestartSource::Unified(unified.clone())
+        }
+        _ if separate.is_empty() => RestartSource::None,
+        _ => RestartSource::Separate(separate),
+    }
+}
+
+/// Why a file that belongs to a case cannot be one.
+fn without_grid(path: &Path, role: Option<Role>) -> Option<ParseError> {
+    let what = match role? {
+        Role::Paths => "paths of wells",
+        Role::Schedule => "a schedule of wells",
+        _ => return None,
+    };
+    let message = format!("has {what} and no grid; add it to a case, as by --with");
+    let kind = ErrorKind::Unsupported;
+    Some(ParseError::of(kind, path, At::File, "", message))
 }
 
 /// As [`find`], with files added by hand to what is found: text beside the grid, an INIT, restart or summary of another

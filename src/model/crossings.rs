@@ -193,7 +193,7 @@ mod tests {
                 let (i, j, k) = ((p.x - 0.5 * p.z) / 10.0, p.y / 10.0, p.z / 2.0);
                 let is_inside = (0.0..4.0).contains(&i) && (0.0..3.0).contains(&j);
                 let is_inside = is_inside && (0.0..5.0).contains(&k);
-                let cell = is_inside.then(|| Ijk {
+                let cell = is_inside.then_some(Ijk {
                     i: i as usize,
                     j: j as usize,
                     k: k as usize,

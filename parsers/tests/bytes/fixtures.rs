@@ -5,6 +5,7 @@ use strataray_parsers::egrid::{Egrid, GridUnit, PorosityModel};
 use strataray_parsers::init;
 use strataray_parsers::records::{Kind, RecordFile, RecordWriter};
 use strataray_parsers::restart::RestartWriter;
+use strataray_parsers::wells::Well;
 
 /// A deck of one cell, with its corners at depths 0 and 1.
 pub const CELL: &str = "SPECGRID\n1 1 1 1 F /\nCOORD\n0 0 0 0 0 1  1 0 0 1 0 1  0 1 0 0 1 1  1 1 0 1 1 1 /\nZCORN\n4*0 4*1 /\n";
@@ -258,7 +259,7 @@ pub fn restart(reports: [u32; 2]) -> Vec<u8> {
     for report in reports {
         let pressure = [("PRESSURE", vec![100.0 + report as f32])];
         let days = f64::from(report);
-        let wells = ["P1", "I2"];
+        let wells = ["P1", "I2"].map(Well::named);
         writer
             .step(report, days, &head(), &wells, pressure)
             .unwrap();
