@@ -50,7 +50,8 @@ fn readers(path: &Path) -> Vec<Reader> {
         "ROFF" => &["roff"],
         "PNG" | "CSV" | "JSON" | "MD" => &[],
         x if x.starts_with('X') && x.len() == 5 => &["restart", "wells"],
-        _ => &["deck"],
+        "SCH" => &["deck", "schedule", "paths"],
+        _ => &["deck", "schedule"],
     };
     let named = READERS.iter().filter(|(name, _)| names.contains(name));
     named.map(|(_, reader)| *reader).collect()

@@ -4,6 +4,7 @@ mod cache;
 mod difference;
 pub mod load;
 mod over_steps;
+mod paths;
 mod pores;
 mod simbox;
 mod vectors;
@@ -21,6 +22,7 @@ use crate::model::{CellField, FaultFaces, Grid, Ijk};
 
 pub use difference::{Difference, Minus, difference_name, minus, nearest};
 pub use over_steps::{Categories, MAX_CATEGORIES, OverSteps, ValueRange};
+pub use paths::WellPath;
 pub use simbox::Simbox;
 pub use vectors::{Vector, VectorKind, VectorSource, Vectors};
 pub use weights::{Extent, Weighting, Weights};
@@ -127,6 +129,8 @@ pub struct About {
     pub named_faults: Vec<NamedFault>,
     /// Wells by name.
     pub wells: Vec<String>,
+    /// Paths of wells.
+    pub paths: Vec<Arc<WellPath>>,
     /// Files with summary vectors, which are read once they are asked for.
     pub summary: Vec<std::path::PathBuf>,
     /// What loading took.

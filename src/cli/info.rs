@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use rayon::prelude::*;
 use serde_json::{Value, json};
-use strataray::case::{Case, Connection, Kind, NamedFault, Property, Vector, VectorKind};
-use strataray::model::{CellField, Grid, Ijk, MapAxes, Spaces, Statistics};
+use strataray::case::{Case, Connection, Kind, NamedFault, Property, Vector, VectorKind, WellPath};
+use strataray::model::{CellField, Crossing, Grid, Ijk, MapAxes, Spaces, Statistics};
 
 use super::Verbosity;
 use super::progress::Reporter;
@@ -13,7 +13,8 @@ use super::scene_options::AddedFiles;
 
 #[derive(clap::Args)]
 #[command(
-    after_help = "Example:\n  strataray info REEK.EGRID --json --stats PORO --stats SWAT@last"
+    after_help = "Example:\n  strataray info REEK.EGRID --json --stats PORO --stats SWAT@last\n  \
+                  strataray info REEK.EGRID --wells --with wells.dev"
 )]
 pub struct Arguments {
     /// Any file of the case, or its base name.
@@ -24,7 +25,7 @@ pub struct Arguments {
     /// Statistics of a property, of dynamic ones at a step (default last).
     #[arg(long, value_name = "NAME[@STEP]")]
     stats: Vec<String>,
-    /// Wells at each step: type, open or shut, connected cells.
+    /// Wells at each step: type, open or shut, connected cells; cells on paths.
     #[arg(long)]
     wells: bool,
     /// Summary vectors by name.
@@ -42,6 +43,8 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let mut facts = facts(&case, &arguments.stats)?;
     if arguments.wells {
         facts["wells"] = wells(&case)?;
+        let paths = case.about.paths.iter();
+        facts["paths"] = paths.map(|path| with_cells(path, &case.grid)).collect();
     }
     let vectors = match arguments.summary {
         true => Some(vectors(&case, &reporter)?),
@@ -88,7 +91,8 @@ fn print_vectors(vectors: &[Vector]) {
 /// Each well with its steps; cells count from 1.
 fn wells(case: &Case) -> anyhow::Result<Value> {
     let mut wells: Vec<(String, Vec<Value>)> = Vec::new();
-    for index in 0..case.steps.len() {
+    // A case without steps has wells too.
+    for index in 0..case.steps.len().max(1) {
         for well in case.wells(index)?.iter() {
             let step = json!({
                 "index": index,
@@ -119,17 +123,40 @@ fn connection(connection: &Connection) -> Value {
     })
 }
 
+/// A path; measured depths are those of its ends.
+fn path(path: &WellPath) -> Value {
+    let measured = path.measured.as_deref().unwrap_or_default();
+    json!({
+        "name": path.name,
+        "file": path.file.display().to_string(),
+        "points": path.points.len(),
+        "md": measured.first().zip(measured.last()).map(|(a, b)| [a, b]),
+        "z": path.vertical,
+        "cells": path.crossings.len(),
+    })
+}
+
+/// A path with the cells that it goes through, in its order.
+fn with_cells(of: &WellPath, grid: &Grid) -> Value {
+    let mut told = path(of);
+    let cell = |crossing: &Crossing| {
+        let cell = grid.cell_name(crossing.cell);
+        let [i, j, k] = cell.ijk;
+        json!({"grid": cell.grid, "i": i, "j": j, "k": k})
+    };
+    told["on_path"] = of.crossings.iter().map(cell).collect();
+    told
+}
+
 /// A line for each well of the last step.
 fn print_wells(case: &Case) -> anyhow::Result<()> {
     for well in case.wells(case.steps.len().saturating_sub(1))?.iter() {
         let open = well.connections.iter().filter(|c| c.is_open).count();
-        say_line!(
-            "  well {}: {}, {}, {open} of {} connections open",
-            well.name,
-            well.kind.name(),
-            if well.is_open { "open" } else { "shut" },
-            well.connections.len()
-        );
+        let state = match well.connections.len() {
+            0 => well.in_words(),
+            all => format!("{}, {open} of {all} connections open", well.in_words()),
+        };
+        say_line!("  well {}: {state}", well.name);
     }
     Ok(())
 }
@@ -169,6 +196,7 @@ fn facts(case: &Case, stats: &[String]) -> anyhow::Result<Value> {
             json!({"index": index, "report": s.report, "date": s.date, "days": s.days})
         }).collect::<Vec<_>>(),
         "wells": case.about.wells,
+        "paths": case.about.paths.iter().map(|p| path(p)).collect::<Vec<_>>(),
         "notes": case.about.notes,
     });
     if let Some(axes) = grid.map_axes() {
@@ -421,5 +449,15 @@ fn print_notes(case: &Case) {
     }
     if !case.about.wells.is_empty() {
         say_line!("  wells: {}", case.about.wells.join(" "));
+    }
+    for path in &case.about.paths {
+        let file = path.file.file_name().unwrap_or_default().to_string_lossy();
+        say_line!(
+            "  path {}: {} points through {} cells, {} taken from {file}",
+            path.name,
+            path.points.len(),
+            path.crossings.len(),
+            path.vertical
+        );
     }
 }

@@ -83,7 +83,8 @@ pub struct SceneOptions {
 /// Files that are added to a case.
 #[derive(clap::Args)]
 pub struct AddedFiles {
-    /// Files to add to the case: properties or faults in text, an INIT, restart or summary of another name.
+    /// Files to add to the case: properties or faults in text, paths of wells (.dev and others), a deck or its schedule with
+    /// wells, an INIT, restart or summary of another name.
     #[arg(long, value_name = "FILE", num_args = 1..)]
     with: Vec<PathBuf>,
 }

@@ -126,8 +126,7 @@ pub fn restart(steps: &[(Head, Arrays<'_>)]) -> Vec<u8> {
     for (n, (head, arrays)) in steps.iter().enumerate() {
         let arrays = arrays.iter().map(|(name, values)| (*name, values.clone()));
         let days = 31.0 * n as f64;
-        let wells: [&str; 0] = [];
-        writer.step(n as u32, days, head, &wells, arrays).unwrap();
+        writer.step(n as u32, days, head, &[], arrays).unwrap();
     }
     writer.finish().unwrap()
 }

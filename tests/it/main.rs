@@ -43,6 +43,7 @@ mod odd_cells;
 mod oracle;
 mod overlap;
 mod parameters;
+mod paths;
 mod picking;
 mod pictures;
 mod point_location;

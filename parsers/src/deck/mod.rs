@@ -1,7 +1,7 @@
 //! Text decks: the grid, its faults and its cell properties from GRDECL and DATA files.
 //!
 //! The reader follows INCLUDE, skips what does not describe the grid, and stops at the SUMMARY or
-//! SCHEDULE section. It works in two steps: a scan over all files that notes where each array
+//! SCHEDULE section, of which [`Schedule`] takes the wells. It works in two steps: a scan over all files that notes where each array
 //! lies and what is done to it, and, once the dimensions are known, the parallel conversion of the
 //! arrays and, in the deck's order, what is done to them in boxes (EQUALS, COPY, ...), regions (EQUALREG, ...) and by
 //! formulas (OPERATE).
@@ -19,6 +19,7 @@ mod include;
 mod lexer;
 mod numbers;
 mod scan;
+mod schedule;
 mod skip;
 mod source;
 mod write;
@@ -29,6 +30,7 @@ use crate::egrid::PorosityModel;
 use crate::error::{ParseError, Warnings};
 pub use crate::units::UnitSystem;
 pub use files::{DeckFiles, Folders, MemoryFiles};
+pub use schedule::Schedule;
 pub use write::{DeckWriter, GridText, Number};
 
 /// A corner-point grid as its deck gives it, without any geometry computed from it.

@@ -6,6 +6,7 @@ use std::rc::Rc;
 
 use super::edit::{CellBox, Edit, Place};
 use super::files::DeckFiles;
+use super::include::Nesting;
 use super::lexer::{Cursor, Item, Keyword, Mistake, keyword, line_end, record_end};
 use super::skip::{Skipped, ends_records, is_operation, skip_records};
 use super::source::{Places, Source};
@@ -164,9 +165,7 @@ pub(super) struct Scan<'a> {
     /// The cells that arrays at hand belong to.
     pub(super) input_box: CellBox,
     refinement: bool,
-    /// Paths of the files being read, outermost first.
-    pub(super) open: Vec<PathBuf>,
-    pub(super) opened: usize,
+    pub(super) nesting: Nesting,
 }
 
 /// Reads decks up to their arrays, one after the other as if they were one.
@@ -184,8 +183,7 @@ pub(super) fn scan(
             section: None,
             input_box: CellBox::default(),
             refinement: false,
-            open: Vec::new(),
-            opened: 0,
+            nesting: Nesting::default(),
         };
         scan.file(files.open(path)?, Vec::new())?;
         found = scan.found;
@@ -210,14 +208,13 @@ impl Scan<'_> {
                 "this is a binary file, not a text deck",
             ));
         }
-        self.opened += 1;
         self.found.bytes = self.found.bytes.saturating_add(text.len());
         if !self.found.files.iter().any(|file| file == path) {
             self.found.files.push(path.to_owned());
         }
-        self.open.push(path.to_owned());
+        self.nesting.enter(path);
         let flow = self.keywords(&source);
-        self.open.pop();
+        self.nesting.leave();
         flow
     }
 
@@ -265,7 +262,7 @@ impl Scan<'_> {
             "INCLUDE" | "EXTERNAL_FILE" => return self.include(source, cursor, keyword),
             "GDFILE" | "IMPORT" => return self.array_file(source, cursor, keyword),
             "TITLE" => skip_title(cursor),
-            "SKIP" | "SKIP100" | "SKIP300" => self.skip_region(source, cursor, keyword)?,
+            "SKIP" | "SKIP100" | "SKIP300" => skip_region(source, cursor, keyword)?,
             "METRIC" => self.found.unit_system = Some(UnitSystem::Metric),
             "FIELD" => self.found.unit_system = Some(UnitSystem::Field),
             "LAB" => self.found.unit_system = Some(UnitSystem::Lab),
@@ -278,7 +275,7 @@ impl Scan<'_> {
                 self.refine(source, cursor, keyword)?;
             }
             "COORD" | "ZCORN" | "ACTNUM" => self.array(source, cursor, keyword)?,
-            "PATHS" => self.paths(source, cursor)?,
+            "PATHS" => self.places.add_aliases(source, cursor)?,
             "FAULTS" | "MULTFLT" | "ADDZCORN" => self.lists(source, cursor, keyword)?,
             "SPECGRID" | "DIMENS" | "MAPAXES" | "MAPUNITS" | "GRIDUNIT" | "GDORIENT" | "BOX"
             | "MINPV" | "MINPORV" | "GRIDOPTS" => {
@@ -541,27 +538,6 @@ impl Scan<'_> {
         }
     }
 
-    fn skip_region(
-        &mut self,
-        source: &Source,
-        cursor: &mut Cursor,
-        skip: &Keyword,
-    ) -> Result<(), ParseError> {
-        while cursor.skip_blank() {
-            let ends = keyword(cursor.text, cursor.at).is_some_and(|found| found.name == "ENDSKIP");
-            cursor.at = line_end(cursor.text, cursor.at);
-            if ends {
-                return Ok(());
-            }
-        }
-        Err(source.error(
-            ErrorKind::Truncated,
-            skip.at,
-            &skip.name,
-            "no ENDSKIP follows in this file",
-        ))
-    }
-
     pub(super) fn warn(&mut self, source: &Source, at: usize, message: &str) {
         self.warnings.push(source.path(), source.at(at), message);
     }
@@ -572,8 +548,29 @@ pub(super) fn product_text([ni, nj, nk]: [usize; 3]) -> String {
     format!("{ni} x {nj} x {nk}")
 }
 
+/// SKIP and its like: moves behind ENDSKIP.
+pub(super) fn skip_region(
+    source: &Source,
+    cursor: &mut Cursor,
+    skip: &Keyword,
+) -> Result<(), ParseError> {
+    while cursor.skip_blank() {
+        let ends = keyword(cursor.text, cursor.at).is_some_and(|found| found.name == "ENDSKIP");
+        cursor.at = line_end(cursor.text, cursor.at);
+        if ends {
+            return Ok(());
+        }
+    }
+    Err(source.error(
+        ErrorKind::Truncated,
+        skip.at,
+        &skip.name,
+        "no ENDSKIP follows in this file",
+    ))
+}
+
 /// The title is the next line with text.
-fn skip_title(cursor: &mut Cursor) {
+pub(super) fn skip_title(cursor: &mut Cursor) {
     if cursor.skip_blank() {
         cursor.at = line_end(cursor.text, cursor.at);
     }

@@ -11,13 +11,14 @@ use strataray_parsers::deck::{DeckWriter, Grdecl, GridText, MemoryFiles};
 use strataray_parsers::egrid::{Egrid, PorosityModel};
 use strataray_parsers::records::{RecordFile, RecordWriter};
 use strataray_parsers::restart::{self, RestartWriter};
+use strataray_parsers::wells::Well;
 use strataray_parsers::{Warnings, init};
 
 use super::fixtures::cell;
 use super::properties::{BINARY_HEAD, LEGACY_HEAD, READERS, TEXT_HEAD, behind, holds};
 
 /// Text that means something to a reader, so that bytes get beyond the first check.
-const WORDS: [&str; 48] = [
+const WORDS: [&str; 58] = [
     "SPECGRID\n",
     "DIMENS\n",
     "COORD\n",
@@ -66,6 +67,16 @@ const WORDS: [&str; 48] = [
     " 'PORO    '           2 'REAL'\n",
     " 'INTEHEAD'           1 'INTE'\n",
     "\r",
+    "WELSPECS\n",
+    "COMPDAT\n",
+    "WELOPEN\n",
+    "DATES\n",
+    "TSTEP\n",
+    "WLIST\n",
+    "'P*' ",
+    "1 JAN 2020 ",
+    "WELLNAME: A\n",
+    "1 2 3\n4 5 6\n",
 ];
 
 fn words() -> impl Strategy<Value = Vec<u8>> {
@@ -263,7 +274,7 @@ proptest! {
         let mut out = RestartWriter::new(Vec::new());
         for (report, days) in &steps {
             let pressure = [("PRESSURE", values.clone())];
-            out.step(*report, *days, &head, &["P1"], pressure).unwrap();
+            out.step(*report, *days, &head, &[Well::named("P1")], pressure).unwrap();
         }
         let bytes = out.finish().unwrap();
         let read = restart::unified_from_bytes(("A.UNRST", bytes), &mut Warnings::default()).unwrap();

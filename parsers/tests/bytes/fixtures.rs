@@ -5,6 +5,7 @@ use strataray_parsers::egrid::{Egrid, GridUnit, PorosityModel};
 use strataray_parsers::init;
 use strataray_parsers::records::{Kind, RecordFile, RecordWriter};
 use strataray_parsers::restart::RestartWriter;
+use strataray_parsers::wells::Well;
 
 /// A deck of one cell, with its corners at depths 0 and 1.
 pub const CELL: &str = "SPECGRID\n1 1 1 1 F /\nCOORD\n0 0 0 0 0 1  1 0 0 1 0 1  0 1 0 0 1 1  1 1 0 1 1 1 /\nZCORN\n4*0 4*1 /\n";
@@ -258,7 +259,7 @@ pub fn restart(reports: [u32; 2]) -> Vec<u8> {
     for report in reports {
         let pressure = [("PRESSURE", vec![100.0 + report as f32])];
         let days = f64::from(report);
-        let wells = ["P1", "I2"];
+        let wells = ["P1", "I2"].map(Well::named);
         writer
             .step(report, days, &head(), &wells, pressure)
             .unwrap();
@@ -285,3 +286,62 @@ pub fn rich_deck() -> String {
 
 /// The file that [`rich_deck`] includes.
 pub const PORO: &str = "PORO\n 12*0.25 / of all cells\n";
+
+/// Wells of a cell grid, over two dates.
+pub const SCHEDULE: &str = "START
+ 1 JAN 2020 /
+SCHEDULE
+WELSPECS
+ 'P1' 'G' 1 1 1* OIL /
+ 'I1' 'G' 2 2 1* WATER /
+/
+COMPDAT
+ 'P1' 2* 1 2 OPEN 3* 0.3 3* X /
+ 'I1' 2 2 1 1 SHUT /
+/
+WCONPROD
+ 'P*' OPEN ORAT 100 /
+/
+DATES
+ 1 FEB 2020 /
+/
+WCONINJE
+ I1 WATER OPEN RATE 50 /
+/
+WELOPEN
+ P1 SHUT /
+ I1 OPEN 2 2 1 /
+/
+TSTEP
+ 28 31 /
+";
+
+/// Paths of two wells, with names and columns.
+pub const PATHS: &str = "# two wells
+X Y TVD MD
+WELLNAME: A-1
+6507.1 725 2542 2590
+6523.5 757 2549 2626.6
+-999
+'B 2'
+550.7, 1020.2, 2410, 2410
+551, 1004.1, 2422.2, 2430.2
+555.2, 993.9, 2425, 2441.6
+";
+
+/// A well of RMS with two logs.
+pub const RMS_WELL: &str = "1.0
+Undefined
+A 1 461499.9 5932000.1 25.5
+2
+MD UNK lin
+Facies DISC 0 Shale 1 Sand
+461499.9 5932000.1 1000 1025.5 0
+461500.9 5932001.1 1100 1127.5 1
+";
+
+/// A path as ResInsight writes it.
+pub const JSON_PATH: &str = r#"{"name": "A-1", "path": [
+ {"x": 1, "y": 2, "z": 3, "md": 4},
+ {"x": 1.5, "y": 2.5, "z": 30, "md": 34}
+]}"#;

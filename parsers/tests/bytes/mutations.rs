@@ -132,6 +132,18 @@ fn mutated_roff() {
 }
 
 #[test]
+fn mutated_schedules_and_paths() {
+    mutate(16, fixtures::SCHEDULE.as_bytes(), properties::schedule);
+    for (seed, text) in [
+        (17, fixtures::PATHS),
+        (18, fixtures::RMS_WELL),
+        (19, fixtures::JSON_PATH),
+    ] {
+        mutate(seed, text.as_bytes(), properties::paths);
+    }
+}
+
+#[test]
 fn mutated_records() {
     mutate(5, &fixtures::records(), properties::records);
 }

@@ -4,12 +4,14 @@
 
 use std::path::Path;
 
-use strataray_parsers::deck::{DeckCells, Grdecl, MemoryFiles};
+use strataray_parsers::deck::{DeckCells, Grdecl, MemoryFiles, Schedule};
 use strataray_parsers::egrid::Egrid;
 use strataray_parsers::records::{Kind, RecordFile};
 use strataray_parsers::roff::RoffFile;
 use strataray_parsers::summary::Summary;
-use strataray_parsers::{ErrorKind, ParseError, Warnings, init, restart, wells};
+use strataray_parsers::{
+    ErrorKind, ParseError, Warnings, init, paths as well_paths, restart, wells,
+};
 
 /// The name of the file in errors.
 const NAME: &str = "ANY.FILE";
@@ -18,7 +20,7 @@ const NAME: &str = "ANY.FILE";
 pub type Reader = fn(Vec<u8>) -> Result<(), ParseError>;
 
 /// All readers, by the names of their fuzz targets.
-pub const READERS: [(&str, Reader); 9] = [
+pub const READERS: [(&str, Reader); 11] = [
     ("records", records),
     ("egrid", egrid),
     ("init", init),
@@ -28,6 +30,8 @@ pub const READERS: [(&str, Reader); 9] = [
     ("esmry", esmry),
     ("roff", roff),
     ("deck", deck),
+    ("schedule", schedule),
+    ("paths", paths),
 ];
 
 /// What makes a file binary, formatted, or a legacy grid: bytes behind it reach the reader of that form.
@@ -206,6 +210,39 @@ pub fn deck(bytes: Vec<u8>) -> Result<(), ParseError> {
     for fault in &grid.faults {
         let mut ends = [fault.i, fault.j, fault.k].into_iter().zip(grid.dims);
         assert!(ends.all(|([first, last], n)| first <= last && last <= n));
+    }
+    Ok(())
+}
+
+/// The wells of a deck, which may include itself, at its end and before.
+pub fn schedule(bytes: Vec<u8>) -> Result<(), ParseError> {
+    Schedule::begins(&bytes);
+    let files = MemoryFiles::from_iter([(NAME, bytes)]);
+    let mut warnings = Warnings::default();
+    let schedule = Schedule::read_from(&files, &[Path::new(NAME)], None, &mut warnings)?;
+    check_warnings(&warnings);
+    let dims = [3, 2, 2];
+    let at_end = schedule.wells(None, dims);
+    assert!(at_end.len() <= schedule.names.len());
+    assert!(schedule.wells(Some(schedule.end), dims).len() <= at_end.len());
+    for completion in at_end.iter().flat_map(|well| &well.completions) {
+        let mut axes = completion.cell.iter().zip([3, 2, 2]);
+        assert!(axes.all(|(n, most)| (1..=most).contains(n)));
+    }
+    Ok(())
+}
+
+/// Paths of wells.
+pub fn paths(bytes: Vec<u8>) -> Result<(), ParseError> {
+    well_paths::begin(&bytes, true);
+    let mut warnings = Warnings::default();
+    let wells = well_paths::from_bytes((NAME, bytes), &mut warnings)?;
+    check_warnings(&warnings);
+    assert!(!wells.is_empty());
+    for well in wells {
+        assert!(well.points.len() > 1);
+        assert!(well.points.iter().flatten().all(|v| v.is_finite()));
+        assert!(well.measured.is_none_or(|m| m.len() == well.points.len()));
     }
     Ok(())
 }

@@ -6,12 +6,12 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use strataray_parsers::deck::{DeckCells, Grdecl, MemoryFiles};
+use strataray_parsers::deck::{DeckCells, Grdecl, MemoryFiles, Schedule};
 use strataray_parsers::egrid::Egrid;
 use strataray_parsers::records::{Entry, RecordFile, RecordWriter};
 use strataray_parsers::roff::RoffFile;
 use strataray_parsers::summary::Summary;
-use strataray_parsers::{ParseError, Warnings, case, init, restart, wells};
+use strataray_parsers::{ParseError, Warnings, case, init, paths, restart, wells};
 
 use super::fixtures::{self, CELL};
 
@@ -624,6 +624,56 @@ fn of_cases(all: &mut Sentences) {
     all.add("a folder as a file", &none, read.map_err(told));
 }
 
+fn of_wells(all: &mut Sentences) {
+    let paths = |all: &mut Sentences, title: &str, text: &str| {
+        let mut warnings = Warnings::default();
+        let read = paths::from_bytes(("A.dev", text.to_owned()), &mut warnings);
+        all.add(&format!("paths: {title}"), &warnings, read);
+    };
+    paths(all, "no rows", "WELLNAME: A\n");
+    paths(all, "a word in a row", "WELLNAME: A\n1 2 3\n1 2x 3 4\n");
+    paths(all, "a short row", "X Y TVD MD\n1 2 3 4\n1 2 3\n");
+    paths(all, "two columns", "A\n1 2\n");
+    paths(all, "one point", "A\n1 2 3\nB\n1 2 3\n4 5 6\n");
+    paths(all, "angles", "MD INCL AZIM\n0 0 0\n");
+    paths(all, "binary", "1 2 3\n\0");
+    paths(all, "cut JSON", "{\"name\": \"A\", \"path\": [");
+    paths(all, "JSON without a path", "{\"name\": \"A\"}");
+    paths(all, "JSON without z", "{\"path\": [{\"x\": 1, \"y\": 2}]}");
+    let rms = fixtures::RMS_WELL;
+    paths(
+        all,
+        "RMS with a word in a row",
+        &rms.replace("1100", "11oo"),
+    );
+    paths(
+        all,
+        "RMS with too few logs",
+        &rms[..rms.find("MD").unwrap()],
+    );
+    let schedule = |all: &mut Sentences, title: &str, from: &str, to: &str| {
+        let text = fixtures::SCHEDULE.replacen(from, to, 1);
+        assert_ne!(text, fixtures::SCHEDULE, "{title}");
+        let files = MemoryFiles::from_iter([("CASE.DATA", text)]);
+        let path = [Path::new("CASE.DATA")];
+        let mut warnings = Warnings::default();
+        let read = Schedule::read_from(&files, &path, None, &mut warnings);
+        all.add(&format!("schedule: {title}"), &warnings, read);
+    };
+    schedule(all, "a bad date", "1 FEB 2020", "1 FOO 2020");
+    schedule(all, "no layers", "2* 1 2 OPEN", "2* 2* OPEN");
+    schedule(all, "layers backward", "2* 1 2 OPEN", "2* 2 1 OPEN");
+    schedule(all, "a broken number", "2 2 1 1 SHUT", "2 2.5 1 1 SHUT");
+    schedule(all, "an unknown well", " P1 SHUT /", " P9 SHUT /");
+    schedule(
+        all,
+        "an include that is gone",
+        "TSTEP",
+        "INCLUDE\n 'GONE.SCH' /\nTSTEP",
+    );
+    schedule(all, "no end", "28 31 /", "28 31");
+}
+
 #[test]
 fn people_are_told_the_same_word_for_word() {
     let mut all = Sentences::default();
@@ -635,6 +685,7 @@ fn people_are_told_the_same_word_for_word() {
     of_results(&mut all);
     of_roff(&mut all);
     of_cases(&mut all);
+    of_wells(&mut all);
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/bytes/sentences.txt");
     if std::env::var_os("UPDATE_SENTENCES").is_some() {
         std::fs::write(&path, &all.0).unwrap();

@@ -2,6 +2,7 @@
 
 mod grids;
 mod local;
+mod paths;
 mod pore_volume;
 mod properties;
 mod radial;
@@ -26,7 +27,9 @@ use self::properties::Setting;
 use self::slots::{CellSlots, ResultCells};
 use self::source::FileSource;
 use self::summary::SummaryFiles;
+use self::wells::WellFiles;
 use crate::case::{About, Case, FieldCache, OverSteps, Simbox, Step, WellsOfSteps};
+use crate::model::Dims;
 
 /// Opens the case that `path` names: any of its files, or its base name.
 ///
@@ -36,7 +39,8 @@ pub fn open(path: &Path) -> Result<Case, ParseError> {
     open_with(path, &[])
 }
 
-/// As [`open`], with files added to the case: text with properties or faults, an INIT or restart of another name.
+/// As [`open`], with files added to the case: text with properties, faults or wells, paths of wells, an INIT or restart
+/// of another name.
 ///
 /// # Errors
 /// As [`open`], and when an added file is not there or is damaged.
@@ -140,21 +144,41 @@ pub fn open_reporting(
         return Ok(None);
     }
     let steps = open_restart(&files.restart, &mut about, &mut warnings);
+    if !progress("wells") {
+        return Ok(None);
+    }
+    let paths = files.paths.iter().map(PathBuf::as_path);
+    let paths = paths::read(paths, &mut about, &mut warnings)?;
     note_missing(&files, &mut about);
-    let summary = SummaryFiles::new(files.summary);
-    let case = build(loaded, init, steps, summary, about, &warnings);
-    Ok(Some(case))
+    let read = Read {
+        init,
+        steps,
+        summary: SummaryFiles::new(files.summary),
+        schedules: &files.schedules,
+        paths,
+    };
+    Ok(Some(build(loaded, read, about, &warnings)))
 }
 
-/// The case of what was read.
-fn build(
-    mut loaded: Loaded,
+/// What was read of a case beside its grid.
+struct Read<'a> {
     init: Option<CellArrays>,
     steps: Vec<FileStep>,
     summary: SummaryFiles,
-    mut about: About,
-    warnings: &Warnings,
-) -> Case {
+    /// Decks that may have wells.
+    schedules: &'a [PathBuf],
+    paths: paths::Files<'a>,
+}
+
+/// The case of what was read.
+fn build(mut loaded: Loaded, read: Read<'_>, mut about: About, warnings: &Warnings) -> Case {
+    let Read {
+        init,
+        steps,
+        summary,
+        schedules,
+        paths,
+    } = read;
     let first = steps.first().map(|s| &s.arrays);
     let heads: Vec<_> = init
         .iter()
@@ -190,12 +214,15 @@ fn build(
         steps: Vec::new(),
         texts: std::mem::take(&mut loaded.texts),
         summary,
+        wells: WellFiles::default(),
     };
     source.take_fitting(init, steps, &mut about);
     leave_unfinished(&mut source.steps, &mut about.notes);
     about.notes.extend(source.misfits());
-    read_wells(&source, &mut about);
+    read_wells(&mut source, schedules, loaded.grid.main_dims(), &mut about);
     add_local_grids(&mut loaded, &mut source, locals, &mut about);
+    let paths = paths::placed(paths, &loaded.grid, &mut about);
+    source.wells.add_paths(paths, &mut about);
     let setting = Setting {
         units,
         length,
@@ -286,13 +313,19 @@ fn leave_unfinished(steps: &mut Vec<FileStep>, notes: &mut Vec<String>) {
     }
 }
 
-fn read_wells(source: &FileSource, about: &mut About) {
+/// The wells of the restart are the truth where it has some, else those of decks.
+fn read_wells(source: &mut FileSource, decks: &[PathBuf], dims: Dims, about: &mut About) {
     if let Some(last) = source.steps.last() {
         let (names, wells) = (last.wells(), wells::of(last));
         if let Some(error) = names.as_ref().err().or(wells.as_ref().err()) {
             about.notes.push(format!("wells were not loaded: {error}"));
         }
         about.wells = names.unwrap_or_default();
+    }
+    if about.wells.is_empty() && !decks.is_empty() {
+        let first = source.steps.first().map(step);
+        let start = first.and_then(|step| Some(step.moment()? - step.days));
+        source.wells.read_schedule(decks, dims, start, about);
     }
 }
 

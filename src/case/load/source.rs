@@ -13,7 +13,7 @@ use strataray_parsers::{At, ErrorKind, ParseError};
 use super::local::Places;
 use super::slots::CellSlots;
 use super::summary::SummaryFiles;
-use super::wells;
+use super::wells::{self, WellFiles};
 use crate::case::pores::{self, Pores};
 use crate::case::{About, CaseError, Source, Vectors, Well};
 
@@ -38,6 +38,8 @@ pub struct FileSource {
     pub texts: Vec<DeckProperty>,
     /// Curves over time.
     pub summary: SummaryFiles,
+    /// Wells that are not of the steps.
+    pub wells: WellFiles,
 }
 
 impl FileSource {
@@ -275,7 +277,8 @@ impl Source for FileSource {
 
     fn wells(&self, step: usize) -> Result<Vec<Well>, CaseError> {
         let step = self.steps.get(step);
-        Ok(step.map(wells::of).transpose()?.unwrap_or_default())
+        let of_restart = step.map(wells::of).transpose()?.unwrap_or_default();
+        Ok(self.wells.at(step.map(super::step).as_ref(), of_restart))
     }
 
     fn vectors(&self) -> Result<Option<Arc<Vectors>>, CaseError> {

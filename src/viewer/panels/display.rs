@@ -45,7 +45,7 @@ pub fn show(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action>) {
         let mut wells = show.wells.are_shown();
         let switch = egui::Checkbox::new(&mut wells, "Wells");
         let switch = ui.add_enabled(has_wells, switch)
-            .on_hover_text("Tubes through the cells that wells are connected to: green for producers, blue for water injectors, orange for gas injectors, gray where nothing flows")
+            .on_hover_text("Tubes along the paths of wells, or through the cells that they are connected to: green for producers, blue for water injectors, orange for gas injectors, purple where only the path is known, gray where nothing flows")
             .on_disabled_hover_text("The files name no wells");
         if switch.changed() {
             show.wells = ShownWells::All(wells);
