@@ -9,11 +9,13 @@ use strataray::render::{self, Executor};
 use strataray::scene::lighting::PRESETS;
 use strataray::scene::{
     CameraSpec, FramingCamera, Interpolation, LightMode, LightingSpec, Mode, Projection, Scene,
-    Space, StepSpec, Storage, StrategyKind,
+    Space, StepSpec, Storage, StrategyKind, Units,
 };
 use strataray::view::{look, wells};
 
-use super::choice::{INTERPOLATIONS, LIGHT_MODES, MODES, SPACES, STORAGES, STRATEGIES, one_of};
+use super::choice::{
+    INTERPOLATIONS, LIGHT_MODES, MODES, SPACES, STORAGES, STRATEGIES, UNITS, one_of,
+};
 use super::progress::Reporter;
 
 #[derive(clap::Args)]
@@ -42,6 +44,9 @@ pub struct SceneOptions {
     /// True places of the cells, or those by I, J and K (simbox).
     #[arg(long, value_parser = one_of(&SPACES))]
     space: Option<Space>,
+    /// Units of the numbers that are written; those of the scene itself stay in the units of the files.
+    #[arg(long, value_parser = one_of(&UNITS))]
+    units: Option<Units>,
     /// Image size, such as 1000x1000.
     #[arg(long, value_name = "WxH")]
     pub size: Option<String>,
@@ -122,6 +127,7 @@ impl SceneOptions {
         if let Some(interpolation) = self.interpolation {
             scene.interpolation = interpolation;
         }
+        scene.units = self.units.unwrap_or(scene.units);
         if let Some(storage) = self.storage {
             scene.storage = storage;
         }
