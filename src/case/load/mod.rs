@@ -11,6 +11,7 @@ mod source;
 mod summary;
 mod wells;
 
+use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -27,6 +28,7 @@ use self::slots::{CellSlots, ResultCells};
 use self::source::FileSource;
 use self::summary::SummaryFiles;
 use crate::case::{About, Case, FieldCache, OverSteps, Simbox, Step, WellsOfSteps};
+use crate::model::Ijk;
 
 /// Opens the case that `path` names: any of its files, or its base name.
 ///
@@ -224,9 +226,21 @@ fn build(
 fn add_local_grids(
     loaded: &mut Loaded,
     source: &mut FileSource,
-    locals: Vec<Local>,
+    mut locals: Vec<Local>,
     about: &mut About,
 ) {
+    let mut main = Cow::Borrowed(&loaded.grid);
+    match local::reservoirs(&loaded.grid, &loaded.reservoirs) {
+        _ if loaded.reservoirs.is_empty() => {}
+        Ok((rest, reservoirs)) => {
+            main = Cow::Owned(rest);
+            locals.extend(reservoirs);
+            about.notes.push(local::told(&loaded.reservoirs));
+        }
+        Err(why) => about.notes.push(format!(
+            "the first coordinate system is used for all layers: {why}"
+        )),
+    }
     if locals.is_empty() {
         return;
     }
@@ -235,8 +249,10 @@ fn add_local_grids(
     let left_out = local::arrays_left_out(&locals, &arrays);
     about.notes.extend(left_out);
     let connections = &loaded.local_connections;
-    match local::join(&loaded.grid, &source.cells, locals, connections) {
+    match local::join(&main, &source.cells, locals, connections) {
         Ok((grid, places, connections)) => {
+            let in_lattice = |cell: &mut Ijk| *cell = grid.in_lattice(0, *cell).unwrap_or(*cell);
+            loaded.connections.iter_mut().flatten().for_each(in_lattice);
             loaded.grid = grid;
             loaded.connections.extend(connections);
             source.local = Some(places);
