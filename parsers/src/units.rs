@@ -333,6 +333,8 @@ fn meaning(keyword: &str) -> Option<Meaning> {
         "FIPGAS" | "SFIPGAS" => Meaning::Gas,
         _ if ends(&["PIO", "PIW"]) => Meaning::Liquid,
         _ if ends(&["PIG"]) => Meaning::Gas,
+        // Of aquifers: AN.., FNQ...
+        _ if subject.starts_with("AN") || subject.starts_with("FNQ") => Meaning::Liquid,
         // Of vectors the second letter is that of the phase; that of an aquifer's water is A.
         _ if subject.starts_with(['F', 'G', 'W', 'C', 'S', 'R', 'B', 'A']) => {
             match subject.as_bytes().get(1)? {
@@ -447,6 +449,7 @@ mod tests {
                 0.035_314_666_721,
                 "MSCF/DAY",
             ),
+            (1.0, "SM3", "FNQT", Field, 6.289_810_770_4, "STB"),
             (1.0, "SM3", "FUVOL", Lab, 1e6, "SCC"),
             (1.0, "DAYS", "TIME", Lab, 24.0, "HOURS"),
             (320.0, "MD", "PERMX", Field, 320.0, "MD"),
