@@ -2,7 +2,7 @@
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use strataray::scene::lighting::OcclusionMethod;
-use strataray::scene::{Interpolation, LightMode, Mode, Space, Storage, StrategyKind};
+use strataray::scene::{Interpolation, LightMode, Mode, Space, Storage, StrategyKind, Units};
 use strataray::view::TurnAxis;
 
 /// A name, what it stands for, and what that is in one sentence.
@@ -94,6 +94,21 @@ const fn strategy(kind: StrategyKind) -> NamedChoice<StrategyKind> {
     (kind.name(), kind, kind.describe())
 }
 
+pub const UNITS: [NamedChoice<Units>; Units::ALL.len()] = {
+    let all = Units::ALL;
+    let mut choices = [units(all[0]); Units::ALL.len()];
+    let mut n = 1;
+    while n < all.len() {
+        choices[n] = units(all[n]);
+        n += 1;
+    }
+    choices
+};
+
+const fn units(units: Units) -> NamedChoice<Units> {
+    (units.name(), units, units.describe())
+}
+
 pub const TURN_AXES: [NamedChoice<TurnAxis>; 4] = [
     ("x", TurnAxis::X, "The axis to the east"),
     ("y", TurnAxis::Y, "The axis to the north"),
@@ -126,7 +141,7 @@ mod tests {
     #[test]
     fn names_are_those_of_scene_files() {
         assert!(named(&MODES) && named(&INTERPOLATIONS) && named(&LIGHT_MODES));
-        assert!(named(&STRATEGIES) && named(&OCCLUSION_METHODS));
+        assert!(named(&STRATEGIES) && named(&OCCLUSION_METHODS) && named(&UNITS));
         assert!(!named(&[("cells", Mode::Volume, "")]));
     }
 }

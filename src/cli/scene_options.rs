@@ -9,12 +9,13 @@ use strataray::render::{self, Executor};
 use strataray::scene::lighting::{OcclusionMethod, PRESETS};
 use strataray::scene::{
     CameraSpec, FramingCamera, Interpolation, LightMode, LightingSpec, Mode, Projection, Scene,
-    Space, StepSpec, Storage, StrategyKind,
+    Space, StepSpec, Storage, StrategyKind, Units,
 };
 use strataray::view::{look, wells};
 
 use super::choice::{
-    INTERPOLATIONS, LIGHT_MODES, MODES, OCCLUSION_METHODS, SPACES, STORAGES, STRATEGIES, one_of,
+    INTERPOLATIONS, LIGHT_MODES, MODES, OCCLUSION_METHODS, SPACES, STORAGES, STRATEGIES, UNITS,
+    one_of,
 };
 use super::progress::Reporter;
 
@@ -44,6 +45,9 @@ pub struct SceneOptions {
     /// True places of the cells, or those by I, J and K (simbox).
     #[arg(long, value_parser = one_of(&SPACES))]
     space: Option<Space>,
+    /// Units of the numbers that are written; those of the scene itself stay in the units of the files.
+    #[arg(long, value_parser = one_of(&UNITS))]
+    units: Option<Units>,
     /// Image size, such as 1000x1000.
     #[arg(long, value_name = "WxH")]
     pub size: Option<String>,
@@ -131,6 +135,7 @@ impl SceneOptions {
         if let Some(interpolation) = self.interpolation {
             scene.interpolation = interpolation;
         }
+        scene.units = self.units.unwrap_or(scene.units);
         if let Some(storage) = self.storage {
             scene.storage = storage;
         }

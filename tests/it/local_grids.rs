@@ -98,6 +98,7 @@ impl Refined<'_> {
             name: self.name.into(),
             parent: self.parent.0,
             grid: grid.unwrap(),
+            layers: None,
             split: 1,
             hosts: (0..dims.cells() as u32).map(host).collect(),
         }

@@ -73,6 +73,7 @@ pub(super) fn read(global: &Section<'_>, warnings: &mut Warnings) -> Result<Egri
         porosity_model: PorosityModel::Single,
         nnc: Vec::new(),
         local_nnc: Vec::new(),
+        reservoirs: Vec::new(),
         local_grids: Vec::new(),
     })
 }

@@ -77,6 +77,7 @@ fn small() -> Egrid {
         porosity_model: strataray_parsers::egrid::PorosityModel::Single,
         nnc: Vec::new(),
         local_nnc: Vec::new(),
+        reservoirs: Vec::new(),
         local_grids: Vec::new(),
     }
 }

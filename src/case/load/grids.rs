@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use strataray_parsers::case::{CaseFiles, GridSource};
 use strataray_parsers::deck::{DeckCells, DeckProperty, FaultFaces as DeckFault, Grdecl};
-use strataray_parsers::egrid::{Egrid, GridConnections, LocalGrid, PorosityModel};
+use strataray_parsers::egrid::{Egrid, GridConnections, LocalGrid, PorosityModel, Reservoir};
 use strataray_parsers::units::{LengthUnit, UnitSystem};
 use strataray_parsers::{At, ErrorKind, ParseError, Warnings};
 
@@ -36,6 +36,8 @@ pub struct Loaded {
     pub texts: Vec<DeckProperty>,
     pub connections: Vec<[Ijk; 2]>,
     pub local_grids: Vec<LocalGrid>,
+    /// Layers with pillars of their own.
+    pub reservoirs: Vec<Reservoir>,
     pub local_connections: Vec<GridConnections>,
     pub fault_faces: FaultFaces,
     /// What a deck's RUNSPEC says.
@@ -140,6 +142,7 @@ fn read_egrid(
         texts: Vec::new(),
         connections,
         local_grids: egrid.local_grids,
+        reservoirs: egrid.reservoirs,
         local_connections: egrid.local_nnc,
         fault_faces: FaultFaces::default(),
         units: None,
@@ -205,6 +208,7 @@ fn read_deck(path: &Path, deck: Grdecl, about: &mut About) -> Result<Loaded, Par
         texts: deck.properties,
         connections: Vec::new(),
         local_grids: Vec::new(),
+        reservoirs: Vec::new(),
         local_connections: Vec::new(),
         fault_faces,
         units: deck.unit_system,
@@ -243,6 +247,7 @@ fn read_roff(path: &Path, about: &mut About) -> Result<Loaded, ParseError> {
         texts: properties,
         connections: Vec::new(),
         local_grids: Vec::new(),
+        reservoirs: Vec::new(),
         local_connections: Vec::new(),
         fault_faces: FaultFaces::default(),
         units: None,

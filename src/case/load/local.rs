@@ -4,8 +4,8 @@ use std::collections::HashMap;
 
 use strataray_parsers::ParseError;
 use strataray_parsers::cells::CellArrays;
-use strataray_parsers::egrid::{GridConnections, LocalGrid as FileGrid};
-use strataray_parsers::records::Kind;
+use strataray_parsers::egrid::{GridConnections, LocalGrid as FileGrid, Reservoir};
+use strataray_parsers::records::{Entry, Kind};
 
 use super::radial;
 use super::slots::{CellFlags, CellSlots, ResultCells};
@@ -14,8 +14,8 @@ use crate::model::{CellIndex, Dims, Grid, GridInput, Ijk, LocalGrid};
 /// A local grid, and where in files its values stand.
 pub struct Local {
     pub grid: LocalGrid,
-    /// Of its file's cells.
-    slots: CellSlots,
+    /// Of its file's cells; `None` of a reservoir, whose values are among those of the main grid.
+    slots: Option<CellSlots>,
     /// The number by which connections know it.
     number: i32,
 }
@@ -68,6 +68,68 @@ pub fn read(
         }
     }
     locals
+}
+
+/// Reservoirs with pillars of their own (NUMRES above 1) as grids beside the main one, of which their layers are left out.
+///
+/// # Errors
+/// When pillars are not finite.
+pub fn reservoirs(main: &Grid, files: &[Reservoir]) -> Result<(Grid, Vec<Local>), String> {
+    let mut rest = main.clone();
+    let layer_of = |cell: CellIndex| main.dims().ijk(cell).k;
+    rest.retain_active(|cell| !files.iter().any(|r| r.layers.contains(&layer_of(cell))));
+    let all: Result<Vec<Local>, String> = (2..)
+        .zip(files)
+        .map(|(number, file)| reservoir(main, file, number))
+        .collect();
+    Ok((rest, all?))
+}
+
+/// One sentence on what reservoirs there are and where they are shown.
+pub fn told(files: &[Reservoir]) -> String {
+    let one = |(number, file): (usize, &Reservoir)| {
+        let [first, last] = [file.layers.start + 1, file.layers.end];
+        format!("layers {first} to {last} are shown as grid RES{number}")
+    };
+    let all: Vec<String> = (2..).zip(files).map(one).collect();
+    format!(
+        "the grid has {} coordinate systems (NUMRES): {}",
+        1 + files.len(),
+        all.join(", ")
+    )
+}
+
+fn reservoir(main: &Grid, file: &Reservoir, number: i32) -> Result<Local, String> {
+    let dims = Dims {
+        nk: file.layers.len(),
+        ..main.dims()
+    };
+    let of_main = |k: usize| k * dims.ni * dims.nj;
+    let cells = of_main(file.layers.start)..of_main(file.layers.end);
+    let (_, zcorn) = main.main_corners(|depth| depth);
+    let hosts: Vec<CellIndex> = cells.clone().map(|cell| CellIndex(cell as u32)).collect();
+    let is_active = |cell: &CellIndex| i32::from(main.active_index(*cell).is_some());
+    let actnum: Vec<i32> = hosts.iter().map(is_active).collect();
+    let grid = Grid::new(&GridInput {
+        dims,
+        coord: &file.coord,
+        zcorn: &zcorn[8 * cells.start..8 * cells.end],
+        actnum: Some(&actnum),
+        map_axes: None,
+    });
+    Ok(Local {
+        grid: LocalGrid {
+            name: format!("RES{number}"),
+            parent: 0,
+            grid: grid.map_err(|e| e.to_string())?,
+            layers: Some(file.layers.clone()),
+            split: 1,
+            hosts,
+        },
+        slots: None,
+        // No connection knows it by a number.
+        number: -number,
+    })
 }
 
 /// Each grid behind the one that it refines; those that refine no grid of the file become notes.
@@ -130,6 +192,7 @@ fn local(
         name: file.name.clone(),
         parent: 0,
         grid,
+        layers: None,
         split: 1,
         hosts,
     };
@@ -143,7 +206,7 @@ fn local(
     }
     Ok(Local {
         grid,
-        slots,
+        slots: Some(slots),
         number: file.number,
     })
 }
@@ -193,8 +256,9 @@ pub fn arrays_left_out(locals: &[Local], arrays: &[&CellArrays]) -> Vec<String> 
             let grids = arrays.local_grids().unwrap_or_default();
             let own = grids.iter().find(|grid| grid.name == local.grid.name);
             for entry in own.iter().flat_map(|own| own.arrays.iter()) {
-                let is_of_cells =
-                    entry.kind == Kind::Real && local.slots.fits(entry.count as usize);
+                let slots = local.slots.as_ref();
+                let fits = slots.is_some_and(|slots| slots.fits(entry.count as usize));
+                let is_of_cells = entry.kind == Kind::Real && fits;
                 let is_new = !names.iter().any(|name| name == entry.name());
                 if is_of_cells && is_new && arrays.find(entry.name()).is_none() {
                     names.push(entry.name().to_owned());
@@ -214,7 +278,7 @@ pub fn arrays_left_out(locals: &[Local], arrays: &[&CellArrays]) -> Vec<String> 
 
 /// Where the values of a lattice's cells stand.
 pub struct Places {
-    locals: Vec<(String, CellSlots)>,
+    locals: Vec<(String, Option<CellSlots>)>,
     /// By active cell of the lattice the grid, and the rank of the cell among its active ones.
     of: Vec<(u32, u32)>,
 }
@@ -256,18 +320,20 @@ pub fn join(
     });
     let pairs = pairs.filter_map(|[a, b]| Some([cell(a.0, a.1)?, cell(b.0, b.1)?]));
     let pairs: Vec<[Ijk; 2]> = pairs.collect();
-    let locals: Vec<(String, CellSlots)> = grids
+    let locals: Vec<(String, Option<CellSlots>)> = grids
         .into_iter()
         .zip(kept)
         .map(|(grid, (slots, _))| (grid.name, slots))
         .collect();
     let of = grid.active_cells().iter().map(|&cell| {
-        let (patch, cell) = grid.file_cell(grid.dims().ijk(cell));
-        let slots = match patch {
-            0 => slots,
-            number => &locals[number - 1].1,
+        let at = grid.dims().ijk(cell);
+        let (patch, cell) = grid.file_cell(at);
+        let own = patch.checked_sub(1).and_then(|n| locals[n].1.as_ref());
+        let (number, rank) = match own {
+            Some(slots) => (patch, slots.rank(cell)),
+            None => (0, slots.rank(grid.main_dims().cell(grid.main_cell(at)))),
         };
-        (patch as u32, slots.rank(cell).unwrap_or(u32::MAX))
+        (number as u32, rank.unwrap_or(u32::MAX))
     });
     let of = of.collect();
     Ok((grid, Places { locals, of }, pairs))
@@ -287,16 +353,20 @@ impl Places {
     ) -> Result<Vec<f32>, ParseError> {
         let grids = arrays.map(CellArrays::local_grids).transpose()?;
         let grids = grids.unwrap_or_default();
-        let of_local = |(local, slots): &(String, CellSlots)| -> Result<Vec<f32>, ParseError> {
+        let of_local = |(local, slots): &(String, Option<CellSlots>)| {
             let arrays = grids.iter().find(|grid| grid.name == *local);
             let arrays = arrays.map(|grid| &grid.arrays);
             let found = arrays.and_then(|arrays| Some((arrays, arrays.find(name)?)));
-            match found.filter(|(_, e)| e.is_numeric() && slots.fits(e.count as usize)) {
-                Some((arrays, entry)) => Ok(slots.pick(&arrays.values(entry)?)),
+            let fits = |e: &Entry| {
+                let slots = slots.as_ref()?;
+                (e.is_numeric() && slots.fits(e.count as usize)).then_some(slots)
+            };
+            match found.and_then(|(arrays, entry)| Some((arrays, entry, fits(entry)?))) {
+                Some((arrays, entry, slots)) => Ok(slots.pick(&arrays.values(entry)?)),
                 None => Ok(Vec::new()),
             }
         };
-        let locals: Result<Vec<_>, _> = self.locals.iter().map(of_local).collect();
+        let locals: Result<Vec<_>, ParseError> = self.locals.iter().map(of_local).collect();
         let locals = locals?;
         let value = |&(grid, rank): &(u32, u32)| {
             let values = match grid {

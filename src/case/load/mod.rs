@@ -12,6 +12,7 @@ mod source;
 mod summary;
 mod wells;
 
+use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -29,7 +30,7 @@ use self::source::FileSource;
 use self::summary::SummaryFiles;
 use self::wells::WellFiles;
 use crate::case::{About, Case, FieldCache, OverSteps, Simbox, Step, WellsOfSteps};
-use crate::model::Dims;
+use crate::model::{Dims, Ijk};
 
 /// Opens the case that `path` names: any of its files, or its base name.
 ///
@@ -251,9 +252,21 @@ fn build(mut loaded: Loaded, read: Read<'_>, mut about: About, warnings: &Warnin
 fn add_local_grids(
     loaded: &mut Loaded,
     source: &mut FileSource,
-    locals: Vec<Local>,
+    mut locals: Vec<Local>,
     about: &mut About,
 ) {
+    let mut main = Cow::Borrowed(&loaded.grid);
+    match local::reservoirs(&loaded.grid, &loaded.reservoirs) {
+        _ if loaded.reservoirs.is_empty() => {}
+        Ok((rest, reservoirs)) => {
+            main = Cow::Owned(rest);
+            locals.extend(reservoirs);
+            about.notes.push(local::told(&loaded.reservoirs));
+        }
+        Err(why) => about.notes.push(format!(
+            "the first coordinate system is used for all layers: {why}"
+        )),
+    }
     if locals.is_empty() {
         return;
     }
@@ -262,8 +275,10 @@ fn add_local_grids(
     let left_out = local::arrays_left_out(&locals, &arrays);
     about.notes.extend(left_out);
     let connections = &loaded.local_connections;
-    match local::join(&loaded.grid, &source.cells, locals, connections) {
+    match local::join(&main, &source.cells, locals, connections) {
         Ok((grid, places, connections)) => {
+            let in_lattice = |cell: &mut Ijk| *cell = grid.in_lattice(0, *cell).unwrap_or(*cell);
+            loaded.connections.iter_mut().flatten().for_each(in_lattice);
             loaded.grid = grid;
             loaded.connections.extend(connections);
             source.local = Some(places);

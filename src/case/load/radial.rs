@@ -34,6 +34,7 @@ pub fn straightened(
     });
     Ok(LocalGrid {
         grid: shown.map_err(|e| e.to_string())?,
+        layers: None,
         split: sectors.split,
         hosts: cells().map(|cell| grid.hosts[cell.0 as usize]).collect(),
         ..grid
