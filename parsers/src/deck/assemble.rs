@@ -6,6 +6,7 @@ use super::array::{Rule, Runs, runs};
 use super::cells::{CellArray, CellArrays};
 use super::edit::{Edit, Place, cells_of};
 use super::lexer::{Mistake, keyword};
+use super::refine::{self, Corners};
 use super::scan::{Block, Data, DepthShift, Found, product_text};
 use super::skip::is_read;
 use super::{DeckCells, FaultFaces, Grdecl, GridUnit, blocks, faults};
@@ -32,7 +33,7 @@ pub(super) const ACTIVITY: Rule = Rule {
 };
 
 /// Most cells for each byte of text; a deck needs some text for each column and each layer.
-const MOST_CELLS_PER_BYTE: usize = 1000;
+pub(super) const MOST_CELLS_PER_BYTE: usize = 1000;
 
 /// Builds the grid of what the scan found in the deck at `path`.
 pub(super) fn assemble(
@@ -64,10 +65,13 @@ pub(super) fn assemble(
     };
     let absent = missing(path, &found);
     let vectors = std::mem::take(&mut found.vectors);
-    let mut arrays = CellArrays::play(&mut found, all, warnings)?;
+    let refinements = std::mem::take(&mut found.refinements);
+    let mut arrays = CellArrays::of_main(&mut found, all, warnings)?;
+    let local_grids = refine::refined(refinements, &arrays, found.bytes, warnings)?;
+    arrays.join_factors();
     let actnum = arrays.take("ACTNUM");
     let actnum = actnum.map(|array| activity(&array)).transpose()?;
-    arrays.keep(dims);
+    arrays.show(dims);
     let [coord, mut zcorn] = match corners {
         Some(corners) => corners,
         None if !blocks::are_given(&arrays, &vectors, found.radial) => {
@@ -95,7 +99,14 @@ pub(super) fn assemble(
             return Err(ParseError::of(kind, path, At::File, name, message));
         }
     }
+    let corners = Corners {
+        dims,
+        coord: &coord,
+        zcorn: &zcorn,
+    };
+    let local_grids = refine::grids(local_grids, &corners);
     Ok(Grdecl {
+        local_grids,
         dims,
         coord,
         zcorn,
@@ -104,6 +115,7 @@ pub(super) fn assemble(
             _ => Some(matrix_and_fractures(actnum, depths / 8)),
         },
         porosity_model: found.porosity_model,
+        has_effective_fractures: found.has_effective_fractures,
         map_axes: found.map_axes,
         map_units: found.map_units.take(),
         grid_unit: found.grid_unit.take(),
@@ -159,9 +171,14 @@ pub(super) fn cells(
         _ => [ni, nj, 2 * nk],
     };
     checked_lengths(path, all)?;
-    let mut arrays = CellArrays::play(&mut found, all, warnings)?;
+    if let Some(refinement) = found.refinements.first() {
+        let message = "values of local grids are not read from files that are added to a grid";
+        refinement.place.warn(warnings, message);
+    }
+    let mut arrays = CellArrays::of_main(&mut found, all, warnings)?;
+    arrays.join_factors();
     arrays.take("ACTNUM");
-    arrays.keep(dims);
+    arrays.show(dims);
     Ok(DeckCells {
         properties: arrays.into_properties(),
         faults: inside(&mut found, all, dims, warnings),
