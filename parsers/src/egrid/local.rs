@@ -64,11 +64,14 @@ impl LocalGrid {
     }
 }
 
+/// What makes a local grid of its section, and of its number in the file, from 1.
+pub(super) type Reader = fn(&Section<'_>, i32, &mut Warnings) -> Result<LocalGrid, ParseError>;
+
 /// The local grids of a file; one that is damaged is left out with a warning.
-pub(super) fn read(file: &RecordFile, warnings: &mut Warnings) -> Vec<LocalGrid> {
+pub(super) fn read(file: &RecordFile, warnings: &mut Warnings, reader: Reader) -> Vec<LocalGrid> {
     let mut grids: Vec<LocalGrid> = Vec::new();
-    for (n, section) in sections(file).enumerate() {
-        match grid(&section, n) {
+    for (section, number) in sections(file).zip(1..) {
+        match reader(&section, number, warnings) {
             Ok(grid) => grids.push(grid),
             Err(error) => {
                 let keyword = match error.keyword.as_str() {
@@ -97,14 +100,18 @@ fn sections(file: &RecordFile) -> impl Iterator<Item = Section<'_>> {
     })
 }
 
-fn grid(section: &Section<'_>, index: usize) -> Result<LocalGrid, ParseError> {
+/// A local grid of EGRID.
+pub(super) fn grid(
+    section: &Section<'_>,
+    counted: i32,
+    _warnings: &mut Warnings,
+) -> Result<LocalGrid, ParseError> {
     let head = section.head()?;
     let geometry = section.geometry(head.dims)?;
     let integers = |name: &str| {
         let entry = section.find(name);
         entry.map(|e| section.file.i32s(e)).transpose()
     };
-    let counted = i32::try_from(index + 1).unwrap_or(i32::MAX);
     let host = section.of_cells("HOSTNUM", geometry.zcorn.len() / 8)?;
     Ok(LocalGrid {
         name: section.string("LGR")?.unwrap_or_default(),

@@ -17,7 +17,7 @@ use super::fixtures::cell;
 use super::properties::{BINARY_HEAD, LEGACY_HEAD, READERS, TEXT_HEAD, behind, holds};
 
 /// Text that means something to a reader, so that bytes get beyond the first check.
-const WORDS: [&str; 48] = [
+const WORDS: [&str; 54] = [
     "SPECGRID\n",
     "DIMENS\n",
     "COORD\n",
@@ -35,6 +35,12 @@ const WORDS: [&str; 48] = [
     "EDIT\n",
     "RUNSPEC\n",
     "DUALPORO\n",
+    "DPGRID\n",
+    "CARFIN\n",
+    "L 6*1 2 2 2 /\n",
+    "NXFIN\n",
+    "REFINE\n",
+    "ENDFIN\n",
     "RADIAL\n",
     "INRAD\n",
     "DRV\n",
