@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use serde_json::{Value, json};
-use strataray::case::{Case, CaseError, Source, load};
+use strataray::case::{Case, CaseError, Source, ValueRange, load};
 use strataray::image::Image;
 use strataray::image::metrics::psnr_8bit;
 use strataray::model::{CellIndex, Dims, Grid, GridInput, Ijk, LocalGrid};
@@ -355,6 +355,16 @@ fn deck_of(path: &Path) -> String {
         deck += &format!("{name}\n{} /\n", tiny::numbers(&values));
     }
     deck
+}
+
+#[test]
+fn ranges_leave_out_cells_that_are_refined() {
+    let case = case(0.0);
+    let field = case.field("VALUE", 0).unwrap();
+    let all = ValueRange::of(&field).unwrap();
+    let range = case.range_over_steps("VALUE").unwrap().unwrap();
+    assert_eq!(all.max, 1e3);
+    assert!(range.max < 100.0 && range.min == all.min, "{range:?}");
 }
 
 #[test]

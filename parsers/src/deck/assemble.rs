@@ -51,17 +51,9 @@ pub(super) fn assemble(
         check_text(path, all, found.bytes)?;
     }
     let depths = 8 * dims.iter().product::<usize>();
-    let corners = match (&found.coord, &found.zcorn, file) {
-        (Some(coord), Some(zcorn), _) => {
-            let mut coord = array(coord, GEOMETRY, &[lengths.coord])?;
-            if found.radial_corners {
-                let note = radial::straighten(&mut coord, dims[0]);
-                warnings.push(path, At::File, note);
-            }
-            Some([coord, array(zcorn, GEOMETRY, &[lengths.zcorn, depths])?])
-        }
-        (_, _, Some(corners)) => Some(corners),
-        _ => None,
+    let corners = match given_corners(path, &found, lengths, dims, warnings)? {
+        None => file,
+        given => given,
     };
     let absent = missing(path, &found);
     let vectors = std::mem::take(&mut found.vectors);
@@ -92,13 +84,7 @@ pub(super) fn assemble(
     for shift in &found.depth_shifts {
         shift_depths(&mut zcorn, dims, shift, warnings);
     }
-    for (name, values) in [("COORD", &coord), ("ZCORN", &zcorn)] {
-        if let Some(number) = first_not(values, |value| value.is_finite()) {
-            let message = format!("value {number} becomes infinite by what the deck does to it");
-            let kind = ErrorKind::BadValue;
-            return Err(ParseError::of(kind, path, At::File, name, message));
-        }
-    }
+    check_finite(path, [("COORD", &coord), ("ZCORN", &zcorn)])?;
     let corners = Corners {
         dims,
         coord: &coord,
@@ -127,6 +113,39 @@ pub(super) fn assemble(
         faults: inside(&mut found, all, dims, warnings),
         files: found.files,
     })
+}
+
+/// COORD and ZCORN of the deck, where it has both; ZCORN may be that of the `dims` cells alone that are shown.
+fn given_corners(
+    path: &Path,
+    found: &Found,
+    lengths: Lengths,
+    dims: [usize; 3],
+    warnings: &mut Warnings,
+) -> Result<Option<[Vec<f64>; 2]>, ParseError> {
+    let (Some(coord), Some(zcorn)) = (&found.coord, &found.zcorn) else {
+        return Ok(None);
+    };
+    let mut coord = array(coord, GEOMETRY, &[lengths.coord])?;
+    if found.radial_corners {
+        let note = radial::straighten(&mut coord, dims[0]);
+        warnings.push(path, At::File, note);
+    }
+    let depths = 8 * dims.iter().product::<usize>();
+    let zcorn = array(zcorn, GEOMETRY, &[lengths.zcorn, depths])?;
+    Ok(Some([coord, zcorn]))
+}
+
+/// Refuses values that a deck makes infinite.
+fn check_finite(path: &Path, arrays: [(&str, &[f64]); 2]) -> Result<(), ParseError> {
+    for (name, values) in arrays {
+        if let Some(number) = first_not(values, |value| value.is_finite()) {
+            let message = format!("value {number} becomes infinite by what the deck does to it");
+            let kind = ErrorKind::BadValue;
+            return Err(ParseError::of(kind, path, At::File, name, message));
+        }
+    }
+    Ok(())
 }
 
 /// The part of a deck's cells that is shown: with dual porosity the upper half of the layers, which are the matrix.
