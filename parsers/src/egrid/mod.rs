@@ -143,7 +143,7 @@ impl Egrid {
             PorosityModel::Single => cells,
             _ => cells.saturating_mul(2),
         };
-        let local_grids = local::read(&file, warnings);
+        let local_grids = local::read(&file, warnings, local::grid);
         let sizes = local_grids.iter().map(|g| (g.number, g.zcorn.len() / 8));
         let sizes: Vec<_> = [(0, cells)].into_iter().chain(sizes).collect();
         let sizes: Vec<_> = sizes.into_iter().map(|(n, c)| (n, numbered(c))).collect();

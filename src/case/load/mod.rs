@@ -23,7 +23,8 @@ use strataray_parsers::restart::{self, Step as FileStep};
 use strataray_parsers::{At, ParseError, Warnings, init};
 
 use self::grids::Loaded;
-use self::local::Local;
+use self::local::{Beside, Local};
+use self::pore_volume::Least;
 use self::properties::Setting;
 use self::slots::{CellSlots, ResultCells};
 use self::source::FileSource;
@@ -197,7 +198,11 @@ fn build(mut loaded: Loaded, read: Read<'_>, mut about: About, warnings: &Warnin
         .iter()
         .map(|head| head.phases)
         .find(|phases| *phases > 0);
-    pore_volume::leave_small(&mut loaded, units, length, &mut about.notes);
+    let least = Least::of(&loaded, units, length);
+    if let Some(least) = &least {
+        least.leave_small(&mut loaded, &mut about.notes);
+    }
+    pore_volume::complete(&mut loaded, units, length);
     let active = heads
         .iter()
         .filter_map(|head| usize::try_from(head.active).ok());
@@ -207,7 +212,12 @@ fn build(mut loaded: Loaded, read: Read<'_>, mut about: About, warnings: &Warnin
     };
     let cells = CellSlots::new(&mut loaded.grid, &loaded.flags, &results, &mut about.notes);
     let local_grids = std::mem::take(&mut loaded.local_grids);
-    let locals = local::read(local_grids, &loaded.grid, init.as_ref(), &mut about.notes);
+    let beside = Beside {
+        main: &loaded.grid,
+        init: init.as_ref(),
+        least: least.as_ref(),
+    };
+    let locals = local::read(local_grids, &beside, &mut about.notes);
     let mut source = FileSource {
         cells,
         local: None,
@@ -272,7 +282,7 @@ fn add_local_grids(
     }
     let last = source.steps.last().map(|step| &step.arrays);
     let arrays: Vec<_> = source.init.iter().chain(last).collect();
-    let left_out = local::arrays_left_out(&locals, &arrays);
+    let left_out = local::arrays_left_out(&locals, &source.texts, &arrays);
     about.notes.extend(left_out);
     let connections = &loaded.local_connections;
     match local::join(&main, &source.cells, locals, connections) {
