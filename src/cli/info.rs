@@ -4,7 +4,9 @@ use std::path::PathBuf;
 
 use rayon::prelude::*;
 use serde_json::{Value, json};
-use strataray::case::{Case, Connection, Kind, NamedFault, Property, Vector, VectorKind};
+use strataray::case::{
+    Case, Connection, Kind, NamedFault, Property, Statistic, Vector, VectorKind,
+};
 use strataray::model::{CellField, Grid, Ijk, MapAxes, Spaces, Statistics};
 
 use super::Verbosity;
@@ -13,7 +15,8 @@ use super::scene_options::AddedFiles;
 
 #[derive(clap::Args)]
 #[command(
-    after_help = "Example:\n  strataray info REEK.EGRID --json --stats PORO --stats SWAT@last"
+    after_help = "Examples:\n  strataray info REEK.EGRID --json --stats PORO --stats SWAT@last
+  strataray info real-0/REEK --ensemble real-1/REEK real-2/REEK --stats SWAT.MEAN@2001-06-30"
 )]
 pub struct Arguments {
     /// Any file of the case, or its base name.
@@ -371,13 +374,14 @@ fn print_text(case: &Case, facts: &Value) {
         let names: Vec<_> = case
             .properties
             .iter()
-            .filter(|p| p.kind == kind)
+            .filter(|p| p.kind == kind && case.statistic(&p.name).is_none())
             .map(|p| p.name.as_str())
             .collect();
         if !names.is_empty() {
             say_line!("  {kind:?}: {}", names.join(" "));
         }
     }
+    print_cases(case);
     print_notes(case);
     if let Some(stats) = facts.get("stats").and_then(Value::as_object) {
         for (name, s) in stats {
@@ -390,6 +394,21 @@ fn print_text(case: &Case, facts: &Value) {
             );
         }
     }
+}
+
+/// The cases of which there are statistics, and how these are called.
+fn print_cases(case: &Case) {
+    let Some(ensemble) = &case.ensemble else {
+        return;
+    };
+    say_line!("  cases: {}", ensemble.members.join(" "));
+    let endings = Statistic::ALL.map(|(_, ending, _)| format!(".{ending}"));
+    let of = case.properties.iter().filter_map(|p| {
+        let (of, statistic) = case.statistic(&p.name)?;
+        (statistic == Statistic::Mean).then_some(of)
+    });
+    let of: Vec<&str> = of.collect();
+    say_line!("  statistics ({}) of: {}", endings.join(" "), of.join(" "));
 }
 
 /// What is known of properties, faults, steps and wells, by name.

@@ -33,13 +33,13 @@ pub struct VectorCurves {
 pub struct VectorCurve {
     /// Which one.
     pub vector: Vector,
-    /// A value for each time of [`Vectors`].
+    /// A value for each time of [`Vectors`]; not a number before a run has the vector.
     pub values: Vec<f32>,
 }
 
 impl VectorCurve {
     fn is_zero(&self) -> bool {
-        self.values.iter().all(|v| *v == 0.0)
+        self.values.iter().all(|v| *v == 0.0 || v.is_nan())
     }
 }
 
@@ -92,7 +92,10 @@ impl VectorCurves {
         for (n, days) in vectors.days.iter().enumerate() {
             // Times in files are such numbers.
             let time = [vectors.date(n), (*days as f32).to_string()].into_iter();
-            let value = |c: &VectorCurve| c.values.get(n).map_or_else(String::new, f32::to_string);
+            let value = |c: &VectorCurve| {
+                let value = c.values.get(n).filter(|v| !v.is_nan());
+                value.map_or_else(String::new, f32::to_string)
+            };
             writer
                 .write_record(time.chain(self.curves.iter().map(value)))
                 .map_err(|e| why(&e))?;

@@ -24,6 +24,7 @@ const MENUS: [(&str, &[Command]); 5] = [
             Command::SaveVectors,
             Command::ExportCells,
             Command::CopyLine,
+            Command::Ensemble,
             Command::Close,
             Command::Reopen,
         ],
@@ -42,6 +43,8 @@ const MENUS: [(&str, &[Command]); 5] = [
             Command::Camera(CameraMove::From(6)),
             Command::Camera(CameraMove::From(5)),
             Command::Camera(CameraMove::Projection),
+            Command::Case(1),
+            Command::Case(-1),
             Command::Mouse,
             Command::Panels,
             Command::Theme,
@@ -174,7 +177,7 @@ fn tabs(window: &mut Window, ui: &mut Ui) {
             let is_current = n == window.current;
             let tab = ui.selectable_label(is_current, document.title());
             if tab
-                .on_hover_text(document.path.display().to_string())
+                .on_hover_text(document.key().display().to_string())
                 .clicked()
             {
                 chosen = Some(n);
