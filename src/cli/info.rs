@@ -374,7 +374,7 @@ fn print_text(case: &Case, facts: &Value) {
         let names: Vec<_> = case
             .properties
             .iter()
-            .filter(|p| p.kind == kind && case.statistic(&p.name).is_none())
+            .filter(|p| p.kind == kind && !is_of_cases(case, &p.name))
             .map(|p| p.name.as_str())
             .collect();
         if !names.is_empty() {
@@ -396,8 +396,21 @@ fn print_text(case: &Case, facts: &Value) {
     }
 }
 
-/// The cases of which there are statistics, and how these are called.
+/// True of what is found of several cases.
+fn is_of_cases(case: &Case, name: &str) -> bool {
+    case.statistic(name).is_some() || case.minus.iter().any(|m| m.name == name)
+}
+
+/// The cases of which there are differences or statistics, and how these are called.
 fn print_cases(case: &Case) {
+    if let Some(minus) = case.minus.first() {
+        let of: Vec<&str> = case.minus.iter().map(|m| m.now.as_str()).collect();
+        say_line!(
+            "  differences (such as {}) of: {}",
+            minus.name,
+            of.join(" ")
+        );
+    }
     let Some(ensemble) = &case.ensemble else {
         return;
     };

@@ -145,13 +145,9 @@ impl Document {
             cells.into_iter().flatten().map(|c| c.one_based()).collect()
         };
         let before = self.wells.as_ref().map_or_else(Vec::new, cells);
-        let mut now = cells(&list);
-        if before != now && self.state.well.is_some() {
-            let others = self.state.selected.iter();
-            let others = others.filter(|cell| !before.contains(cell) && !now.contains(cell));
-            let others: Vec<_> = others.copied().collect();
-            now.extend(others);
-            self.state.selected = now;
+        let now = cells(&list);
+        if self.state.well.is_some() && before != now {
+            self.state.selected = followed(&self.state.selected, &before, now);
         }
         self.wells = Some(list);
     }
@@ -203,5 +199,31 @@ impl Document {
             };
             self.apply(Action::Step(next));
         }
+    }
+}
+
+/// The selected cells once a well has others: these, and what was selected beside those it had before.
+fn followed(
+    selected: &[[usize; 3]],
+    before: &[[usize; 3]],
+    mut now: Vec<[usize; 3]>,
+) -> Vec<[usize; 3]> {
+    let others = selected.iter();
+    let others = others.filter(|cell| !before.contains(cell) && !now.contains(cell));
+    let others: Vec<_> = others.copied().collect();
+    now.extend(others);
+    now
+}
+
+#[cfg(test)]
+mod tests {
+    use super::followed;
+
+    #[test]
+    fn a_wells_cells_follow_the_step_and_others_stay() {
+        let [a, b, c, other] = [1, 2, 3, 9].map(|k| [5, 5, k]);
+        let now = followed(&[a, b, other], &[a, b], vec![b, c]);
+        assert_eq!(now, [b, c, other]);
+        assert_eq!(followed(&[a], &[a], Vec::new()), [[0; 3]; 0]);
     }
 }
