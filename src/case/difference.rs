@@ -231,6 +231,7 @@ pub fn minus(
             of: [a.clone(), b.clone()],
             differences: differences.to_vec(),
             pairing,
+            other: of_b.to_owned(),
         }),
         minus: differences.to_vec(),
         ..a.derived_case()
@@ -240,7 +241,7 @@ pub fn minus(
 /// Why no step has a difference.
 fn no_date(a: &Case, b: &Case, at: Option<usize>, [of_a, of_b]: [&str; 2]) -> String {
     if let Some(step) = at.and_then(|at| a.steps.get(at)) {
-        return no_step(step, &b.about).to_string();
+        return no_step(step, of_b).to_string();
     }
     let span = |case: &Case| match (case.steps.first(), case.steps.last()) {
         (Some(first), Some(last)) => format!("{} to {}", first.when(), last.when()),
@@ -258,6 +259,8 @@ struct Subtracted {
     of: [Arc<Case>; 2],
     differences: Vec<Minus>,
     pairing: Pairing,
+    /// What the second case is called.
+    other: String,
 }
 
 impl Source for Subtracted {
@@ -278,7 +281,7 @@ impl Source for Subtracted {
             false => 0,
             true => match (self.pairing.steps.get(step), a.steps.get(step)) {
                 (Some(Some(other)), _) => *other,
-                (_, Some(step)) => return Err(no_step(step, &b.about)),
+                (_, Some(step)) => return Err(no_step(step, &self.other)),
                 _ => return Ok(None),
             },
         };

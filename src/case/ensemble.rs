@@ -87,6 +87,8 @@ fn percentile(values: &mut [f32], part: f64) -> f32 {
 pub struct Ensemble {
     /// Names by which they are told apart, that of the first in front.
     pub members: Vec<String>,
+    /// True where not all of them have values in all cells at all steps.
+    has_gaps: bool,
     /// Properties that have statistics, and their kinds, by the name of these.
     statistics: Vec<(String, String, Statistic)>,
 }
@@ -109,7 +111,8 @@ impl Case {
         match (self.statistic(name), &self.ensemble) {
             (Some((of, statistic)), Some(ensemble)) => {
                 let count = ensemble.members.len();
-                format!("{of}, {} of {count} cases", statistic.words())
+                let up_to = if ensemble.has_gaps { "up to " } else { "" };
+                format!("{of}, {} of {up_to}{count} cases", statistic.words())
             }
             _ => name.to_owned(),
         }
@@ -141,6 +144,7 @@ pub fn ensemble(cases: &[Arc<Case>]) -> Result<Case, String> {
         notes.extend(of_pair.map(|note| format!("statistics: {note}")));
         pairings.push(pairing);
     }
+    let has_gaps = !notes.is_empty();
     let (common, missing) = common(first, others);
     if !missing.is_empty() {
         notes.push(format!(
@@ -167,6 +171,7 @@ pub fn ensemble(cases: &[Arc<Case>]) -> Result<Case, String> {
     }
     let ensemble = Ensemble {
         members,
+        has_gaps,
         statistics,
     };
     Ok(Case {

@@ -6,7 +6,7 @@ use std::path::Path;
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::{About, Case, CaseError, Step};
+use super::{Case, CaseError, Step};
 use crate::model::{Dims, Grid, Ijk};
 
 /// Days within which two moments are one: files round the time of day.
@@ -95,9 +95,9 @@ fn apart(a: &Step, b: &Step) -> f64 {
 }
 
 /// Why a step has no values: the other case has none of its date.
-pub fn no_step(step: &Step, other: &About) -> CaseError {
+pub fn no_step(step: &Step, other: &str) -> CaseError {
     CaseError::NoStepOfDate {
-        case: other.name.clone(),
+        case: other.to_owned(),
         date: step.when(),
     }
 }

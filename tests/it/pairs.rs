@@ -207,7 +207,7 @@ fn statistics_are_over_the_cases_of_a_date() {
     ));
     near(value("SWAT", 0), 0.1);
     assert_eq!(case.statistic("SWAT.P90"), Some(("SWAT", Statistic::P90)));
-    assert_eq!(case.title_of("SWAT.MEAN"), "SWAT, mean of 3 cases");
+    assert_eq!(case.title_of("SWAT.MEAN"), "SWAT, mean of up to 3 cases");
     // It can be subtracted as any property is.
     near(value("SWAT.MEAN-SWAT.MEAN@1", 0), 0.15);
     let (is_done, facts, said) = info(

@@ -173,9 +173,9 @@ fn hint(ctx: &Context, command: Command) -> String {
 fn tabs(window: &mut Window, ui: &mut Ui) {
     let (mut closes, mut chosen) = (None, None);
     ui.horizontal_wrapped(|ui| {
-        for (n, document) in window.documents.iter().enumerate() {
+        for (n, (document, title)) in window.documents.iter().zip(window.titles()).enumerate() {
             let is_current = n == window.current;
-            let tab = ui.selectable_label(is_current, document.title());
+            let tab = ui.selectable_label(is_current, &title);
             if tab
                 .on_hover_text(document.key().display().to_string())
                 .clicked()
@@ -184,7 +184,7 @@ fn tabs(window: &mut Window, ui: &mut Ui) {
             }
             let close = ui.small_button("×").on_hover_text("Close this case");
             close.widget_info(|| {
-                let name = format!("Close {}", document.title());
+                let name = format!("Close {title}");
                 egui::WidgetInfo::labeled(egui::Role::Button, true, name)
             });
             if close.clicked() {

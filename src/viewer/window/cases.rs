@@ -4,14 +4,27 @@ use eframe::egui::Context;
 
 use super::Window;
 use crate::case::load::CasePaths;
-use crate::case::{Case, of_date};
-use crate::scene::{Scene, StepSpec};
+use crate::case::{Case, distinct_names, of_date};
+use crate::scene::{Coloring, RangeSpec, Scene, StepSpec};
 use crate::viewer::action::Action;
 use crate::viewer::document::Document;
 
 impl Window {
+    /// What the tabs are called: of cases with one name, such as realizations, with the folder in which they differ.
+    pub(super) fn titles(&self) -> Vec<String> {
+        let single = |d: &Document| d.case.as_ref().filter(|_| d.others.is_empty());
+        let cases = self.documents.iter().filter_map(single);
+        let cases: Vec<&Case> = cases.map(AsRef::as_ref).collect();
+        let mut names = distinct_names(&cases).into_iter();
+        let title = |d: &Document| {
+            let name = single(d).and_then(|_| names.next());
+            name.unwrap_or_else(|| d.title())
+        };
+        self.documents.iter().map(title).collect()
+    }
+
     /// Brings the next tab to the front, or one before it, and shows it as this one is shown: the same property on the same
-    /// date from the same camera, where its grid has as many cells.
+    /// date in the same colors from the same camera, where its grid has as many cells.
     pub(super) fn step_case(&mut self, by: isize) {
         let count = self.documents.len();
         if count < 2 {
@@ -19,11 +32,14 @@ impl Window {
             return;
         }
         let next = (self.current as isize + by).rem_euclid(count as isize) as usize;
-        let seen = seen_alike(&self.documents[self.current], &self.documents[next]);
+        let mut seen = seen_alike(&self.documents[self.current], &self.documents[next]);
+        if let (Ok(scene), Some(range)) = (&mut seen, self.range_shown()) {
+            scene.range = RangeSpec::Fixed(range);
+        }
         let state = self.documents[self.current].state.clone();
         self.current = next;
+        let told = format!("case {} of {count}: {}", next + 1, self.titles()[next]);
         let document = &mut self.documents[next];
-        let told = format!("case {} of {count}: {}", next + 1, document.title());
         match seen {
             Err(why) => self.tell(format!("{told}, as it was: {why}")),
             Ok(scene) => {
@@ -36,6 +52,18 @@ impl Window {
                 self.tell(told);
             }
         }
+    }
+
+    /// The ends of the colors shown where they are found from the values of the case: those of another one differ, and its
+    /// colors would mean others.
+    fn range_shown(&self) -> Option<[f64; 2]> {
+        let scene = &self.document()?.state.setup.scene;
+        let (picture, _) = self.picture(0)?;
+        let shown = &picture.view.shown.property;
+        let is_found = matches!(scene.range, RangeSpec::Own(_))
+            && scene.transfer.coloring != Coloring::Categories
+            && scene.property.as_ref() == Some(shown);
+        is_found.then(|| picture.view.style.transfer.true_range())
     }
 
     /// Opens the cases that have as many cells as the one in front as one, in a tab of its own.

@@ -114,9 +114,9 @@ impl Window {
 
     /// Path and name of the other cases that are open.
     fn other_cases(&self) -> Vec<(PathBuf, String)> {
-        let others = self.documents.iter().enumerate();
+        let others = self.documents.iter().zip(self.titles()).enumerate();
         let others = others.filter(|(n, _)| *n != self.current);
-        others.map(|(_, d)| (d.key(), d.title())).collect()
+        others.map(|(_, (d, title))| (d.key(), title)).collect()
     }
 
     /// What panels know.
