@@ -380,7 +380,7 @@ mod tests {
         });
         let soil = of_soil("OTHER");
         let own = &soil.name;
-        let case = minus(&a, &b, &[soil.clone()], None).unwrap();
+        let case = minus(&a, &b, std::slice::from_ref(&soil), None).unwrap();
         assert_eq!(case.about.name, "SCISSOR minus OTHER");
         assert_eq!(case.steps, a.steps);
         assert_eq!(case.title_of(own), "SOIL");
@@ -417,7 +417,7 @@ mod tests {
                 .any(|n| n.contains("steps of"))
         );
         // To the first step of the other one, and what else the case has.
-        let to_first = minus(&a, &b, &[soil.clone()], Some(0)).unwrap();
+        let to_first = minus(&a, &b, std::slice::from_ref(&soil), Some(0)).unwrap();
         assert_eq!(
             to_first.field(own, last).unwrap(),
             a.field("SOIL-SOIL@0", last).unwrap()

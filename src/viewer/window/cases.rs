@@ -12,9 +12,8 @@ use crate::viewer::document::Document;
 impl Window {
     /// What the tabs are called: of cases with one name, such as realizations, with the folder in which they differ.
     pub(super) fn titles(&self) -> Vec<String> {
-        let single = |d: &Document| d.case.as_ref().filter(|_| d.others.is_empty());
         let cases = self.documents.iter().filter_map(single);
-        let cases: Vec<&Case> = cases.map(AsRef::as_ref).collect();
+        let cases: Vec<&Case> = cases.collect();
         let mut names = distinct_names(&cases).into_iter();
         let title = |d: &Document| {
             let name = single(d).and_then(|_| names.next());
@@ -90,6 +89,12 @@ impl Window {
         };
         self.show_case(ctx, paths);
     }
+}
+
+/// The case of a tab that has one alone.
+fn single(document: &Document) -> Option<&Case> {
+    let case = document.case.as_deref();
+    case.filter(|_| document.others.is_empty())
 }
 
 /// The scene of a tab for another one, or why that cannot be seen in the same way, as part of a sentence.
