@@ -28,6 +28,8 @@ pub enum RestartSource {
     Unified(PathBuf),
     /// One file per step, with its report number, rising.
     Separate(Vec<(u32, PathBuf)>),
+    /// Several of them, in the order in which they were named: a run that was continued in others.
+    Several(Vec<RestartSource>),
 }
 
 /// Where the curves over time are.
@@ -316,11 +318,15 @@ fn without_grid(path: &Path, role: Option<Role>) -> Option<ParseError> {
 /// As [`find`], with files added by hand to what is found: text beside the grid, an INIT, restart or summary of another
 /// name.
 ///
+/// What is added takes the place of what was found, which is among what is not read then; several restarts are kept side by
+/// side.
+///
 /// # Errors
 /// As [`find`]; and when an added file is not there or can be no part of a case.
 pub fn find_with(path: &Path, with: &[PathBuf]) -> Result<CaseFiles, ParseError> {
     let mut files = find(path)?;
-    let mut separate = Vec::new();
+    let mut restarts: Vec<RestartSource> = Vec::new();
+    let found = (files.init.clone(), files.restart.clone());
     for added in with {
         if !added.is_file() {
             return Err(not_found(added, "there is no such file"));
@@ -337,8 +343,8 @@ pub fn find_with(path: &Path, with: &[PathBuf]) -> Result<CaseFiles, ParseError>
             Role::Paths => files.paths.push(added.clone()),
             Role::Roff => files.roff.push(added.clone()),
             Role::Init => files.init = Some(added.clone()),
-            Role::Unified => files.restart = RestartSource::Unified(added.clone()),
-            Role::Separate(report) => separate.push((report, added.clone())),
+            Role::Unified => restarts.push(RestartSource::Unified(added.clone())),
+            Role::Separate(report) => add_separate(&mut restarts, report, added),
             Role::Egrid => {
                 return Err(refuse(
                     "is a grid of its own and cannot be added to another one",
@@ -348,11 +354,51 @@ pub fn find_with(path: &Path, with: &[PathBuf]) -> Result<CaseFiles, ParseError>
             Role::NotRead(why) => return Err(refuse(why)),
         }
     }
-    if !separate.is_empty() {
-        separate.sort();
-        files.restart = RestartSource::Separate(separate);
-    }
+    files.restart = match restarts.len() {
+        0 => files.restart,
+        1 => restarts.swap_remove(0),
+        _ => RestartSource::Several(restarts),
+    };
+    let replaced = found.0.filter(|init| files.init.as_ref() != Some(init));
+    let why = "an INIT of another name was added";
+    files.not_read.extend(replaced.map(|init| (init, why)));
+    let kept = restart_files(&files.restart);
+    let replaced = restart_files(&found.1).into_iter();
+    let mut replaced = replaced.filter(|file| !kept.contains(file));
+    let why = "time steps of another name were added; add this file too to see both";
+    files
+        .not_read
+        .extend(replaced.next().map(|file| (file, why)));
     Ok(files)
+}
+
+/// Adds a file of one step to the others of its run, which have its folder and its name but for the ending.
+fn add_separate(restarts: &mut Vec<RestartSource>, report: u32, added: &Path) {
+    let run = |path: &Path| path.with_extension("");
+    let known = restarts.iter_mut().find_map(|source| match source {
+        RestartSource::Separate(files) => {
+            let is_of = files.iter().any(|(_, file)| run(file) == run(added));
+            is_of.then_some(files)
+        }
+        _ => None,
+    });
+    match known {
+        Some(files) => {
+            files.push((report, added.to_owned()));
+            files.sort();
+        }
+        None => restarts.push(RestartSource::Separate(vec![(report, added.to_owned())])),
+    }
+}
+
+/// The files of restarts.
+fn restart_files(source: &RestartSource) -> Vec<PathBuf> {
+    match source {
+        RestartSource::None => Vec::new(),
+        RestartSource::Unified(path) => vec![path.clone()],
+        RestartSource::Separate(files) => files.iter().map(|(_, path)| path.clone()).collect(),
+        RestartSource::Several(sources) => sources.iter().flat_map(restart_files).collect(),
+    }
 }
 
 /// Finds the summary files of the case that `path` names, as [`find`] does; the case needs no grid.

@@ -284,7 +284,7 @@ impl Case {
     ) -> Result<Option<Arc<CellField>>, CaseError> {
         match self.field(name, step) {
             Ok(field) => Ok(Some(field)),
-            Err(CaseError::NotAtStep { .. }) => Ok(None),
+            Err(error) if error.is_gap() => Ok(None),
             Err(error) => Err(error),
         }
     }

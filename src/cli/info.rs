@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use rayon::prelude::*;
 use serde_json::{Value, json};
 use strataray::case::{
-    Case, Connection, Kind, Measure, NamedFault, Property, Vector, VectorKind, WellPath,
+    Case, Connection, Kind, Measure, NamedFault, Property, Statistic, Vector, VectorKind, WellPath,
 };
 use strataray::model::{CellField, Crossing, Grid, Ijk, MapAxes, Spaces, Statistics};
 use strataray::scene::Units;
@@ -17,8 +17,9 @@ use super::scene_options::AddedFiles;
 
 #[derive(clap::Args)]
 #[command(
-    after_help = "Example:\n  strataray info REEK.EGRID --json --stats PORO --stats SWAT@last\n  \
-                  strataray info REEK.EGRID --wells --with wells.dev"
+    after_help = "Examples:\n  strataray info REEK.EGRID --json --stats PORO --stats SWAT@last
+  strataray info REEK.EGRID --wells --with wells.dev
+  strataray info real-0/REEK --ensemble real-1/REEK real-2/REEK --stats SWAT.MEAN@2001-06-30"
 )]
 pub struct Arguments {
     /// Any file of the case, or its base name.
@@ -469,13 +470,14 @@ fn print_text(shown: &Shown<'_>, facts: &Value) {
         let names: Vec<_> = case
             .properties
             .iter()
-            .filter(|p| p.kind == kind)
+            .filter(|p| p.kind == kind && !is_of_cases(case, &p.name))
             .map(|p| p.name.as_str())
             .collect();
         if !names.is_empty() {
             say_line!("  {kind:?}: {}", names.join(" "));
         }
     }
+    print_cases(case);
     print_notes(case);
     if let Some(stats) = facts.get("stats").and_then(Value::as_object) {
         for (name, s) in stats {
@@ -488,6 +490,34 @@ fn print_text(shown: &Shown<'_>, facts: &Value) {
             );
         }
     }
+}
+
+/// True of what is found of several cases.
+fn is_of_cases(case: &Case, name: &str) -> bool {
+    case.statistic(name).is_some() || case.minus.iter().any(|m| m.name == name)
+}
+
+/// The cases of which there are differences or statistics, and how these are called.
+fn print_cases(case: &Case) {
+    if let Some(minus) = case.minus.first() {
+        let of: Vec<&str> = case.minus.iter().map(|m| m.now.as_str()).collect();
+        say_line!(
+            "  differences (such as {}) of: {}",
+            minus.name,
+            of.join(" ")
+        );
+    }
+    let Some(ensemble) = &case.ensemble else {
+        return;
+    };
+    say_line!("  cases: {}", ensemble.members.join(" "));
+    let endings = Statistic::ALL.map(|(_, ending, _)| format!(".{ending}"));
+    let of = case.properties.iter().filter_map(|p| {
+        let (of, statistic) = case.statistic(&p.name)?;
+        (statistic == Statistic::Mean).then_some(of)
+    });
+    let of: Vec<&str> = of.collect();
+    say_line!("  statistics ({}) of: {}", endings.join(" "), of.join(" "));
 }
 
 /// What is known of properties, faults, steps and wells, by name.

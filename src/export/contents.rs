@@ -168,7 +168,7 @@ impl<'a> Contents<'a> {
     /// When they cannot be read.
     pub fn values(&self, property: &str, step: usize) -> Result<Option<Vec<f32>>, ExportError> {
         let field = match self.case.field(property, step) {
-            Err(CaseError::NotAtStep { .. }) => return Ok(None),
+            Err(error) if error.is_gap() => return Ok(None),
             field => field?,
         };
         let values = field.values();
@@ -231,7 +231,7 @@ fn has_values(case: &Case, name: &str, steps: &[usize]) -> Result<(), CaseError>
     let mut missing = None;
     for step in steps {
         match case.field(name, *step) {
-            Err(error @ CaseError::NotAtStep { .. }) => missing = missing.or(Some(error)),
+            Err(error) if error.is_gap() => missing = missing.or(Some(error)),
             field => return field.map(drop),
         }
     }

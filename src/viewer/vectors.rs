@@ -33,13 +33,13 @@ pub struct VectorCurves {
 pub struct VectorCurve {
     /// Which one.
     pub vector: Vector,
-    /// A value for each time of [`Vectors`].
+    /// A value for each time of [`Vectors`]; not a number before a run has the vector.
     pub values: Vec<f32>,
 }
 
 impl VectorCurve {
     fn is_zero(&self) -> bool {
-        self.values.iter().all(|v| *v == 0.0)
+        self.values.iter().all(|v| *v == 0.0 || v.is_nan())
     }
 }
 
@@ -95,7 +95,8 @@ impl VectorCurves {
             // Times in files are such numbers.
             let time = [vectors.date(n), (*days as f32).to_string()].into_iter();
             let value = |(c, measure): (&VectorCurve, &Measure)| {
-                let value = c.values.get(n).map(|v| measure.show_single(*v));
+                let value = c.values.get(n).filter(|v| !v.is_nan());
+                let value = value.map(|v| measure.show_single(*v));
                 value.map_or_else(String::new, |v| v.to_string())
             };
             writer

@@ -42,6 +42,7 @@ mod occlusion;
 mod odd_cells;
 mod oracle;
 mod overlap;
+mod pairs;
 mod parameters;
 mod paths;
 mod picking;

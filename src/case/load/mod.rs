@@ -6,6 +6,7 @@ mod paths;
 mod pore_volume;
 mod properties;
 mod radial;
+mod restarts;
 mod roff;
 mod slots;
 mod source;
@@ -19,8 +20,8 @@ use std::sync::Arc;
 use strataray_parsers::case::{CaseFiles, GridSource, RestartSource, find, find_with};
 use strataray_parsers::cells::CellArrays;
 use strataray_parsers::deck::{Grdecl, UnitSystem};
-use strataray_parsers::restart::{self, Step as FileStep};
-use strataray_parsers::{At, ParseError, Warnings, init};
+use strataray_parsers::restart::Step as FileStep;
+use strataray_parsers::{At, ErrorKind, ParseError, Warnings, init};
 
 use self::grids::Loaded;
 use self::local::{Beside, Local};
@@ -30,7 +31,9 @@ use self::slots::{CellSlots, ResultCells};
 use self::source::FileSource;
 use self::summary::SummaryFiles;
 use self::wells::WellFiles;
-use crate::case::{About, Case, FieldCache, OverSteps, Simbox, Step, WellsOfSteps};
+use crate::case::{
+    About, Case, FieldCache, GridPool, OverSteps, Simbox, Step, WellsOfSteps, ensemble,
+};
 use crate::model::{Dims, Ijk};
 
 /// Opens the case that `path` names: any of its files, or its base name.
@@ -60,15 +63,68 @@ pub struct CasePaths {
     pub path: PathBuf,
     /// Files added to it.
     pub with: Vec<PathBuf>,
+    /// Cases on the same grid of which, with this one, statistics are taken.
+    pub others: Vec<CasePaths>,
+}
+
+impl CasePaths {
+    /// A case alone.
+    pub fn of(path: PathBuf) -> Self {
+        Self {
+            path,
+            with: Vec::new(),
+            others: Vec::new(),
+        }
+    }
+}
+
+/// Opens a case, or several as one with statistics over them ([`crate::case::ensemble`]); grids that are equal to one in the
+/// pool are held once. `progress` as in [`open_reporting`].
+///
+/// # Errors
+/// As [`open_with`], and when grids of several cases differ.
+pub fn open_paths(
+    paths: &CasePaths,
+    pool: &GridPool,
+    progress: &dyn Fn(&str) -> bool,
+) -> Result<Option<Case>, ParseError> {
+    let open = |paths: &CasePaths| -> Result<Option<Case>, ParseError> {
+        let mut case = open_reporting(&paths.path, &paths.with, progress)?;
+        if let Some(case) = &mut case {
+            pool.share(case);
+        }
+        Ok(case)
+    };
+    let Some(first) = open(paths)? else {
+        return Ok(None);
+    };
+    if paths.others.is_empty() {
+        return Ok(Some(first));
+    }
+    let mut cases = vec![Arc::new(first)];
+    for other in &paths.others {
+        match open(other)? {
+            Some(case) => cases.push(Arc::new(case)),
+            None => return Ok(None),
+        }
+    }
+    let wrong = |why: String| ParseError::of(ErrorKind::Mismatch, &paths.path, At::File, "", why);
+    let mut case = ensemble(&cases).map_err(wrong)?;
+    // What is odd about all of them is told once.
+    let known = &cases[0].about.notes;
+    let own = cases[1..].iter().flat_map(|case| {
+        let notes = case.about.notes.iter().filter(|note| !known.contains(note));
+        notes.map(|note| format!("{}: {note}", case.about.name))
+    });
+    let notes: Vec<String> = known.iter().cloned().chain(own).collect();
+    case.about.notes.splice(0..0, notes);
+    Ok(Some(case))
 }
 
 /// The cases that several paths name together: a file without a grid of its own is added to the case before it, or
 /// to the first one; further files of the same case are left out.
 pub fn group(paths: &[PathBuf]) -> Vec<CasePaths> {
-    let case = |path: &PathBuf| CasePaths {
-        path: path.clone(),
-        with: Vec::new(),
-    };
+    let case = |path: &PathBuf| CasePaths::of(path.clone());
     if let [only] = paths {
         return vec![case(only)];
     }
@@ -145,7 +201,7 @@ pub fn open_reporting(
     if !progress("time steps") {
         return Ok(None);
     }
-    let steps = open_restart(&files.restart, &mut about, &mut warnings);
+    let runs = restarts::open(&files.restart, &mut about.notes, &mut warnings);
     if !progress("wells") {
         return Ok(None);
     }
@@ -154,7 +210,7 @@ pub fn open_reporting(
     note_missing(&files, &mut about);
     let read = Read {
         init,
-        steps,
+        runs,
         summary: SummaryFiles::new(files.summary),
         schedules: &files.schedules,
         paths,
@@ -165,7 +221,7 @@ pub fn open_reporting(
 /// What was read of a case beside its grid.
 struct Read<'a> {
     init: Option<CellArrays>,
-    steps: Vec<FileStep>,
+    runs: Vec<Vec<FileStep>>,
     summary: SummaryFiles,
     /// Decks that may have wells.
     schedules: &'a [PathBuf],
@@ -176,12 +232,12 @@ struct Read<'a> {
 fn build(mut loaded: Loaded, read: Read<'_>, mut about: About, warnings: &Warnings) -> Case {
     let Read {
         init,
-        steps,
+        runs,
         summary,
         schedules,
         paths,
     } = read;
-    let first = steps.first().map(|s| &s.arrays);
+    let first = runs.iter().flatten().next().map(|s| &s.arrays);
     let heads: Vec<_> = init
         .iter()
         .chain(first)
@@ -210,6 +266,7 @@ fn build(mut loaded: Loaded, read: Read<'_>, mut about: About, warnings: &Warnin
         active: active.into_iter().find(|active| *active > 0),
         init: init.as_ref(),
     };
+    let summary = summary.of_grid(loaded.grid.main_dims());
     let cells = CellSlots::new(&mut loaded.grid, &loaded.flags, &results, &mut about.notes);
     let local_grids = std::mem::take(&mut loaded.local_grids);
     let beside = Beside {
@@ -227,7 +284,7 @@ fn build(mut loaded: Loaded, read: Read<'_>, mut about: About, warnings: &Warnin
         summary,
         wells: WellFiles::default(),
     };
-    source.take_fitting(init, steps, &mut about);
+    source.take_fitting(init, runs, &mut about);
     leave_unfinished(&mut source.steps, &mut about.notes);
     about.notes.extend(source.misfits());
     read_wells(&mut source, schedules, loaded.grid.main_dims(), &mut about);
@@ -253,7 +310,8 @@ fn build(mut loaded: Loaded, read: Read<'_>, mut about: About, warnings: &Warnin
         cache: Arc::new(FieldCache::default()),
         over_steps: Arc::new(OverSteps::default()),
         wells: Arc::new(WellsOfSteps::default()),
-        minus: None,
+        minus: Vec::new(),
+        ensemble: None,
         simbox: Simbox::default(),
     }
 }
@@ -368,22 +426,4 @@ fn note_missing(files: &CaseFiles, about: &mut About) {
             "there is no restart file, so time steps and dynamic properties are missing".into(),
         );
     }
-}
-
-fn open_restart(
-    restart: &RestartSource,
-    about: &mut About,
-    warnings: &mut Warnings,
-) -> Vec<FileStep> {
-    let steps = match restart {
-        RestartSource::None => Ok(Vec::new()),
-        RestartSource::Unified(path) => restart::open_unified(path, warnings),
-        RestartSource::Separate(files) => restart::open_separate(files, warnings),
-    };
-    steps.unwrap_or_else(|error| {
-        about
-            .notes
-            .push(format!("time steps were not loaded: {error}"));
-        Vec::new()
-    })
 }

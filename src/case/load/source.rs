@@ -11,6 +11,7 @@ use strataray_parsers::restart::Step as FileStep;
 use strataray_parsers::{At, ErrorKind, ParseError};
 
 use super::local::Places;
+use super::restarts;
 use super::slots::CellSlots;
 use super::summary::SummaryFiles;
 use super::wells::{self, WellFiles};
@@ -47,7 +48,7 @@ impl FileSource {
     pub fn take_fitting(
         &mut self,
         init: Option<CellArrays>,
-        steps: Vec<FileStep>,
+        runs: Vec<Vec<FileStep>>,
         about: &mut About,
     ) {
         if let Some(init) = init {
@@ -59,18 +60,22 @@ impl FileSource {
                 Err(error) => about.notes.push(format!("INIT was not loaded: {error}")),
             }
         }
-        let first = steps.first().map(|s| &s.arrays);
-        match first.map_or(Ok(()), |a| self.check(a, a.file().path())) {
-            Ok(()) => {
-                let read = steps.iter().map(|s| s.arrays.file().path().to_owned());
-                about.files.extend(read);
-                about.files.dedup();
-                self.steps = steps;
+        let mut fitting = Vec::new();
+        for run in runs {
+            let first = run.first().map(|s| &s.arrays);
+            match first.map_or(Ok(()), |a| self.check(a, a.file().path())) {
+                Ok(()) => {
+                    let read = run.iter().map(|s| s.arrays.file().path().to_owned());
+                    about.files.extend(read);
+                    about.files.dedup();
+                    fitting.push(run);
+                }
+                Err(error) => about
+                    .notes
+                    .push(format!("time steps were not loaded: {error}")),
             }
-            Err(error) => about
-                .notes
-                .push(format!("time steps were not loaded: {error}")),
         }
+        self.steps = restarts::merged(fitting, &mut about.notes);
     }
 
     /// The values of an array at a step, of which `pick` takes those of the main grid's active cells.
@@ -137,14 +142,18 @@ impl FileSource {
 
     /// Refuses results of another grid.
     fn check(&self, arrays: &CellArrays, path: &Path) -> Result<(), ParseError> {
-        let active = usize::try_from(arrays.head()?.active).unwrap_or(0);
-        if active == 0 || self.cells.are_as_many(active) {
+        let head = arrays.head()?;
+        let active = usize::try_from(head.active).unwrap_or(0);
+        let message = if active > 0 && !self.cells.are_as_many(active) {
+            format!(
+                "has {active} active cells and the grid {}; it belongs to another grid",
+                self.cells.count()
+            )
+        } else if let Some([own, other]) = self.cells.other_dims(head.dims) {
+            format!("has {other} cells and the grid {own}; it belongs to another grid")
+        } else {
             return Ok(());
-        }
-        let message = format!(
-            "has {active} active cells and the grid {}; it belongs to another grid",
-            self.cells.count()
-        );
+        };
         Err(ParseError::of(
             ErrorKind::Mismatch,
             path,

@@ -80,11 +80,11 @@ pub struct PanelContext<'a> {
 }
 
 impl PanelContext<'_> {
-    /// The properties of the case in front; one that is a difference to another case is none of these.
+    /// The properties of the case in front; differences to another case and statistics over several are none of these.
     pub fn properties(&self) -> impl Iterator<Item = &Property> {
-        let minus = self.case.minus.as_ref();
+        let is_minus = |name: &str| self.case.minus.iter().any(|m| m.name == name);
         let all = self.case.properties.iter();
-        all.filter(move |p| minus.is_none_or(|m| m.name != p.name))
+        all.filter(move |p| !is_minus(&p.name) && self.case.statistic(&p.name).is_none())
     }
 
     /// The units in which numbers are shown and typed.

@@ -187,8 +187,8 @@ fn buttons(ui: &mut Ui, about: &PanelContext<'_>, table: &Table, actions: &mut V
             actions.push(Action::Deselect);
         }
         // A difference of two cases is a property of neither, so that neither can be filtered by it.
-        let minus = about.case.minus.as_ref();
-        let can = minus.is_none_or(|m| Some(m.name.as_str()) != about.property());
+        let mut minus = about.case.minus.iter();
+        let can = minus.all(|m| Some(m.name.as_str()) != about.property());
         let alike = ui.add_enabled(can, egui::Button::new("Filter to similar values"));
         let what = "Draws only cells whose value of the property shown is close to that of the last selected cell";
         let refusal = "Not for a difference of two cases; filter by a property of one of them";

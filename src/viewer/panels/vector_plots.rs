@@ -130,6 +130,7 @@ pub fn show(
     let response = axis.plot(first, &plot.unit, height).show(ui, |ui| {
         for (curve, color, measure) in &plot.curves {
             let values = at.iter().zip(&curve.values);
+            let values = values.filter(|(_, v)| !v.is_nan());
             let points: Vec<_> = values
                 .map(|(at, v)| [*at, measure.show(f64::from(*v))])
                 .collect();
@@ -145,7 +146,7 @@ pub fn show(
         }
         let Some(n) = pointed else { return };
         for (curve, color, measure) in &plot.curves {
-            let value = curve.values.get(n);
+            let value = curve.values.get(n).filter(|v| !v.is_nan());
             let value = value.map(|v| [at[n], measure.show(f64::from(*v))]);
             let value: Vec<_> = value.into_iter().collect();
             ui.points(Points::new("", value).radius(3.5).color(*color));
@@ -155,6 +156,7 @@ pub fn show(
         ui.weak(told.map_or_else(String::new, |n| plot.vectors.date(n)));
         for (curve, color, measure) in &plot.curves {
             let value = told.and_then(|n| curve.values.get(n));
+            let value = value.filter(|v| !v.is_nan());
             let value = value.map_or("-".into(), |v| significant(measure.show(f64::from(*v))));
             ui.colored_label(*color, format!("{}: {value}", curve.vector.name));
         }
