@@ -113,6 +113,7 @@ pub mod restart;
 pub mod roff;
 pub mod summary;
 pub mod units;
+pub mod volume;
 pub mod wells;
 
 pub use bytes::FileBytes;
