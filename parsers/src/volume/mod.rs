@@ -50,7 +50,7 @@ use crate::error::{At, ErrorKind, ParseError, Warnings};
 pub use lattice::{Lattice, Region};
 pub use raw::RawLayout;
 pub use sample::{ByteOrder, SampleType, Value};
-pub use segy::{SegyOptions, Survey, Vertical};
+pub use segy::{SegyLayout, SegyOptions, SegyWriter, Survey, Vertical};
 pub use write::Contents;
 
 use sample::Coding;

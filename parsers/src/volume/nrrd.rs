@@ -236,10 +236,10 @@ fn lattice(fields: &Fields, shape: &Shape) -> Result<Lattice, ParseError> {
     let mut lattice = Lattice::straight(shape.dims, mins, spacing);
     let centers: Vec<&str> = fields.text("centerings").split_whitespace().collect();
     if fields.find("axis mins").is_some() {
-        for axis in 0..3 {
+        for (axis, first) in lattice.origin.iter_mut().enumerate() {
             // The smallest place of an axis is the border of the first sample's cell.
             if centers.get(shape.first + axis) == Some(&"cell") {
-                lattice.origin[axis] += spacing[axis] / 2.0;
+                *first += spacing[axis] / 2.0;
             }
         }
     }

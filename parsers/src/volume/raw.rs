@@ -139,6 +139,7 @@ pub(super) fn read(
 
 fn described(source: &Source, head: &[u8]) -> Result<VolumeFile, ParseError> {
     let description = Description::parse(source, head)?;
+    description.layout()?;
     let name = description.text("file")?;
     let names = name.map(|name| vec![name.to_owned()]).unwrap_or_default();
     let files = detached::files(source, &names, At::File, "file")?;

@@ -12,6 +12,7 @@
 
 mod grid;
 mod header;
+mod places;
 mod scan;
 mod text;
 mod traces;
@@ -23,9 +24,9 @@ use super::source::Source;
 use super::{Axis, Format, Samples, VolumeFile};
 use crate::error::{At, ErrorKind, ParseError, Warnings};
 
-use grid::{Grid, Map};
+use grid::Grid;
 use header::{Header, TRACE_HEADER};
-use scan::{Layout, TraceHeader, scaled};
+use scan::{Layout, TraceHeader};
 
 pub(super) use header::is_header;
 pub(super) use traces::Traces;
@@ -208,7 +209,7 @@ fn numbers(
     let is_any = dead < traces.len();
     if dead > 0 && is_any {
         note(format!(
-            "{dead} traces are marked as dead: they have no values"
+            "traces marked as dead: {dead}; they have no values"
         ));
     }
     let alive = traces
@@ -235,105 +236,6 @@ fn numbers(
     (numbers.collect(), ["line", "trace"])
 }
 
-/// Places of traces on the lattice of numbers, as the file has them; the reason where it has none.
-fn places(
-    grid: &Grid,
-    traces: &[TraceHeader],
-    numbers: &[Option<[i32; 2]>],
-) -> Result<(Map, u64, bool), &'static str> {
-    if traces.iter().any(|trace| trace.units > 1) {
-        return Err("coordinates are degrees, which are not turned into lengths");
-    }
-    let is_zero = |place: [i32; 2]| place == [0, 0];
-    let is_source = traces.iter().all(|trace| is_zero(trace.place));
-    let place = |trace: &TraceHeader| {
-        if is_source {
-            trace.source_place
-        } else {
-            trace.place
-        }
-    };
-    let points = traces.iter().zip(numbers).filter_map(|(trace, number)| {
-        let [inline, crossline] = (*number)?;
-        // Stands for none: dead traces, and what fills a rectangle.
-        let place = Some(place(trace)).filter(|place| !is_zero(*place))?;
-        let number = [
-            grid.axes[0].place(inline) as f64,
-            grid.axes[1].place(crossline) as f64,
-        ];
-        Some((number, place.map(|v| scaled(f64::from(v), trace.scalar))))
-    });
-    let count = points.clone().count() as u64;
-    let numbered = numbers.iter().flatten().count() as u64;
-    match grid::fit(points) {
-        Some(map) => Ok((map, numbered - count, is_source)),
-        None => Err("traces have no coordinates of a lattice"),
-    }
-}
-
-/// The lattice on the map.
-fn lattice(
-    source: &Source,
-    options: &SegyOptions,
-    grid: &Grid,
-    found: Result<(Map, u64, bool), &'static str>,
-    notes: &mut Warnings,
-) -> Result<([f64; 2], [[f64; 2]; 2], Option<[f64; 2]>), ParseError> {
-    let mut note = |message: String| notes.push(source.path(), At::File, message);
-    let (map, without, is_source) = match found {
-        Ok(found) => found,
-        Err(reason) => {
-            note(format!(
-                "{reason}: inline and crossline numbers stand for x and y"
-            ));
-            let [i, j] = grid.axes;
-            let edges = [[f64::from(i.step), 0.0], [0.0, f64::from(j.step)]];
-            return Ok(([f64::from(i.first), f64::from(j.first)], edges, None));
-        }
-    };
-    if is_source {
-        note("coordinates of common depth points are zero: those of the source (bytes 73 to 80) are read".into());
-    }
-    if without > 0 {
-        note(format!(
-            "{without} traces have no coordinates: their places follow from their numbers"
-        ));
-    }
-    let length = |edge: [f64; 2]| edge[0].hypot(edge[1]);
-    let known = (0..2).filter(|axis| map.is_known[*axis] && grid.axes[*axis].count > 1);
-    let bin = known
-        .map(|axis| length(map.edges[axis]))
-        .fold(f64::INFINITY, f64::min);
-    let [mean, largest] = map.residual;
-    if mean > bin / 2.0 {
-        let message = format!(
-            "places of traces are {mean:.1} from those of a lattice (root of the mean square), more than half a bin of {bin:.1}: the inline or crossline number, or the coordinates, may stand at other bytes than {}, {}, {} and {}; without coordinates the file is read by its numbers",
-            options.inline, options.crossline, options.x, options.y
-        );
-        return Err(refuse(source, ErrorKind::Mismatch, message));
-    }
-    if largest > bin / 2.0 {
-        note(format!(
-            "a trace is {largest:.1} from its place on the lattice, more than half a bin of {bin:.1}"
-        ));
-    }
-    let mut edges = map.edges;
-    for axis in 0..2 {
-        let other = edges[1 - axis];
-        if !map.is_known[axis] {
-            // To the left of the other axis, or to its right, as x and y are.
-            let sign = if axis == 0 { 1.0 } else { -1.0 };
-            edges[axis] = [sign * other[1], -sign * other[0]];
-            if grid.axes[axis].count > 1 {
-                note(format!(
-                    "places do not change along axis {axis}: it is taken at a right angle to the other one"
-                ));
-            }
-        }
-    }
-    Ok((map.origin, edges, Some(map.residual)))
-}
-
 fn too_sparse(source: &Source, options: &SegyOptions, traces: usize, places: u64) -> ParseError {
     let message = format!(
         "{traces} traces on a lattice of {places} places: the inline and crossline number may stand at other bytes than {} and {}",
@@ -353,14 +255,14 @@ fn note_grid(
     let mut note = |message: String| notes.push(source.path(), At::File, message);
     if grid.repeated > 0 {
         note(format!(
-            "{} traces have the numbers of another one: the first one is read",
+            "traces with the numbers of another one: {}; the first one is read",
             grid.repeated
         ));
     }
     if grid.absent > 0 {
         let places = grid.traces.len();
         note(format!(
-            "{} of {places} places have no trace: they have no values",
+            "places without a trace: {} of {places}; they have no values",
             grid.absent
         ));
     }
@@ -371,7 +273,7 @@ fn note_grid(
     let others = others.count();
     if others > 0 {
         note(format!(
-            "{others} traces have another number of samples in their headers than {samples}, with which the file fits"
+            "traces whose headers have another number of samples than {samples}, with which the file fits: {others}"
         ));
     }
 }
@@ -387,11 +289,7 @@ pub(super) fn read(source: &Source, options: &SegyOptions) -> Result<VolumeFile,
     let grid =
         Grid::new(&numbers).map_err(|places| too_sparse(source, options, traces.len(), places))?;
     note_grid(source, &header, &grid, &traces, &mut notes);
-    let found = match options.coordinates {
-        true => places(&grid, &traces, &numbers),
-        false => Err("coordinates are not looked at"),
-    };
-    let (origin, edges, residual) = lattice(source, options, &grid, found, &mut notes)?;
+    let map = places::read(source, options, &grid, &traces, &numbers, &mut notes)?;
     let dims = [grid.axes[0].count, grid.axes[1].count, header.samples];
     let (dims, _) = lattice::samples(dims).ok_or_else(|| {
         let [ni, nj, nk] = dims;
@@ -399,12 +297,13 @@ pub(super) fn read(source: &Source, options: &SegyOptions) -> Result<VolumeFile,
             format!("no volume of {ni} x {nj} x {nk} samples can be addressed on this machine");
         refuse(source, ErrorKind::TooLarge, message)
     })?;
+    let [inline, crossline] = map.edges;
     let lattice = Lattice {
         dims,
-        origin: [origin[0], origin[1], start],
+        origin: [map.origin[0], map.origin[1], start],
         edges: [
-            [edges[0][0], edges[0][1], 0.0],
-            [edges[1][0], edges[1][1], 0.0],
+            [inline[0], inline[1], 0.0],
+            [crossline[0], crossline[1], 0.0],
             [0.0, 0.0, step],
         ],
     };
@@ -416,7 +315,7 @@ pub(super) fn read(source: &Source, options: &SegyOptions) -> Result<VolumeFile,
         traces: layout.count,
         absent: grid.absent,
         repeated: grid.repeated,
-        residual,
+        residual: map.residual,
     };
     let coding = Coding {
         kind: header.sample,
@@ -424,7 +323,7 @@ pub(super) fn read(source: &Source, options: &SegyOptions) -> Result<VolumeFile,
     };
     let samples = Samples::Traces(Traces::new(layout, [dims[0], dims[1]], grid.traces));
     let mut volume = VolumeFile::new(Format::Segy, source, lattice, coding, samples);
-    volume.axes = axes(options, &header, names, residual.is_some());
+    volume.axes = axes(options, &header, names, map.residual.is_some());
     volume.survey = Some(survey);
     let mut letters = vec![0; text::LENGTH];
     source.read(0, &mut letters)?;
