@@ -16,6 +16,7 @@ use std::time::{Duration, Instant};
 use fastrand::Rng;
 use peak_alloc::PeakAlloc;
 use properties::{READERS, Reader, holds};
+use strataray_parsers::volume::{self, Options};
 
 #[global_allocator]
 static MEMORY: PeakAlloc = PeakAlloc;
@@ -89,7 +90,7 @@ fn damaged(bytes: &[u8], random: &mut Rng) -> Vec<u8> {
 }
 
 /// What reading cost at most.
-#[derive(Default)]
+#[derive(Debug, Default)]
 struct Cost {
     readings: usize,
     slowest: (Duration, PathBuf),
@@ -148,13 +149,41 @@ fn volumes() -> Vec<(&'static str, Vec<u8>)> {
     all
 }
 
+/// What opening a volume and reading it in slabs takes at most, beside the bytes of the file.
+fn held(bytes: Vec<u8>) -> usize {
+    MEMORY.reset_peak_usage();
+    let before = MEMORY.current_usage();
+    let volume = volume::from_bytes(("A", bytes), &Options::default()).unwrap();
+    for slab in volume.slabs(1 << 16) {
+        volume.f32s(slab).unwrap();
+    }
+    MEMORY.peak_usage() - before
+}
+
+/// Samples are not held, but those of text, in the bytes of their type.
+fn volumes_are_read_in_slabs() {
+    const SAMPLES: usize = 256 * 256 * 40;
+    for (name, bytes) in fixtures::images([256, 256, 40]) {
+        let held = held(bytes);
+        let most = match name.starts_with("text") {
+            true => 2 * SAMPLES + (3 << 20),
+            false => 3 << 20,
+        };
+        assert!(held < most, "{name}: {held} bytes");
+    }
+    let bytes = fixtures::segy(60_000);
+    assert!(held(bytes) < 3 << 20);
+}
+
 #[test]
 fn damaged_files() {
+    volumes_are_read_in_slabs();
     let mut cost = Cost::default();
     for (name, bytes) in volumes() {
         let path = Path::new(name);
         damage(path, &bytes, &readers(path), &mut cost);
     }
+    println!("{cost:?}");
     let Some(data) = std::env::var_os("STRATARAY_DATA") else {
         println!("STRATARAY_DATA is not set: the test on real files is left out");
         return;

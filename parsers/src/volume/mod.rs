@@ -12,8 +12,10 @@
 //! | VTK ImageData (`.vti`) | [`vti`] |
 //! | raw samples with a description | [`raw`] |
 //!
-//! Memory: a header of at most 1 MiB; of SEG-Y less than a quarter of the file's bytes; of samples written as text up to
-//! 4 bytes for each of the file's. All else is buffers, and the regions that the caller asks for.
+//! Memory: a header of at most 1 MiB; of SEG-Y up to 200 bytes for each trace, which is less than a trace takes; of samples
+//! written as text up to 4 bytes for each of the file's, and of compressed ones one block. All else is buffers, and the
+//! regions that the caller asks for. A few compressed bytes, and few traces far apart, may stand for many samples: at most
+//! 1040 for a byte, and 16 places of a lattice for each trace.
 //!
 //! ```
 //! use strataray_parsers::volume::{self, Options, Region};

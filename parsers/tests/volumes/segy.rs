@@ -383,6 +383,19 @@ fn headers_of_rev_1_and_2() {
             Err(_) => assert!(!is_read),
         }
     }
+    // In rev 0 the number means nothing, whatever it is, and so does the scalar of times.
+    for revision in [[0, 0], [7, 7]] {
+        let mut bytes = plain.clone();
+        put(&mut bytes, 3501, &revision);
+        put(&mut bytes, 3505, &[0, 9]);
+        put(&mut bytes, header(0) + 215, &[0, 7]);
+        check_places(&read(bytes).unwrap());
+    }
+    let mut bytes = plain.clone();
+    for n in 0..bins().len() {
+        put(&mut bytes, header(n) + 215, &(-10_i16).to_be_bytes());
+    }
+    assert_eq!(read(bytes).unwrap().lattice.origin[2], 150.0);
     // Rev 2: more samples, an interval that is no whole number, and a trailer.
     let mut bytes = plain.clone();
     put(&mut bytes, 3501, &[2, 0]);

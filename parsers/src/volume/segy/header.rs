@@ -171,6 +171,17 @@ fn behind_text(source: &Source, count: i16) -> Result<u64, ParseError> {
     Err(source.error(ErrorKind::Malformed, At::Byte(3504), "SEG-Y", message))
 }
 
+/// Major and minor number: two bytes, or a number of 16 bits with 8 of them behind the point.
+fn revision(binary: &[u8; 400], order: ByteOrder) -> [u8; 2] {
+    match (order, [binary[300], binary[301]]) {
+        (_, [major @ 1..=2, minor]) => [major, minor],
+        // Written as whole numbers, or with the bytes of a number turned.
+        (ByteOrder::Little, [minor, major @ 1..=2]) => [major, minor],
+        (ByteOrder::Big, [0, major @ 1..=2]) => [major, 0],
+        _ => [0, 0],
+    }
+}
+
 pub(super) fn read(source: &Source, forced: Option<ByteOrder>) -> Result<Header, ParseError> {
     let cut = |message: &str| source.error(ErrorKind::Truncated, At::File, "SEG-Y", message);
     if source.length() < HEADERS + TRACE_HEADER {
@@ -194,12 +205,9 @@ pub(super) fn read(source: &Source, forced: Option<ByteOrder>) -> Result<Header,
         );
         source.error(ErrorKind::Unsupported, At::Byte(3224), "SEG-Y", message)
     })?;
-    // Two bytes, or a number of 16 bits with 8 of them behind the point.
-    let revision = match order {
-        ByteOrder::Big => [binary[300], binary[301]],
-        ByteOrder::Little if binary[300] == 0 => [binary[301], 0],
-        ByteOrder::Little => [binary[300], binary[301]],
-    };
+    let revision = revision(&binary, order);
+    // What rev 0 has there means nothing.
+    let texts = if revision[0] > 0 { bytes.i16(3505) } else { 0 };
     let mut header = Header {
         order,
         sample,
@@ -208,7 +216,7 @@ pub(super) fn read(source: &Source, forced: Option<ByteOrder>) -> Result<Header,
         interval: f64::from(bytes.u16(3217)),
         samples: u64::from(bytes.u16(3221)),
         measurement: bytes.u16(3255),
-        start: behind_text(source, bytes.i16(3505))?,
+        start: behind_text(source, texts)?,
         end: source.length(),
     };
     if revision[0] >= 2 {

@@ -30,7 +30,7 @@ fn find(
     traces: &[TraceHeader],
     numbers: &[Option<[i32; 2]>],
 ) -> Result<Found, &'static str> {
-    if traces.iter().any(|trace| trace.units > 1) {
+    if traces.iter().any(|trace| matches!(trace.units, 2..=4)) {
         return Err("coordinates are degrees, which are not turned into lengths");
     }
     let is_zero = |place: [i32; 2]| place == [0, 0];

@@ -22,7 +22,7 @@ pub(super) struct TraceHeader {
     pub(super) place: [i32; 2],
     pub(super) source_place: [i32; 2],
     pub(super) scalar: i16,
-    /// 1: lengths, else degrees.
+    /// 2 to 4: degrees, else lengths.
     pub(super) units: i16,
     /// 2: dead.
     pub(super) kind: i16,
@@ -32,6 +32,9 @@ pub(super) struct TraceHeader {
     /// Time of the first sample in ms.
     pub(super) delay: f32,
 }
+
+/// Scalars that the definition of the format allows; in rev 0 other things may stand there.
+const SCALARS: [u16; 5] = [1, 10, 100, 1000, 10_000];
 
 /// `value` by a scalar: a negative one divides, zero is none.
 pub(super) fn scaled(value: f64, scalar: i16) -> f64 {
@@ -49,6 +52,11 @@ fn trace_header(bytes: &[u8], order: ByteOrder, options: &SegyOptions) -> TraceH
         order,
     };
     let number = |place: u16| bytes.i32(usize::from(place));
+    let of_times = bytes.i16(215);
+    let of_times = match SCALARS.contains(&of_times.unsigned_abs()) {
+        true => of_times,
+        false => 0,
+    };
     TraceHeader {
         inline: number(options.inline),
         crossline: number(options.crossline),
@@ -60,7 +68,7 @@ fn trace_header(bytes: &[u8], order: ByteOrder, options: &SegyOptions) -> TraceH
         kind: bytes.i16(29),
         samples: bytes.u16(115),
         interval: bytes.u16(117),
-        delay: scaled(f64::from(bytes.i16(109)), bytes.i16(215)) as f32,
+        delay: scaled(f64::from(bytes.i16(109)), of_times) as f32,
     }
 }
 
