@@ -46,7 +46,8 @@ struct Frame {
     // 1 where rays are parallel, else 0.
     is_parallel: f32,
     origin_up: vec3f,
-    reserved: f32,
+    // Rays along each axis of a pixel of the final image.
+    rays_across: f32,
     // The way from the viewer to the lamp beside it, at a distance of one, in grid space; and one over the length
     // of the way from there to the lamp.
     headlight: vec3f,

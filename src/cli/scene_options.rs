@@ -61,6 +61,9 @@ pub struct SceneOptions {
     /// Vertical exaggeration.
     #[arg(long)]
     exaggeration: Option<f64>,
+    /// Rays along each axis of a pixel, 1 to 8: 2 makes edges smooth and takes four times as long.
+    #[arg(long, value_name = "N")]
+    supersample: Option<u32>,
     /// Threads of the CPU work.
     #[arg(long)]
     threads: Option<usize>,
@@ -145,6 +148,7 @@ impl SceneOptions {
                 ..framing(camera)?
             });
         }
+        scene.supersample = self.supersample.unwrap_or(scene.supersample);
         if self.exaggeration.is_some() {
             scene.vertical_exaggeration = self.exaggeration;
         }

@@ -320,6 +320,7 @@ pub(super) mod tests {
                 strategy: StrategyKind::ALL[0],
                 step: 1.0,
                 early_termination: 0.0,
+                supersample: 1,
                 libc: crate::scene::LibcSettings::default(),
                 plts: crate::scene::PltsSettings::default(),
                 srg: crate::scene::SrgSettings::default(),

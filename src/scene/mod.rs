@@ -66,6 +66,9 @@ pub struct Scene {
     pub sampling_step: Option<f64>,
     /// Transmittance at which a ray ends; 0 turns early termination off.
     pub early_termination: f64,
+    /// Rays along each axis of a pixel, whose color is made of theirs: edges get smooth.
+    #[serde(skip_serializing_if = "is_one")]
+    pub supersample: u32,
     /// Settings of the resampled-grid strategy.
     pub srg: SrgSettings,
     /// Settings of the cell-to-cell strategy.
@@ -106,6 +109,7 @@ impl Default for Scene {
             strategy: StrategyKind::Plts,
             sampling_step: None,
             early_termination: 0.01,
+            supersample: 1,
             srg: SrgSettings::default(),
             libc: LibcSettings::default(),
             plts: PltsSettings::default(),
@@ -147,6 +151,11 @@ impl Scene {
             ..self
         }
     }
+}
+
+#[allow(clippy::trivially_copy_pass_by_ref, reason = "what serde calls")]
+fn is_one(number: &u32) -> bool {
+    *number == 1
 }
 
 /// Which local grids are drawn.

@@ -145,6 +145,8 @@ pub struct Sampling {
     pub step: f64,
     /// Transmittance at which a ray ends.
     pub early_termination: f64,
+    /// Rays along each axis of a pixel.
+    pub supersample: u32,
     /// Settings of the cell-to-cell strategy.
     pub libc: LibcSettings,
     /// Settings of point location with topological search.
@@ -238,7 +240,7 @@ impl View {
     /// # Errors
     /// When camera or size are not allowed.
     pub fn seen_from(&self, camera_spec: &CameraSpec, size: [u32; 2]) -> Result<Self, SceneError> {
-        let size = checked_size(size)?;
+        let size = checked_size(size, self.sampling.supersample)?;
         let of = (&*self.world.subject, &self.world.corners);
         let camera = placed(camera_spec, size, of, self.notes.has_box)?;
         Ok(Self {
@@ -246,6 +248,15 @@ impl View {
             camera,
             ..self.clone()
         })
+    }
+
+    /// The same view with a pixel for each ray. Lines are as wide there as [`Sampling::supersample`] pixels.
+    #[must_use]
+    pub fn of_rays(&self) -> Self {
+        Self {
+            size: self.size.map(|n| n * self.sampling.supersample),
+            ..self.clone()
+        }
     }
 
     /// Smallest and largest corner in grid space of the drawn cells of `grid` (the case's), ghosts aside; `None`

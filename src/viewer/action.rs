@@ -39,6 +39,8 @@ pub enum Action {
     Storage(Storage),
     /// Distance of samples; `None` for the default.
     SamplingStep(Option<f64>),
+    /// Rays along each axis of a pixel.
+    Supersample(u32),
     /// Occlusion and lights.
     Lighting(LightingSpec),
     /// Which local grids are drawn.
@@ -99,6 +101,7 @@ impl Action {
             Self::Srg(_) | Self::Libc(_) | Self::Plts(_) => "strategy settings",
             Self::Storage(_) => "storage",
             Self::SamplingStep(_) => "sampling step",
+            Self::Supersample(_) => "rays per pixel",
             Self::Lighting(_) => "lighting",
             Self::Grids(_) => "local grids",
             Self::Filter(_) => "filter",
@@ -133,6 +136,7 @@ impl Action {
             Self::Plts(v) => scene.plts = v,
             Self::Storage(v) => scene.storage = v,
             Self::SamplingStep(v) => scene.sampling_step = v,
+            Self::Supersample(v) => scene.supersample = v,
             Self::Lighting(v) => scene.lighting = v,
             Self::Grids(v) => scene.grids = v,
             Self::Filter(v) => scene.filter = v,

@@ -83,7 +83,7 @@ fn structs_of_frames(m: &Module) -> Vec<&'static str> {
             origin_right,
             is_parallel,
             origin_up,
-            reserved,
+            rays_across,
             headlight,
             headlight_scale,
             ghost,

@@ -53,6 +53,7 @@ mod simbox;
 mod srg;
 mod statistics;
 mod storage;
+mod supersampling;
 mod surfaces;
 mod synthetic;
 mod vectors;

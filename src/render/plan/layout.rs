@@ -36,7 +36,7 @@ pub struct Frame {
     pub origin_right: [f32; 3],
     pub is_parallel: f32,
     pub origin_up: [f32; 3],
-    pub reserved: f32,
+    pub rays_across: f32,
     pub headlight: [f32; 3],
     pub headlight_scale: f32,
     pub ghost: [f32; 4],

@@ -27,6 +27,7 @@ pub fn show(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action>) {
                 StrategyKind::Plts => plts(ui, about, actions),
             }
             sampling_step(ui, about, actions);
+            supersample(ui, about, actions);
             storage(ui, about, actions);
         })
         .header_response
@@ -54,6 +55,20 @@ fn sampling_step(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action
             }
         });
     }
+}
+
+fn supersample(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action>) {
+    ui.horizontal(|ui| {
+        ui.label("Rays per pixel")
+            .on_hover_text("More rays make edges of cells, faults and wells smooth; images of 4 rays take four times as long");
+        for across in 1..=4_u32 {
+            let is_on = about.scene.supersample == across;
+            let label = ui.selectable_label(is_on, (across * across).to_string());
+            if label.clicked() {
+                actions.push(Action::Supersample(across));
+            }
+        }
+    });
 }
 
 fn storage(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action>) {
