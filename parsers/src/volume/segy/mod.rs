@@ -255,7 +255,7 @@ fn note_grid(
     let mut note = |message: String| notes.push(source.path(), At::File, message);
     if grid.repeated > 0 {
         note(format!(
-            "traces with the numbers of another one: {}; the first one is read",
+            "traces with the numbers of another one: {}; the first one is read, so stack gathers before",
             grid.repeated
         ));
     }
