@@ -1,4 +1,5 @@
-//! Readers and writers of Eclipse-style reservoir files, as written: no geometry, no GPU.
+//! Readers and writers of Eclipse-style reservoir files, and of regular volumes such as seismic ([`volume`]), as written:
+//! no geometry, no GPU.
 //!
 //! Three levels: bytes (a memory map, records, tokens), typed records ([`egrid`], [`init`],
 //! [`restart`], [`wells`], [`paths`], [`summary`], [`deck`], [`roff`]), and the [`case`] that finds the files belonging together. Bad files
@@ -114,6 +115,7 @@ pub mod restart;
 pub mod roff;
 pub mod summary;
 pub mod units;
+pub mod volume;
 pub mod wells;
 
 pub use bytes::FileBytes;

@@ -5,6 +5,9 @@ use strataray_parsers::egrid::{Egrid, GridUnit, PorosityModel};
 use strataray_parsers::init;
 use strataray_parsers::records::{Kind, RecordFile, RecordWriter};
 use strataray_parsers::restart::RestartWriter;
+use strataray_parsers::volume::{
+    ByteOrder, Contents, Lattice, SampleType, SegyLayout, SegyWriter, metaimage, nrrd, vti,
+};
 use strataray_parsers::wells::Well;
 
 /// A deck of one cell, with its corners at depths 0 and 1.
@@ -346,3 +349,74 @@ pub const JSON_PATH: &str = r#"{"name": "A-1", "path": [
  {"x": 1, "y": 2, "z": 3, "md": 4},
  {"x": 1.5, "y": 2.5, "z": 30, "md": 34}
 ]}"#;
+
+/// Images of `dims` samples: raw and compressed, in each format.
+pub fn images(dims: [usize; 3]) -> Vec<(&'static str, Vec<u8>)> {
+    let contents = Contents {
+        lattice: Lattice::straight(dims, [10.0, 20.0, 30.0], [1.0, 2.0, 4.0]),
+        sample: SampleType::I16,
+        byte_order: ByteOrder::Little,
+        name: "density".into(),
+    };
+    let count = contents.lattice.samples();
+    let values = || (0..count).map(|n| (n % 1000) as f64);
+    let text = |bytes: Vec<u8>| {
+        let head = String::from_utf8_lossy(&bytes).into_owned();
+        let head = head
+            .split("\n\n")
+            .next()
+            .unwrap()
+            .replace("encoding: raw", "encoding: ascii");
+        let numbers: String = values().map(|v| format!("{v} ")).collect();
+        format!("{head}\n\n{numbers}").into_bytes()
+    };
+    let plain = nrrd::write(Vec::new(), &contents, false, values()).unwrap();
+    vec![
+        ("text.nrrd", text(plain.clone())),
+        ("plain.nrrd", plain),
+        (
+            "packed.nrrd",
+            nrrd::write(Vec::new(), &contents, true, values()).unwrap(),
+        ),
+        (
+            "plain.mha",
+            metaimage::write(Vec::new(), &contents, false, values()).unwrap(),
+        ),
+        (
+            "packed.mha",
+            metaimage::write(Vec::new(), &contents, true, values()).unwrap(),
+        ),
+        (
+            "plain.vti",
+            vti::write(Vec::new(), &contents, values()).unwrap(),
+        ),
+        ("base64.vti", VTI.into()),
+    ]
+}
+
+/// An image of two samples, compressed and in base64.
+pub const VTI: &str = "<VTKFile type=\"ImageData\" byte_order=\"LittleEndian\" compressor=\"vtkZLibDataCompressor\">\n\
+     <ImageData WholeExtent=\"0 1 0 0 0 0\" Spacing=\"1 1 1\" Origin=\"0 0 0\"><Piece><PointData>\n\
+     <DataArray type=\"UInt8\" Name=\"a\" format=\"binary\">\n\
+     AQAAAAIAAAAAAAAACgAAAA==eJxjZAIAAAYABA==\n</DataArray></PointData></Piece></ImageData></VTKFile>\n";
+
+/// Traces of two inlines and three crosslines, without the last one.
+pub fn segy(samples: usize) -> Vec<u8> {
+    let layout = SegyLayout {
+        sample: SampleType::F32,
+        byte_order: ByteOrder::Big,
+        samples,
+        interval: 4.0,
+        delay: 0,
+        text: "a survey".into(),
+    };
+    let mut out = SegyWriter::new(Vec::new(), layout).unwrap();
+    for n in 0..5_u8 {
+        let (i, j) = (n / 3, n % 3);
+        let place = [1000.0 + 20.0 * f64::from(i), 2000.0 + 25.0 * f64::from(j)];
+        let trace: Vec<f32> = (0..samples).map(|k| k as f32 + f32::from(n)).collect();
+        out.trace(i32::from(i) + 10, i32::from(j) + 20, place, &trace)
+            .unwrap();
+    }
+    out.finish().unwrap()
+}

@@ -9,6 +9,7 @@ use strataray_parsers::egrid::{Egrid, PorosityModel};
 use strataray_parsers::records::{Kind, RecordFile};
 use strataray_parsers::roff::RoffFile;
 use strataray_parsers::summary::Summary;
+use strataray_parsers::volume::{self, Options};
 use strataray_parsers::{
     ErrorKind, ParseError, Warnings, init, paths as well_paths, restart, wells,
 };
@@ -20,7 +21,7 @@ const NAME: &str = "ANY.FILE";
 pub type Reader = fn(Vec<u8>) -> Result<(), ParseError>;
 
 /// All readers, by the names of their fuzz targets.
-pub const READERS: [(&str, Reader); 11] = [
+pub const READERS: [(&str, Reader); 13] = [
     ("records", records),
     ("egrid", egrid),
     ("init", init),
@@ -32,6 +33,8 @@ pub const READERS: [(&str, Reader); 11] = [
     ("deck", deck),
     ("schedule", schedule),
     ("paths", paths),
+    ("volume", volume),
+    ("segy", segy),
 ];
 
 /// What makes a file binary, formatted, or a legacy grid: bytes behind it reach the reader of that form.
@@ -256,6 +259,33 @@ pub fn paths(bytes: Vec<u8>) -> Result<(), ParseError> {
         assert!(well.points.len() > 1);
         assert!(well.points.iter().flatten().all(|v| v.is_finite()));
         assert!(well.measured.is_none_or(|m| m.len() == well.points.len()));
+    }
+    Ok(())
+}
+
+/// A volume by what is in it.
+pub fn volume(bytes: Vec<u8>) -> Result<(), ParseError> {
+    check_volume(NAME, bytes)
+}
+
+/// A volume that is SEG-Y by its name.
+pub fn segy(bytes: Vec<u8>) -> Result<(), ParseError> {
+    check_volume("ANY.FILE.sgy", bytes)
+}
+
+fn check_volume(name: &'static str, bytes: Vec<u8>) -> Result<(), ParseError> {
+    let volume = volume::from_bytes((name, bytes), &Options::default())?;
+    check_warnings(&volume.notes);
+    let lattice = &volume.lattice;
+    assert!(lattice.samples() > 0);
+    assert!(lattice.place([1.0; 3]).iter().all(|v| !v.is_nan()));
+    // A few bytes may be compressed from many, and have many places without a trace.
+    if lattice.samples() / lattice.dims[volume.slow_axis()] > 1 << 20 {
+        return Ok(());
+    }
+    let slabs = || volume.slabs(1 << 14);
+    for slab in slabs().take(3).chain(slabs().last()) {
+        assert_eq!(volume.f32s(slab)?.len(), slab.samples());
     }
     Ok(())
 }
