@@ -18,7 +18,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use strataray_parsers::case::{CaseFiles, GridSource, RestartSource, find, find_with};
-use strataray_parsers::cells::CellArrays;
+use strataray_parsers::cells::{CellArrays, Head};
 use strataray_parsers::deck::{Grdecl, UnitSystem};
 use strataray_parsers::restart::Step as FileStep;
 use strataray_parsers::{At, ErrorKind, ParseError, Warnings, init};
@@ -228,6 +228,27 @@ struct Read<'a> {
     paths: paths::Files<'a>,
 }
 
+/// What the heads of results say.
+struct Told {
+    units: Option<UnitSystem>,
+    phases: Option<i32>,
+    /// Number of active cells.
+    active: Option<usize>,
+}
+
+impl Told {
+    fn of(init: Option<&CellArrays>, first: Option<&CellArrays>) -> Self {
+        let all = [init, first].into_iter().flatten();
+        let heads: Vec<_> = all.filter_map(|arrays| arrays.head().ok()).collect();
+        let active = |head: &Head| usize::try_from(head.active).ok();
+        Self {
+            units: heads.iter().find_map(|head| head.units),
+            phases: heads.iter().map(|head| head.phases).find(|n| *n > 0),
+            active: heads.iter().filter_map(active).find(|n| *n > 0),
+        }
+    }
+}
+
 /// The case of what was read.
 fn build(mut loaded: Loaded, read: Read<'_>, mut about: About, warnings: &Warnings) -> Case {
     let Read {
@@ -238,32 +259,20 @@ fn build(mut loaded: Loaded, read: Read<'_>, mut about: About, warnings: &Warnin
         paths,
     } = read;
     let first = runs.iter().flatten().next().map(|s| &s.arrays);
-    let heads: Vec<_> = init
-        .iter()
-        .chain(first)
-        .filter_map(|a| a.head().ok())
-        .collect();
-    let units = heads.iter().find_map(|head| head.units);
-    let length = loaded.settle_units(units, &mut about);
-    let units = units.or(loaded.units).unwrap_or(match length.short() {
+    let told = Told::of(init.as_ref(), first);
+    let length = loaded.settle_units(told.units, &mut about);
+    let units = told.units.or(loaded.units).unwrap_or(match length.short() {
         "FT" => UnitSystem::Field,
         "CM" => UnitSystem::Lab,
         _ => UnitSystem::Metric,
     });
-    let phases = heads
-        .iter()
-        .map(|head| head.phases)
-        .find(|phases| *phases > 0);
     let least = Least::of(&loaded, units, length);
     if let Some(least) = &least {
         least.leave_small(&mut loaded, &mut about.notes);
     }
     pore_volume::complete(&mut loaded, units, length);
-    let active = heads
-        .iter()
-        .filter_map(|head| usize::try_from(head.active).ok());
     let results = ResultCells {
-        active: active.into_iter().find(|active| *active > 0),
+        active: told.active,
         init: init.as_ref(),
     };
     let summary = summary.of_grid(loaded.grid.main_dims());
@@ -294,7 +303,7 @@ fn build(mut loaded: Loaded, read: Read<'_>, mut about: About, warnings: &Warnin
     let setting = Setting {
         units,
         length,
-        phases: phases.unwrap_or(loaded.phases),
+        phases: told.phases.unwrap_or(loaded.phases),
         has_connections: !loaded.connections.is_empty(),
     };
     let properties = properties::of(&source, &setting, &mut about);

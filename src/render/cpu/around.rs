@@ -26,7 +26,7 @@ pub struct Surround<'a> {
 impl<'a> Surround<'a> {
     /// Cones with the sections of a lamp.
     pub fn new(cones: &'a Cones<'a>, lamp: &Lamp) -> Self {
-        let toward = |direction: glam::Vec3| lamp.from_afar(direction.into());
+        let toward = |direction: glam::Vec3| lamp.far_toward(direction.into());
         Self {
             cones,
             lamps: directions().map(toward).into(),

@@ -66,7 +66,7 @@ impl Lamp {
     }
 
     /// One with the same sections far away in a direction.
-    pub fn from_afar(&self, direction: Vec3A) -> Self {
+    pub fn far_toward(&self, direction: Vec3A) -> Self {
         Self {
             emitter: Emitter {
                 kind: EMITTER_DIRECTIONAL,
