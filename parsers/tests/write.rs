@@ -53,6 +53,7 @@ fn grid() -> Egrid {
         porosity_model: PorosityModel::DualPermeability,
         nnc: vec![[1, 60], [60, 119]],
         local_nnc: Vec::new(),
+        reservoirs: Vec::new(),
         local_grids: Vec::new(),
     }
 }

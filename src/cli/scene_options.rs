@@ -6,14 +6,17 @@ use std::sync::Arc;
 use anyhow::Context;
 use strataray::case::{Case, load};
 use strataray::render::{self, Executor};
-use strataray::scene::lighting::PRESETS;
+use strataray::scene::lighting::{OcclusionMethod, PRESETS};
 use strataray::scene::{
     CameraSpec, FramingCamera, Interpolation, LightMode, LightingSpec, Mode, Projection, Scene,
-    Space, StepSpec, Storage, StrategyKind,
+    Space, StepSpec, Storage, StrategyKind, Units,
 };
 use strataray::view::{look, wells};
 
-use super::choice::{INTERPOLATIONS, LIGHT_MODES, MODES, SPACES, STORAGES, STRATEGIES, one_of};
+use super::choice::{
+    INTERPOLATIONS, LIGHT_MODES, MODES, OCCLUSION_METHODS, SPACES, STORAGES, STRATEGIES, UNITS,
+    one_of,
+};
 use super::progress::Reporter;
 
 #[derive(clap::Args)]
@@ -42,12 +45,18 @@ pub struct SceneOptions {
     /// True places of the cells, or those by I, J and K (simbox).
     #[arg(long, value_parser = one_of(&SPACES))]
     space: Option<Space>,
+    /// Units of the numbers that are written; those of the scene itself stay in the units of the files.
+    #[arg(long, value_parser = one_of(&UNITS))]
+    units: Option<Units>,
     /// Image size, such as 1000x1000.
     #[arg(long, value_name = "WxH")]
     pub size: Option<String>,
     /// Occlusion toward the viewer, and where it is found.
     #[arg(long, value_name = "MODE", value_parser = one_of(&LIGHT_MODES))]
     occlusion: Option<LightMode>,
+    /// Which way occlusion looks: toward the viewer, or to all sides.
+    #[arg(long, value_name = "METHOD", value_parser = one_of(&OCCLUSION_METHODS))]
+    occlusion_method: Option<OcclusionMethod>,
     /// Preset of occlusion and lights.
     #[arg(long, value_name = "NAME", value_parser = lighting_preset, help = lighting_help())]
     lighting: Option<LightingSpec>,
@@ -126,6 +135,7 @@ impl SceneOptions {
         if let Some(interpolation) = self.interpolation {
             scene.interpolation = interpolation;
         }
+        scene.units = self.units.unwrap_or(scene.units);
         if let Some(storage) = self.storage {
             scene.storage = storage;
         }
@@ -134,6 +144,9 @@ impl SceneOptions {
         }
         if let Some(mode) = self.occlusion {
             scene.lighting.occlusion.get_or_insert_default().mode = mode;
+        }
+        if let Some(method) = self.occlusion_method {
+            scene.lighting.occlusion.get_or_insert_default().method = method;
         }
         if let Some(size) = &self.size {
             let parsed = size

@@ -82,6 +82,7 @@ pub(super) fn egrid(contents: &Contents<'_>) -> Egrid {
         porosity_model: PorosityModel::Single,
         nnc: connections(contents),
         local_nnc: Vec::new(),
+        reservoirs: Vec::new(),
         local_grids: Vec::new(),
     }
 }

@@ -155,6 +155,7 @@ fn view(grid: &Grid, field: CellField, extinction: f64, sampling_step: f64) -> V
             has_box: false,
             has_legend: false,
             facts: None,
+            units: crate::case::Units::default(),
             warnings: Vec::new(),
         },
     }

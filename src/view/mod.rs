@@ -39,6 +39,7 @@ pub use sequence::{Sequence, Turn};
 pub use surfaces::Surfaces;
 pub use wells::Wells;
 
+use crate::case::Units;
 use crate::image::Blending;
 use crate::model::{CellField, FaultFaces, Grid, Space, Spaces};
 use crate::scene::{
@@ -76,6 +77,18 @@ impl From<crate::scene::Space> for Space {
         match space {
             crate::scene::Space::Map => Self::Map,
             crate::scene::Space::Ijk => Self::Ijk,
+        }
+    }
+}
+
+impl From<crate::scene::Units> for Units {
+    fn from(units: crate::scene::Units) -> Self {
+        match units {
+            crate::scene::Units::File => Self::default(),
+            crate::scene::Units::Metric => Self::METRIC,
+            crate::scene::Units::Field => Self::FIELD,
+            crate::scene::Units::Lab => Self::LAB,
+            crate::scene::Units::PvtM => Self::PVT_M,
         }
     }
 }
@@ -166,6 +179,8 @@ pub struct Notes {
     pub has_legend: bool,
     /// What is drawn in numbers, for the line below the picture; `None` where that is hidden.
     pub facts: Option<Arc<Facts>>,
+    /// The units in which numbers are written; all others of a view are in those of the files.
+    pub units: Units,
     /// What the scene asks for in vain, one sentence each.
     pub warnings: Vec<String>,
 }

@@ -125,6 +125,7 @@ fn notes(scene: &Scene, case: &Case, facts: Option<Arc<Facts>>) -> Result<Notes,
         has_box: scene.show.r#box,
         has_legend: scene.show.legend,
         facts,
+        units: scene.units.into(),
         warnings: wells::warnings(scene, case)?,
     })
 }

@@ -7,7 +7,7 @@ use super::state::{Comparison, CurvePlots, Playback, State};
 use crate::scene::{
     CameraSpec, ClipSpec, Filter, Grids, Interpolation, LibcSettings, LightingSpec, Mode,
     PltsSettings, RangeSpec, Scene, Show, Space, SrgSettings, StepSpec, Storage, StrategyKind,
-    TransferSpec,
+    TransferSpec, Units,
 };
 
 /// A change of a tab's state.
@@ -57,6 +57,8 @@ pub enum Action {
     Show(Show),
     /// Background color.
     Background(String),
+    /// Units in which numbers are shown and typed.
+    Units(Units),
     /// A whole scene, as from a file.
     Scene(Box<Scene>),
     /// A second picture, or none.
@@ -110,6 +112,7 @@ impl Action {
             Self::Exaggeration(_) => "vertical exaggeration",
             Self::Show(_) => "what is shown",
             Self::Background(_) => "background",
+            Self::Units(_) => "units",
             Self::Scene(_) => "scene",
             Self::Compare(_) => "comparison",
             Self::Select(..) | Self::Well(..) | Self::Deselect => "selection",
@@ -145,6 +148,7 @@ impl Action {
             Self::Exaggeration(v) => scene.vertical_exaggeration = v,
             Self::Show(v) => scene.show = v,
             Self::Background(v) => scene.background = v,
+            Self::Units(v) => scene.units = v,
             Self::Scene(v) => *scene = *v,
             Self::Compare(v) => state.setup.comparison = v,
             Self::Select(cell, beside) => {

@@ -12,8 +12,8 @@ use super::spread::Spread;
 use super::state::State;
 use super::vectors::VectorCurves;
 use super::watch::Watch;
-use crate::case::Case;
 use crate::case::load::CasePaths;
+use crate::case::{Case, Units};
 use crate::picking::Pick;
 use crate::scene::{CameraSpec, StepSpec};
 
@@ -71,6 +71,11 @@ impl Document {
             wells: None,
             spreads: Vec::new(),
         }
+    }
+
+    /// The units in which numbers are shown.
+    pub fn units(&self) -> Units {
+        self.state.setup.scene.units.into()
     }
 
     /// The files that the case is read from.

@@ -88,6 +88,7 @@ pub fn egrid() -> Egrid {
         porosity_model: PorosityModel::Single,
         nnc: Vec::new(),
         local_nnc: Vec::new(),
+        reservoirs: Vec::new(),
         local_grids: Vec::new(),
     }
 }

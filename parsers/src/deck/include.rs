@@ -182,7 +182,6 @@ impl Scan<'_> {
                 "MAPAXES" => self.found.map_axes = file.f64s(entry)?.try_into().ok(),
                 // Dimensions are the deck's.
                 "SPECGRID" | "DIMENS" => {}
-                _ if self.in_refinement() => {}
                 _ => self.keep(block, CellBox::default()),
             }
         }

@@ -8,6 +8,7 @@ use super::edit::{CellBox, Edit, Place};
 use super::files::DeckFiles;
 use super::include::Nesting;
 use super::lexer::{Cursor, Item, Keyword, Mistake, keyword, line_end, record_end};
+use super::refine::{Refinement, Target, is_division};
 use super::skip::{Skipped, ends_records, is_operation, skip_records};
 use super::source::{Places, Source};
 use super::{FaultFaces, GridUnit, faults, header};
@@ -96,6 +97,8 @@ pub(super) struct Found {
     pub(super) zcorn: Option<Block>,
     /// What is done to arrays of cells, in order.
     pub(super) edits: Vec<Edit>,
+    /// Local grids, in order.
+    pub(super) refinements: Vec<Refinement>,
     /// Sizes by column, row and layer (DXV, DYV, DZV, DRV, DTHETAV), and radii (INRAD, OUTRAD).
     pub(super) vectors: Vec<Block>,
     /// A binary file with the geometry, where GDFILE names one, or why it cannot be opened.
@@ -121,6 +124,10 @@ pub(super) struct Found {
     /// True where COORD has radii and angles (`T` of SPECGRID).
     pub(super) radial_corners: bool,
     pub(super) porosity_model: PorosityModel,
+    /// DPGRID: fractures have what their matrix has unless they are given their own.
+    pub(super) shares_matrix: bool,
+    /// NODPPM: permeabilities of fractures are effective ones.
+    pub(super) has_effective_fractures: bool,
     pub(super) files: Vec<PathBuf>,
     /// Bytes of all files, each time they are included.
     pub(super) bytes: usize,
@@ -164,7 +171,8 @@ pub(super) struct Scan<'a> {
     pub(super) section: Option<Section>,
     /// The cells that arrays at hand belong to.
     pub(super) input_box: CellBox,
-    refinement: bool,
+    /// Whose cells keywords are for.
+    pub(super) target: Target,
     pub(super) nesting: Nesting,
 }
 
@@ -182,7 +190,7 @@ pub(super) fn scan(
             found,
             section: None,
             input_box: CellBox::default(),
-            refinement: false,
+            target: Target::Main,
             nesting: Nesting::default(),
         };
         scan.file(files.open(path)?, Vec::new())?;
@@ -297,7 +305,8 @@ impl Scan<'_> {
         items: &[Item],
     ) -> Result<(), ParseError> {
         let name = keyword.name.as_str();
-        if self.refinement {
+        // A local grid has boxes of its own, and nothing else of what a head says.
+        if self.target != Target::Main && name != "BOX" {
             return Ok(());
         }
         let placed = |mistake| source.mistake(name, mistake);
@@ -367,6 +376,12 @@ impl Scan<'_> {
         keyword: &Keyword,
     ) -> Result<(), ParseError> {
         let name = keyword.name.as_str();
+        if self.target != Target::Main {
+            let message = format!("{name} of local grids is not read");
+            self.warn(source, keyword.at, &message);
+            skip_records(cursor, name).map_err(|mistake| source.mistake(name, mistake))?;
+            return Ok(());
+        }
         let placed = |mistake| source.mistake(name, mistake);
         let place = |at| Place {
             source: Rc::clone(source),
@@ -437,9 +452,6 @@ impl Scan<'_> {
         })?;
         cursor.at = line_end(cursor.text, end);
         let block = self.block(source, keyword, end);
-        if self.refinement {
-            return Ok(());
-        }
         self.keep(block, self.input_box);
         Ok(())
     }
@@ -448,9 +460,14 @@ impl Scan<'_> {
     pub(super) fn keep(&mut self, block: Block, cells: CellBox) {
         let (source, at, name) = (Rc::clone(&block.source), block.at, block.name.clone());
         let place = match name.as_str() {
-            "COORD" => &mut self.found.coord,
-            "ZCORN" => &mut self.found.zcorn,
-            _ => return self.found.edits.push(Edit::Given(block, cells)),
+            "COORD" if self.target == Target::Main => &mut self.found.coord,
+            "ZCORN" if self.target == Target::Main => &mut self.found.zcorn,
+            _ => {
+                if let Some(edits) = self.edits() {
+                    edits.push(Edit::Given(block, cells));
+                }
+                return;
+            }
         };
         if place.replace(block).is_some() {
             let message = format!("{name} is given again; the last one is used");
@@ -471,30 +488,37 @@ impl Scan<'_> {
             Skipped::Unended(at) => {
                 self.warn(source, at, &format!("the text behind {name} has no closing / up to the end of the file; it is skipped"));
             }
-            Skipped::OneNumeric(_) if self.refinement => {}
             Skipped::OneNumeric(end) => {
                 let block = self.block(source, keyword, end);
+                let is_main = self.target == Target::Main;
                 match name {
-                    "DXV" | "DYV" | "DZV" | "DRV" | "DTHETAV" | "INRAD" | "OUTRAD" => {
+                    "DXV" | "DYV" | "DZV" | "DRV" | "DTHETAV" | "INRAD" | "OUTRAD" if is_main => {
                         self.found.vectors.push(block);
                     }
-                    _ => self.found.edits.push(Edit::Given(block, self.input_box)),
+                    _ if is_division(name) => self.division(block),
+                    _ => self.keep(block, self.input_box),
                 }
             }
         }
         if let Some(section) = Section::from_keyword(name) {
             self.section = Some(section);
             self.input_box = CellBox::default();
-            self.refinement = false;
+            self.target = Target::Main;
         }
         match name {
-            "RADIAL" | "DR" | "DRV" | "DTHETA" | "DTHETAV" | "INRAD" => self.found.radial = true,
+            "RADIAL" | "DR" | "DRV" | "DTHETA" | "DTHETAV" | "INRAD"
+                if self.target == Target::Main =>
+            {
+                self.found.radial = true;
+            }
             "DUALPORO" if self.section == Some(Section::Runspec) => {
                 self.found.porosity_model = PorosityModel::Dual;
             }
             "DUALPERM" if self.section == Some(Section::Runspec) => {
                 self.found.porosity_model = PorosityModel::DualPermeability;
             }
+            "DPGRID" => self.found.shares_matrix = true,
+            "NODPPM" => self.found.has_effective_fractures = true,
             "EQLZCORN" => self.warn(
                 source,
                 keyword.at,
@@ -503,29 +527,6 @@ impl Scan<'_> {
             _ => {}
         }
         Ok(())
-    }
-
-    fn refine(
-        &mut self,
-        source: &Rc<Source>,
-        cursor: &mut Cursor,
-        keyword: &Keyword,
-    ) -> Result<(), ParseError> {
-        let name = keyword.name.as_str();
-        skip_records(cursor, name).map_err(|mistake| source.mistake(name, mistake))?;
-        self.refinement = name != "ENDFIN";
-        if self.refinement {
-            let message = format!(
-                "{name}: local refinements are not read from text; run the simulator and open the EGRID to see them"
-            );
-            self.warn(source, keyword.at, &message);
-        }
-        Ok(())
-    }
-
-    /// True between the keyword of a local refinement and its end.
-    pub(super) fn in_refinement(&self) -> bool {
-        self.refinement
     }
 
     fn block(&self, source: &Rc<Source>, keyword: &Keyword, end: usize) -> Block {

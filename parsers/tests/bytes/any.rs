@@ -18,7 +18,7 @@ use super::fixtures::cell;
 use super::properties::{BINARY_HEAD, LEGACY_HEAD, READERS, TEXT_HEAD, behind, holds};
 
 /// Text that means something to a reader, so that bytes get beyond the first check.
-const WORDS: [&str; 58] = [
+const WORDS: [&str; 64] = [
     "SPECGRID\n",
     "DIMENS\n",
     "COORD\n",
@@ -36,6 +36,12 @@ const WORDS: [&str; 58] = [
     "EDIT\n",
     "RUNSPEC\n",
     "DUALPORO\n",
+    "DPGRID\n",
+    "CARFIN\n",
+    "L 6*1 2 2 2 /\n",
+    "NXFIN\n",
+    "REFINE\n",
+    "ENDFIN\n",
     "RADIAL\n",
     "INRAD\n",
     "DRV\n",

@@ -5,7 +5,7 @@
 use std::path::Path;
 
 use strataray_parsers::deck::{DeckCells, Grdecl, MemoryFiles, Schedule};
-use strataray_parsers::egrid::Egrid;
+use strataray_parsers::egrid::{Egrid, PorosityModel};
 use strataray_parsers::records::{Kind, RecordFile};
 use strataray_parsers::roff::RoffFile;
 use strataray_parsers::summary::Summary;
@@ -206,7 +206,20 @@ pub fn deck(bytes: Vec<u8>) -> Result<(), ParseError> {
     let lengths = [grid.coord.len(), grid.zcorn.len()];
     check_grid(grid.dims, lengths, grid.actnum.as_deref());
     let cells: usize = grid.dims.iter().product();
-    assert!(grid.properties.iter().all(|p| p.values.len() == cells));
+    let lengths = match grid.porosity_model {
+        PorosityModel::Single => vec![cells],
+        _ => vec![cells, 2 * cells],
+    };
+    let mut properties = grid.properties.iter();
+    assert!(properties.all(|p| lengths.contains(&p.values.len())));
+    for local in &grid.local_grids {
+        let (properties, local) = (&local.properties, &local.grid);
+        let lengths = [local.coord.len(), local.zcorn.len()];
+        check_grid(local.dims, lengths, local.actnum.as_deref());
+        let cells: usize = local.dims.iter().product();
+        assert!(properties.iter().all(|p| p.values.len() == cells));
+        assert_eq!(local.host.len(), cells);
+    }
     for fault in &grid.faults {
         let mut ends = [fault.i, fault.j, fault.k].into_iter().zip(grid.dims);
         assert!(ends.all(|([first, last], n)| first <= last && last <= n));

@@ -12,6 +12,7 @@ mod source;
 mod summary;
 mod wells;
 
+use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -22,14 +23,15 @@ use strataray_parsers::restart::{self, Step as FileStep};
 use strataray_parsers::{At, ParseError, Warnings, init};
 
 use self::grids::Loaded;
-use self::local::Local;
+use self::local::{Beside, Local};
+use self::pore_volume::Least;
 use self::properties::Setting;
 use self::slots::{CellSlots, ResultCells};
 use self::source::FileSource;
 use self::summary::SummaryFiles;
 use self::wells::WellFiles;
 use crate::case::{About, Case, FieldCache, OverSteps, Simbox, Step, WellsOfSteps};
-use crate::model::Dims;
+use crate::model::{Dims, Ijk};
 
 /// Opens the case that `path` names: any of its files, or its base name.
 ///
@@ -196,7 +198,11 @@ fn build(mut loaded: Loaded, read: Read<'_>, mut about: About, warnings: &Warnin
         .iter()
         .map(|head| head.phases)
         .find(|phases| *phases > 0);
-    pore_volume::leave_small(&mut loaded, units, length, &mut about.notes);
+    let least = Least::of(&loaded, units, length);
+    if let Some(least) = &least {
+        least.leave_small(&mut loaded, &mut about.notes);
+    }
+    pore_volume::complete(&mut loaded, units, length);
     let active = heads
         .iter()
         .filter_map(|head| usize::try_from(head.active).ok());
@@ -206,7 +212,12 @@ fn build(mut loaded: Loaded, read: Read<'_>, mut about: About, warnings: &Warnin
     };
     let cells = CellSlots::new(&mut loaded.grid, &loaded.flags, &results, &mut about.notes);
     let local_grids = std::mem::take(&mut loaded.local_grids);
-    let locals = local::read(local_grids, &loaded.grid, init.as_ref(), &mut about.notes);
+    let beside = Beside {
+        main: &loaded.grid,
+        init: init.as_ref(),
+        least: least.as_ref(),
+    };
+    let locals = local::read(local_grids, &beside, &mut about.notes);
     let mut source = FileSource {
         cells,
         local: None,
@@ -251,19 +262,33 @@ fn build(mut loaded: Loaded, read: Read<'_>, mut about: About, warnings: &Warnin
 fn add_local_grids(
     loaded: &mut Loaded,
     source: &mut FileSource,
-    locals: Vec<Local>,
+    mut locals: Vec<Local>,
     about: &mut About,
 ) {
+    let mut main = Cow::Borrowed(&loaded.grid);
+    match local::reservoirs(&loaded.grid, &loaded.reservoirs) {
+        _ if loaded.reservoirs.is_empty() => {}
+        Ok((rest, reservoirs)) => {
+            main = Cow::Owned(rest);
+            locals.extend(reservoirs);
+            about.notes.push(local::told(&loaded.reservoirs));
+        }
+        Err(why) => about.notes.push(format!(
+            "the first coordinate system is used for all layers: {why}"
+        )),
+    }
     if locals.is_empty() {
         return;
     }
     let last = source.steps.last().map(|step| &step.arrays);
     let arrays: Vec<_> = source.init.iter().chain(last).collect();
-    let left_out = local::arrays_left_out(&locals, &arrays);
+    let left_out = local::arrays_left_out(&locals, &source.texts, &arrays);
     about.notes.extend(left_out);
     let connections = &loaded.local_connections;
-    match local::join(&loaded.grid, &source.cells, locals, connections) {
+    match local::join(&main, &source.cells, locals, connections) {
         Ok((grid, places, connections)) => {
+            let in_lattice = |cell: &mut Ijk| *cell = grid.in_lattice(0, *cell).unwrap_or(*cell);
+            loaded.connections.iter_mut().flatten().for_each(in_lattice);
             loaded.grid = grid;
             loaded.connections.extend(connections);
             source.local = Some(places);

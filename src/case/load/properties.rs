@@ -1,5 +1,6 @@
 //! Which properties the files of a case have, and which follow from them.
 
+use strataray_parsers::arrays::is_state;
 use strataray_parsers::cells::CellArrays;
 use strataray_parsers::units::{LengthUnit, UnitSystem};
 
@@ -81,7 +82,7 @@ pub fn of(source: &FileSource, setting: &Setting, about: &mut About) -> Vec<Prop
     list
 }
 
-/// Properties of fractures, and those that change with time of matrix and fractures together, where there are any.
+/// Properties of fractures, and of matrix and fractures together those of the state, where there are any.
 fn of_fractures(source: &FileSource, list: &[Property]) -> Vec<Property> {
     let has = |name: &str| source.has_fractures(name);
     let has_volumes = has("PORV");
@@ -91,7 +92,8 @@ fn of_fractures(source: &FileSource, list: &[Property]) -> Vec<Property> {
             _ => property.rest_of.iter().all(|name| has(name)),
         };
         let fracture = is_there.then(|| Pores::Fracture.twin(property));
-        let is_total = is_there && has_volumes && property.steps > 0;
+        let is_state = property.steps > 0 || is_state(&property.name);
+        let is_total = is_there && has_volumes && is_state;
         fracture
             .into_iter()
             .chain(is_total.then(|| Pores::Total.twin(property)))

@@ -159,6 +159,12 @@ impl CellSlots {
 }
 
 impl CellSlots {
+    /// True where an array of all cells has values of fractures behind those of the matrix.
+    pub fn has_all_fractures(&self, count: usize) -> bool {
+        let fractures = self.fractures.as_ref();
+        fractures.is_some_and(|places| count == places.whole)
+    }
+
     /// The values of the active cells' fractures from an array that [has them](Self::has_fractures).
     pub fn pick_fractures(&self, values: &[f32]) -> Vec<f32> {
         let fractures = self.fractures.as_ref();

@@ -85,27 +85,54 @@ impl FileSource {
             return Ok(None);
         };
         let values = pick(&arrays.values(entry)?);
-        self.of_all_grids(values, Some(arrays), name)
+        Ok(Some(match &self.local {
+            Some(places) => places.values(&values, arrays, name)?,
+            None => values,
+        }))
     }
 
-    /// True where an array of INIT or of a step has values of fractures too.
+    /// Values of the matrix or of fractures, of text or else of arrays.
+    fn values_of(
+        &self,
+        name: &str,
+        pores: Pores,
+        step: usize,
+    ) -> Result<Option<Vec<f32>>, CaseError> {
+        let is_matrix = pores == Pores::Matrix;
+        let Some(text) = self.text(name) else {
+            return self.read(name, step, |values| match is_matrix {
+                true => self.cells.pick(values),
+                false => self.cells.pick_fractures(values),
+            });
+        };
+        let values: Vec<f32> = text.values.iter().map(|v| *v as f32).collect();
+        let picked = match is_matrix {
+            true => self.cells.pick_of_all(&values),
+            false if self.cells.has_all_fractures(values.len()) => {
+                self.cells.pick_fractures(&values)
+            }
+            false => return Ok(None),
+        };
+        Ok(Some(match &self.local {
+            Some(places) => places.values_of_texts(&picked, name, is_matrix),
+            None => picked,
+        }))
+    }
+
+    /// The array of text that is a property: one that changes with time is that of the steps.
+    fn text(&self, name: &str) -> Option<&DeckProperty> {
+        let text = self.texts.iter().find(|p| p.name == name)?;
+        (!self.changes(name)).then_some(text)
+    }
+
+    /// True where text, or an array of INIT or of a step, has values of fractures too.
     pub fn has_fractures(&self, name: &str) -> bool {
+        if let Some(text) = self.text(name) {
+            return self.cells.has_all_fractures(text.values.len());
+        }
         let arrays = self.steps.iter().map(|s| &s.arrays).chain(&self.init);
         let mut found = arrays.filter_map(|arrays| arrays.find(name));
         found.any(|entry| self.cells.has_fractures(entry.count as usize))
-    }
-
-    /// Values of the main grid, with those of local grids from the same arrays.
-    fn of_all_grids(
-        &self,
-        main: Vec<f32>,
-        arrays: Option<&CellArrays>,
-        name: &str,
-    ) -> Result<Option<Vec<f32>>, CaseError> {
-        Ok(Some(match &self.local {
-            Some(places) => places.values(&main, arrays, name)?,
-            None => main,
-        }))
     }
 
     /// Refuses results of another grid.
@@ -251,20 +278,16 @@ impl std::fmt::Display for Misfit<'_> {
 
 impl Source for FileSource {
     fn values(&self, name: &str, step: usize) -> Result<Option<Vec<f32>>, CaseError> {
-        let (array, pores) = Pores::of(name);
-        let text = self.texts.iter().find(|p| p.name == name);
-        if let Some(property) = text.filter(|_| !self.changes(name)) {
-            let values: Vec<f32> = property.values.iter().map(|v| *v as f32).collect();
-            return self.of_all_grids(self.cells.pick_of_all(&values), None, name);
-        }
+        let (array, pores) = match self.text(name) {
+            Some(_) => (name, Pores::Matrix),
+            None => Pores::of(name),
+        };
         match pores {
-            Pores::Matrix => self.read(array, step, |values| self.cells.pick(values)),
-            Pores::Fracture => self.read(array, step, |values| self.cells.pick_fractures(values)),
+            Pores::Matrix | Pores::Fracture => self.values_of(array, pores, step),
             Pores::Total => {
                 let both = |name: &str| {
-                    let matrix = self.read(name, step, |values| self.cells.pick(values))?;
-                    let of_fractures = |values: &[f32]| self.cells.pick_fractures(values);
-                    let fractures = self.read(name, step, of_fractures)?;
+                    let matrix = self.values_of(name, Pores::Matrix, step)?;
+                    let fractures = self.values_of(name, Pores::Fracture, step)?;
                     Ok::<_, CaseError>(matrix.zip(fractures))
                 };
                 let (Some(of), Some(volumes)) = (both(array)?, both(PORE_VOLUME)?) else {

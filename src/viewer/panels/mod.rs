@@ -38,9 +38,10 @@ use super::reader::{Curves, Table};
 use super::spread::Spread;
 use super::state::State;
 use super::vectors::VectorCurves;
-use crate::case::{Case, Property, Well};
+use crate::case::{Case, Measure, Property, Units, Well};
 use crate::picking::Pick;
-use crate::scene::Scene;
+use crate::picture::Lengths;
+use crate::scene::{Scene, Space};
 
 pub use controls::{Choice, list, one_of};
 pub use curves::show as curves;
@@ -84,6 +85,29 @@ impl PanelContext<'_> {
         let minus = self.case.minus.as_ref();
         let all = self.case.properties.iter();
         all.filter(move |p| minus.is_none_or(|m| m.name != p.name))
+    }
+
+    /// The units in which numbers are shown and typed.
+    pub fn units(&self) -> Units {
+        self.scene.units.into()
+    }
+
+    /// How the values of a property are shown and typed.
+    pub fn measure(&self, property: &str) -> Measure {
+        self.case.measure(property, self.units())
+    }
+
+    /// How lengths are shown, with short units.
+    pub fn lengths(&self) -> Lengths {
+        Lengths::of(self.case, self.units())
+    }
+
+    /// How distances in the picture are shown: those between numbers of cells as they are.
+    pub fn world_length(&self) -> Measure {
+        match self.scene.space {
+            Space::Map => self.lengths().grid,
+            Space::Ijk => Measure::of_file("cells"),
+        }
     }
 
     /// The property shown.

@@ -63,7 +63,8 @@ fn properties(ui: &mut Ui, about: &PanelContext<'_>, current: &str, actions: &mu
                 }
                 ui.weak(group);
                 for property in found {
-                    let unit = match property.unit.as_str() {
+                    let measure = about.measure(&property.name);
+                    let unit = match measure.unit.as_str() {
                         "" => "No unit",
                         unit => unit,
                     };
@@ -169,8 +170,10 @@ fn range(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action>) {
         Some(Of::Fixed) if low < high => actions.push(Action::Range(RangeSpec::Fixed([low, high]))),
         _ => {}
     }
-    let unit = about.case.unit(&picture.view.shown.property);
+    let measure = about.measure(&picture.view.shown.property);
+    let unit = measure.unit.as_str();
     let is_log = about.scene.transfer.scale == ScaleSpec::Log;
+    [low, high] = [low, high].map(|end| measure.show(end));
     let span = (high - low).abs().max(1e-9);
     ui.horizontal(|ui| {
         let mut changed = false;
@@ -184,6 +187,7 @@ fn range(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action>) {
             changed |= number(ui, value, speed, name, what.trim_end_matches([',', ' ']));
         }
         ui.weak(unit);
+        let [low, high] = [low, high].map(|end| measure.read(end));
         if changed && low < high && (low > 0.0 || !is_log) {
             actions.push(Action::Range(RangeSpec::Fixed([low, high])));
         }

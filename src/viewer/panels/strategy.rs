@@ -36,7 +36,8 @@ pub fn show(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action>) {
 
 fn sampling_step(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action>) {
     if let Some(picture) = about.picture {
-        let mut step = picture.view.sampling.step;
+        let length = about.world_length();
+        let mut step = length.show(picture.view.sampling.step);
         let speed = 0.01 * step;
         ui.horizontal(|ui| {
             ui.label("Sampling step");
@@ -45,10 +46,13 @@ fn sampling_step(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action
                 .range(0.001..=1e6);
             if ui
                 .add(drag)
-                .on_hover_text("Distance between samples along a ray, in the grid's length unit")
+                .on_hover_text(format!(
+                    "Distance between samples along a ray, {}",
+                    length.unit
+                ))
                 .changed()
             {
-                actions.push(Action::SamplingStep(Some(step)));
+                actions.push(Action::SamplingStep(Some(length.read(step))));
             }
             if ui.button("Default").clicked() {
                 actions.push(Action::SamplingStep(None));
