@@ -20,6 +20,7 @@ use strataray_parsers::case::{CaseFiles, GridSource, RestartSource, find, find_w
 use strataray_parsers::cells::CellArrays;
 use strataray_parsers::deck::{Grdecl, UnitSystem};
 use strataray_parsers::restart::{self, Step as FileStep};
+use strataray_parsers::units::LengthUnit;
 use strataray_parsers::{At, ParseError, Warnings, init};
 
 use self::grids::Loaded;
@@ -172,6 +173,15 @@ struct Read<'a> {
     paths: paths::Files<'a>,
 }
 
+/// The unit system of cases that name none.
+fn system_of(length: LengthUnit) -> UnitSystem {
+    match length {
+        LengthUnit::Foot => UnitSystem::Field,
+        LengthUnit::Centimetre => UnitSystem::Lab,
+        LengthUnit::Metre => UnitSystem::Metric,
+    }
+}
+
 /// The case of what was read.
 fn build(mut loaded: Loaded, read: Read<'_>, mut about: About, warnings: &Warnings) -> Case {
     let Read {
@@ -189,11 +199,7 @@ fn build(mut loaded: Loaded, read: Read<'_>, mut about: About, warnings: &Warnin
         .collect();
     let units = heads.iter().find_map(|head| head.units);
     let length = loaded.settle_units(units, &mut about);
-    let units = units.or(loaded.units).unwrap_or(match length.short() {
-        "FT" => UnitSystem::Field,
-        "CM" => UnitSystem::Lab,
-        _ => UnitSystem::Metric,
-    });
+    let units = units.or(loaded.units).unwrap_or(system_of(length));
     let phases = heads
         .iter()
         .map(|head| head.phases)
