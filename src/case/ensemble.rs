@@ -58,6 +58,7 @@ impl Statistic {
         let mean = values.iter().map(|v| f64::from(*v)).sum::<f64>() / count;
         match self {
             Self::Mean => mean as f32,
+            Self::Deviation if values.len() < 2 => f32::NAN,
             Self::Deviation => {
                 let squares = values.iter().map(|v| (f64::from(*v) - mean).powi(2));
                 (squares.sum::<f64>() / (count - 1.0)).sqrt() as f32

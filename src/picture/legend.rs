@@ -501,9 +501,9 @@ mod tests {
         };
         let measure = crate::case::Units::FIELD.of_unit("BARSA", "PRESSURE");
         let found = marks(&logarithmic, &measure, 5, 10);
-        let hundred = found.iter().find(|mark| mark.1 == "100").unwrap();
-        let expected = ((100.0 / 14.503_773_773_f64).log10() - 1.0) / 2.0;
-        assert!((hundred.0 - expected).abs() < 1e-9, "{found:?}");
+        let thousand = found.iter().find(|mark| mark.1 == "1000").unwrap();
+        let expected = ((1000.0 / 14.503_773_773_f64).log10() - 1.0) / 2.0;
+        assert!((thousand.0 - expected).abs() < 1e-9, "{found:?}");
     }
 
     #[test]

@@ -86,20 +86,27 @@ fn a_path_goes_through_the_cells_in_which_its_points_lie() {
     let path = well.path.unwrap();
     assert_eq!(path.measured.as_ref().unwrap(), &[0.0, 100.0, 200.0, 300.0]);
     let locator = Locator::new(&case.grid);
-    let mut inside = 0;
+    // Faces are curved, and for a line two triangles each: beside them one of both cells is as good.
+    let beside = 0.03;
+    let (mut inside, mut same) = (0, 0);
     for n in 0..3000 {
         let place = 1.0 + 2.0 * f64::from(n) / 3000.0;
         let point = strataray::model::crossings::point_at(&path.points, place);
         let located = locator.locate(point).map(|found| found.ijk);
-        let over = |c: &&strataray::model::Crossing| c.part[0] <= place && place <= c.part[1];
-        let crossed: Vec<Ijk> = path.crossings.iter().filter(over).map(|c| c.cell).collect();
-        inside += usize::from(located.is_some());
+        let crossed = |slack: f64| -> Vec<Ijk> {
+            let over = |c: &&strataray::model::Crossing| {
+                c.part[0] - slack <= place && place <= c.part[1] + slack
+            };
+            path.crossings.iter().filter(over).map(|c| c.cell).collect()
+        };
+        same += usize::from(crossed(0.0).first().copied() == located);
         match located {
-            Some(cell) => assert!(crossed.contains(&cell), "{place}: {cell:?} {crossed:?}"),
-            None => assert!(crossed.is_empty(), "{place}: {crossed:?}"),
+            Some(cell) => assert!(crossed(beside).contains(&cell), "{place}: {cell:?}"),
+            None => assert!(crossed(-beside).is_empty(), "{place}"),
         }
+        inside += usize::from(located.is_some());
     }
-    assert!(inside > 1000, "{inside}");
+    assert!(inside > 500 && same > 2950, "{inside} {same}");
     // What is filtered by the well is what is on its path.
     let mut cells: Vec<Ijk> = path.crossings.iter().map(|c| c.cell).collect();
     cells.sort_unstable_by_key(|cell| case.grid.dims().cell(*cell));
@@ -217,7 +224,7 @@ fn a_path_of_a_simulated_well_is_drawn_in_its_place() {
         .cells(&bare.grid)
         .map(|cell| {
             let cell = bare.grid.hexahedron(cell);
-            let point = cell.at(DVec3::new(0.6, 0.5, 0.0));
+            let point = cell.at(DVec3::new(0.95, 0.9, 0.0));
             spaces.map_from_world(spaces.world_from_grid.transform_point3(point))
         })
         .collect();
