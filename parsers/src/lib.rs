@@ -1,7 +1,7 @@
 //! Readers and writers of Eclipse-style reservoir files, as written: no geometry, no GPU.
 //!
 //! Three levels: bytes (a memory map, records, tokens), typed records ([`egrid`], [`init`],
-//! [`restart`], [`wells`], [`summary`], [`deck`], [`roff`]), and the [`case`] that finds the files belonging together. Bad files
+//! [`restart`], [`wells`], [`summary`], [`deck`], [`roff`], [`resqml`]), and the [`case`] that finds the files belonging together. Bad files
 //! end in a [`ParseError`] that names file, keyword and place; no reader panics, prints, or
 //! allocates by a count that the remaining bytes do not cover.
 //!
@@ -109,6 +109,7 @@ mod mapped;
 mod parallel;
 mod radial;
 pub mod records;
+pub mod resqml;
 pub mod restart;
 pub mod roff;
 pub mod summary;

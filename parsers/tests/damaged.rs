@@ -48,6 +48,8 @@ fn readers(path: &Path) -> Vec<Reader> {
         "SMSPEC" | "UNSMRY" => &["summary"],
         "ESMRY" => &["esmry"],
         "ROFF" => &["roff"],
+        "EPC" => &["resqml"],
+        "H5" => &["resqml_arrays"],
         "PNG" | "CSV" | "JSON" | "MD" => &[],
         x if x.starts_with('X') && x.len() == 5 => &["restart", "wells"],
         _ => &["deck"],

@@ -47,6 +47,7 @@ mod picking;
 mod pictures;
 mod point_location;
 mod reported;
+mod resqml;
 mod roff;
 mod shadows;
 mod simbox;

@@ -7,9 +7,10 @@ use std::path::Path;
 use strataray_parsers::deck::{DeckCells, Grdecl, MemoryFiles};
 use strataray_parsers::egrid::Egrid;
 use strataray_parsers::records::{Kind, RecordFile};
+use strataray_parsers::resqml::Package;
 use strataray_parsers::roff::RoffFile;
 use strataray_parsers::summary::Summary;
-use strataray_parsers::{ErrorKind, ParseError, Warnings, init, restart, wells};
+use strataray_parsers::{ErrorKind, FileBytes, ParseError, Warnings, init, restart, wells};
 
 /// The name of the file in errors.
 const NAME: &str = "ANY.FILE";
@@ -18,7 +19,7 @@ const NAME: &str = "ANY.FILE";
 pub type Reader = fn(Vec<u8>) -> Result<(), ParseError>;
 
 /// All readers, by the names of their fuzz targets.
-pub const READERS: [(&str, Reader); 9] = [
+pub const READERS: [(&str, Reader); 11] = [
     ("records", records),
     ("egrid", egrid),
     ("init", init),
@@ -27,6 +28,8 @@ pub const READERS: [(&str, Reader); 9] = [
     ("summary", summary),
     ("esmry", esmry),
     ("roff", roff),
+    ("resqml", resqml),
+    ("resqml_arrays", resqml_arrays),
     ("deck", deck),
 ];
 
@@ -184,6 +187,41 @@ pub fn roff(bytes: Vec<u8>) -> Result<(), ParseError> {
     for parameter in file.parameters()? {
         let cells = file.dims()?.iter().product::<usize>();
         assert_eq!(file.values(&parameter)?.len(), cells);
+    }
+    Ok(())
+}
+
+/// A package as resqpy writes it, and the file with its arrays.
+pub const PACKAGE: &[u8] = include_bytes!("../../../tests/data/resqml/small.epc");
+pub const ARRAYS: &[u8] = include_bytes!("../../../tests/data/resqml/small.h5");
+
+/// A package with the arrays of another one.
+pub fn resqml(bytes: Vec<u8>) -> Result<(), ParseError> {
+    in_package(bytes, ARRAYS.to_vec())
+}
+
+/// The arrays of a package.
+pub fn resqml_arrays(bytes: Vec<u8>) -> Result<(), ParseError> {
+    in_package(PACKAGE.to_vec(), bytes)
+}
+
+fn in_package(package: Vec<u8>, arrays: Vec<u8>) -> Result<(), ParseError> {
+    let arrays = FileBytes::from((format!("{NAME}/small.h5"), arrays));
+    let package = Package::from_bytes((NAME, package), &[arrays])?;
+    for grid in package.grids() {
+        package.crs(grid)?;
+        let geometry = package.geometry(grid)?;
+        let [ni, nj, nk] = geometry.dims;
+        assert!(
+            geometry
+                .splits
+                .iter()
+                .all(|s| s.pillar < (ni + 1) * (nj + 1))
+        );
+        for property in package.properties() {
+            let values = package.values(property, geometry.dims)?;
+            assert_eq!(values.len(), ni * nj * nk);
+        }
     }
     Ok(())
 }

@@ -5,6 +5,7 @@ mod local;
 mod pore_volume;
 mod properties;
 mod radial;
+mod resqml;
 mod roff;
 mod slots;
 mod source;
@@ -189,11 +190,15 @@ fn build(
         init: None,
         steps: Vec::new(),
         texts: std::mem::take(&mut loaded.texts),
+        package: loaded.package.take(),
         summary,
     };
     source.take_fitting(init, steps, &mut about);
     leave_unfinished(&mut source.steps, &mut about.notes);
     about.notes.extend(source.misfits());
+    if let Some(package) = source.package.as_mut().filter(|_| !source.steps.is_empty()) {
+        about.notes.extend(package.drop_steps());
+    }
     read_wells(&source, &mut about);
     add_local_grids(&mut loaded, &mut source, locals, &mut about);
     let setting = Setting {
@@ -209,7 +214,7 @@ fn build(
         about,
         fault_faces: Arc::new(loaded.fault_faces),
         connections: loaded.connections,
-        steps: source.steps.iter().map(step).collect(),
+        steps: steps_of(&source),
         properties,
         source: Arc::new(source),
         cache: Arc::new(FieldCache::default()),
@@ -244,6 +249,14 @@ fn add_local_grids(
         Err(why) => about
             .notes
             .push(format!("local grids are not shown: {why}")),
+    }
+}
+
+/// The steps of the results, else those of a package.
+fn steps_of(source: &FileSource) -> Vec<Step> {
+    match &source.package {
+        Some(package) if source.steps.is_empty() => package.steps().to_vec(),
+        _ => source.steps.iter().map(step).collect(),
     }
 }
 

@@ -11,6 +11,7 @@ use strataray_parsers::restart::Step as FileStep;
 use strataray_parsers::{At, ErrorKind, ParseError};
 
 use super::local::Places;
+use super::resqml::PackageValues;
 use super::slots::CellSlots;
 use super::summary::SummaryFiles;
 use super::wells;
@@ -36,6 +37,8 @@ pub struct FileSource {
     pub steps: Vec<FileStep>,
     /// Arrays of decks and other text.
     pub texts: Vec<DeckProperty>,
+    /// Properties of a RESQML package.
+    pub package: Option<PackageValues>,
     /// Curves over time.
     pub summary: SummaryFiles,
 }
@@ -254,6 +257,11 @@ impl Source for FileSource {
         if let Some(property) = text.filter(|_| !self.changes(name)) {
             let values: Vec<f32> = property.values.iter().map(|v| *v as f32).collect();
             return self.of_all_grids(self.cells.pick_of_all(&values), None, name);
+        }
+        let package = self.package.as_ref().filter(|p| p.has(name));
+        if let Some(package) = package.filter(|_| !self.changes(name)) {
+            let values = package.values(name, step)?;
+            return Ok(values.map(|values| self.cells.pick_of_all(&values)));
         }
         match pores {
             Pores::Matrix => self.read(array, step, |values| self.cells.pick(values)),
