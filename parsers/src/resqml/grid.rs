@@ -96,13 +96,16 @@ struct Geometry {
 #[derive(Debug)]
 enum PointsObject {
     Nodes(Dataset),
-    Lines {
-        parameters: Dataset,
-        knots: usize,
-        kinds: Values,
-        points: Dataset,
-        point_parameters: Option<Values>,
-    },
+    Lines(Box<LinesObject>),
+}
+
+#[derive(Debug)]
+struct LinesObject {
+    parameters: Dataset,
+    knots: usize,
+    kinds: Values,
+    points: Dataset,
+    point_parameters: Option<Values>,
 }
 
 #[derive(Debug)]
@@ -231,7 +234,10 @@ impl PointsObject {
     fn read(part: Part<'_>, node: Node<'_, '_>) -> Result<Self, ParseError> {
         match xml::type_of(node) {
             "Point3dHdf5Array" => Dataset::of(part, node).map(Self::Nodes),
-            "Point3dParametricArray" => Self::lines(part, node),
+            "Point3dParametricArray" => {
+                let lines = LinesObject::read(part, node)?;
+                Ok(Self::Lines(Box::new(lines)))
+            }
             other => {
                 let message = format!(
                     "its points are a {other}, which is not read: write them as points of their own (Point3dHdf5Array)"
@@ -241,7 +247,30 @@ impl PointsObject {
         }
     }
 
-    fn lines(part: Part<'_>, node: Node<'_, '_>) -> Result<Self, ParseError> {
+    fn load(
+        &self,
+        part: Part<'_>,
+        files: &Files,
+        [nodes, lines, pillars]: [usize; 3],
+    ) -> Result<Points, ParseError> {
+        let count = nodes.saturating_mul(lines);
+        match self {
+            Self::Nodes(points) => {
+                let points = points.numbers(files, count.saturating_mul(3));
+                points.map(Points::Nodes)
+            }
+            Self::Lines(object) => {
+                // Datasets first: a constant has as many values as it is asked for.
+                let parameters = object.parameters.numbers(files, count)?;
+                let lines = object.load(part, files, pillars)?;
+                Ok(Points::Lines { parameters, lines })
+            }
+        }
+    }
+}
+
+impl LinesObject {
+    fn read(part: Part<'_>, node: Node<'_, '_>) -> Result<Self, ParseError> {
         for name in ["ParametricLineIndices", "TruncatedLineIndices"] {
             if xml::child(node, name).is_some() {
                 let message = format!("its points have {name}, which are not read");
@@ -250,7 +279,7 @@ impl PointsObject {
         }
         let lines = part.need(node, "ParametricLines")?;
         let point_parameters = xml::child(lines, "ControlPointParameters");
-        Ok(Self::Lines {
+        Ok(Self {
             parameters: Dataset::child(part, node, "Parameters")?,
             knots: part.number(lines, "KnotCount")?,
             kinds: Values::read(part, part.need(lines, "LineKindIndices")?)?,
@@ -261,45 +290,23 @@ impl PointsObject {
         })
     }
 
-    fn load(
-        &self,
-        part: Part<'_>,
-        files: &Files,
-        [nodes, lines, pillars]: [usize; 3],
-    ) -> Result<Points, ParseError> {
-        let product = |sizes: &[usize]| sizes.iter().fold(1usize, |a, b| a.saturating_mul(*b));
-        match self {
-            Self::Nodes(points) => {
-                let count = product(&[nodes, lines, 3]);
-                points.numbers(files, count).map(Points::Nodes)
-            }
-            Self::Lines {
-                parameters,
-                knots,
-                kinds,
-                points,
-                point_parameters,
-            } => {
-                let knots = *knots;
-                // Datasets first: a constant has as many values as it is asked for.
-                let parameters = parameters.numbers(files, product(&[nodes, lines]))?;
-                let points = points.numbers(files, product(&[knots, pillars, 3]))?;
-                let kinds = kinds.numbers(files, pillars)?;
-                let Some(kinds) = kinds.iter().map(|v| LineKind::of(*v)).collect() else {
-                    let message = "a pillar is a curve (LineKindIndices beyond 1): only vertical and linear ones are read";
-                    return Err(part.error(ErrorKind::Unsupported, message));
-                };
-                let read = |v: &Values| v.numbers(files, product(&[knots, pillars]));
-                let lines = Lines {
-                    knots,
-                    kinds,
-                    points,
-                    parameters: point_parameters.as_ref().map(read).transpose()?,
-                };
-                lines.check(part)?;
-                Ok(Points::Lines { parameters, lines })
-            }
-        }
+    fn load(&self, part: Part<'_>, files: &Files, pillars: usize) -> Result<Lines, ParseError> {
+        let count = self.knots.saturating_mul(pillars);
+        let points = self.points.numbers(files, count.saturating_mul(3))?;
+        let kinds = self.kinds.numbers(files, pillars)?;
+        let Some(kinds) = kinds.iter().map(|v| LineKind::of(*v)).collect() else {
+            let message = "a pillar is a curve (LineKindIndices beyond 1): only vertical and linear ones are read";
+            return Err(part.error(ErrorKind::Unsupported, message));
+        };
+        let read = |v: &Values| v.numbers(files, count);
+        let lines = Lines {
+            knots: self.knots,
+            kinds,
+            points,
+            parameters: self.point_parameters.as_ref().map(read).transpose()?,
+        };
+        lines.check(part)?;
+        Ok(lines)
     }
 }
 

@@ -226,13 +226,13 @@ impl Package {
         };
         let text = parts.text(&object.name)?;
         let part = self.part(&object.name);
-        let read = document(&self.path, &object.name, &text).and_then(|document: Document<'_>| {
+        let read = document(&self.path, &object.name, &text).map(|document: Document<'_>| {
             let root = document.root_element();
             let named = |error: ParseError| {
                 let title = xml::title(root);
                 format!("the property {title:?} was not read: {error}")
             };
-            Ok(Property::read(part, root, class).map_err(named))
+            Property::read(part, root, class).map_err(named)
         });
         match read.unwrap_or_else(|error| Err(error.to_string())) {
             Ok(property) => self.properties.push(property),
