@@ -132,7 +132,7 @@ impl Files {
         }
         let found = match arrays.file.dataset(&dataset.name) {
             Ok(found) => found,
-            Err(why) => return error(kind_of(&why), format!("cannot be read: {why}")),
+            Err(why) => return error(kind_of(&why), sentence(&why)),
         };
         let there = found.num_elements().unwrap_or(u64::MAX);
         if let Some(count) = count.filter(|count| *count as u64 != there) {
@@ -153,7 +153,7 @@ impl Files {
                 || error(ErrorKind::TooLarge, "is more than the memory holds".into()),
                 Ok,
             ),
-            Err(why) => error(kind_of(&why), format!("cannot be read: {why}")),
+            Err(why) => error(kind_of(&why), sentence(&why)),
         }
     }
 }
@@ -163,7 +163,16 @@ fn kind_of(error: &hdf5_reader::error::Error) -> ErrorKind {
     match error {
         Error::DatasetNotFound(_) | Error::GroupNotFound(_) => ErrorKind::MissingKeyword,
         Error::ResourceLimit(_) => ErrorKind::TooLarge,
+        Error::Context { source, .. } => kind_of(source),
         _ => ErrorKind::Malformed,
+    }
+}
+
+/// What is wrong, without the name of the dataset, which stands before it.
+fn sentence(error: &hdf5_reader::error::Error) -> String {
+    match error {
+        hdf5_reader::error::Error::Context { source, .. } => sentence(source),
+        error => format!("cannot be read: {error}"),
     }
 }
 

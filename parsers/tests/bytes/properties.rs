@@ -209,8 +209,8 @@ fn in_package(package: Vec<u8>, arrays: Vec<u8>) -> Result<(), ParseError> {
     let arrays = FileBytes::from((format!("{NAME}/small.h5"), arrays));
     let package = Package::from_bytes((NAME, package), &[arrays])?;
     for grid in package.grids() {
-        package.crs(grid)?;
         let geometry = package.geometry(grid)?;
+        package.crs(grid)?;
         let [ni, nj, nk] = geometry.dims;
         assert!(
             geometry

@@ -574,7 +574,7 @@ fn of_resqml(all: &mut Sentences) {
         let package = fixtures::package(kind, |bytes| {
             let text = String::from_utf8(bytes).unwrap();
             assert!(text.contains(from), "{from}");
-            text.replacen(from, to, 1).into_bytes()
+            text.replace(from, to).into_bytes()
         });
         all.add(title, &Warnings::default(), properties::resqml(package));
     };
