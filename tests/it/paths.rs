@@ -306,6 +306,7 @@ fn files_with_paths_are_added_to_a_case_and_are_none() {
     let expected = CasePaths {
         path: case.clone(),
         with: vec![path.clone()],
+        others: Vec::new(),
     };
     assert_eq!(grouped, [expected]);
     let alone = load::open(&path).err().unwrap().to_string();

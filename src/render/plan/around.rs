@@ -6,10 +6,12 @@
 
 use glam::Vec3;
 
-use super::extinction::MOST_LEVELS;
 use crate::scene::lighting::OcclusionMethod;
 use crate::view::Lighting;
 use crate::view::lighting::Occlusion;
+
+/// Shells at most: no axis has more voxels than the largest one is wide.
+const MOST_SHELLS: u32 = 11;
 
 /// Cones that together look to all sides.
 pub const DIRECTIONS: u32 = 12;
@@ -39,7 +41,7 @@ pub fn shells(lighting: &Lighting) -> u32 {
     let spao = |o: &&Occlusion| o.method == OcclusionMethod::SpaoMipmap;
     lighting.occlusion.as_ref().filter(spao).map_or(0, |o| {
         let voxels = 2.0 * o.cone.length / lighting.sigma();
-        (voxels.max(2.0).log2().round() as u32).clamp(1, MOST_LEVELS - 1)
+        (voxels.max(2.0).log2().round() as u32).clamp(1, MOST_SHELLS)
     })
 }
 
