@@ -56,11 +56,16 @@ pub(super) struct Parts<'a> {
 impl<'a> Parts<'a> {
     pub(super) fn open(file: &'a FileBytes) -> Result<Self, ParseError> {
         let archive = ZipArchive::new(Cursor::new(file.bytes())).map_err(|error| {
-            let kind = match file.bytes().starts_with(b"PK\x03\x04") {
-                true => ErrorKind::Malformed,
-                false => ErrorKind::NotThisFormat,
+            let (kind, message) = match file.bytes().starts_with(b"PK\x03\x04") {
+                true => (
+                    ErrorKind::Malformed,
+                    format!("is no whole RESQML package: it is cut or damaged ({error})"),
+                ),
+                false => (
+                    ErrorKind::NotThisFormat,
+                    "is no RESQML package, which is a zip archive".to_owned(),
+                ),
             };
-            let message = format!("is no whole RESQML package: {error}");
             ParseError::of(kind, file.path(), At::File, "", message)
         })?;
         Ok(Self {

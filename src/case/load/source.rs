@@ -291,7 +291,8 @@ impl std::fmt::Display for Misfit<'_> {
 impl Source for FileSource {
     fn values(&self, name: &str, step: usize) -> Result<Option<Vec<f32>>, CaseError> {
         let package = self.package.as_ref().filter(|p| p.has(name));
-        if let Some(package) = package.filter(|_| !self.changes(name)) {
+        if let Some(package) = package.filter(|_| !self.changes(name) && self.text(name).is_none())
+        {
             let values = package.values(name, step)?;
             return Ok(values.map(|values| self.cells.pick_of_all(&values)));
         }
