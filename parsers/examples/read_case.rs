@@ -8,6 +8,7 @@ use strataray_parsers::case::{self, GridSource, RestartSource};
 use strataray_parsers::cells::CellArrays;
 use strataray_parsers::deck::Grdecl;
 use strataray_parsers::egrid::Egrid;
+use strataray_parsers::resqml::{GridPart, Package};
 use strataray_parsers::restart::{self, Step};
 use strataray_parsers::roff::RoffFile;
 use strataray_parsers::{ParseError, Warnings, init};
@@ -22,6 +23,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let [ni, nj, nk] = match &files.grid {
         GridSource::Egrid(path) => Egrid::read(path, &mut warnings)?.dims,
         GridSource::Roff(path) => RoffFile::open(path)?.dims()?,
+        GridSource::Resqml(path) => {
+            let package = Package::open(path)?;
+            package.grids().first().map_or([0; 3], GridPart::dims)
+        }
         GridSource::Deck(path) => Grdecl::read(path, &mut warnings)?.dims,
     };
     println!("{}: {ni} x {nj} x {nk} cells", files.name);

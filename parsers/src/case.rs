@@ -6,6 +6,7 @@ use crate::deck::Schedule;
 use crate::error::{At, ErrorKind, ParseError};
 use crate::paths;
 use crate::records::Form;
+use crate::resqml::is_package;
 
 /// Where the grid is.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -16,6 +17,8 @@ pub enum GridSource {
     Deck(PathBuf),
     /// A ROFF file, binary or text.
     Roff(PathBuf),
+    /// A RESQML package, with its properties and time steps.
+    Resqml(PathBuf),
 }
 
 /// Where the time steps are.
@@ -94,9 +97,9 @@ enum Role {
     /// Paths of wells.
     Paths,
     Roff,
+    Resqml,
     /// Curves over time, which [`find_summary`] finds.
     Summary(SummaryPart),
-    NotRead(&'static str),
 }
 
 /// A file of curves over time.
@@ -128,7 +131,7 @@ fn role(path: &Path) -> Option<Role> {
         "GRDECL" => Role::Text,
         "SCH" => Role::Schedule,
         "ROFF" | "ROFFBIN" | "ROFFASC" => Role::Roff,
-        "EPC" => Role::NotRead("RESQML is not read"),
+        "EPC" => Role::Resqml,
         // Text grids are called .grid too.
         "GRID" if form(path).is_none() => Role::Text,
         "GRID" | "FGRID" => Role::Egrid,
@@ -194,6 +197,7 @@ fn sniff(path: &Path) -> Role {
     match role(path) {
         None | Some(Role::Text) if form(path).is_some() => Role::Egrid,
         None | Some(Role::Text) if is_roff(path) => Role::Roff,
+        None if is_package(path) => Role::Resqml,
         None | Some(Role::Text) => text_role(path),
         Some(role) => role,
     }
@@ -238,13 +242,16 @@ pub fn find(path: &Path) -> Result<CaseFiles, ParseError> {
         Some(Role::Text) => Some(GridSource::Deck(path.to_owned())),
         Some(Role::Egrid) => Some(GridSource::Egrid(path.to_owned())),
         Some(Role::Roff) => Some(GridSource::Roff(path.to_owned())),
+        Some(Role::Resqml) => Some(GridSource::Resqml(path.to_owned())),
         _ => first(Role::Egrid).map(GridSource::Egrid),
     };
     let deck = first(Role::Deck).or_else(|| first(Role::Text));
     let roff = || first(Role::Roff).map(GridSource::Roff);
+    let resqml = || first(Role::Resqml).map(GridSource::Resqml);
     let Some(grid) = grid
         .or_else(|| deck.clone().map(GridSource::Deck))
         .or_else(roff)
+        .or_else(resqml)
     else {
         return Err(no_grid(path, &stem, &files));
     };
@@ -254,13 +261,12 @@ pub fn find(path: &Path) -> Result<CaseFiles, ParseError> {
         _ => schedules,
     };
     let deck = deck.filter(|_| matches!(grid, GridSource::Egrid(_)));
-    let reason = |role: &Role| {
-        if let Role::NotRead(why) = role {
-            Some(*why)
-        } else {
-            None
-        }
-    };
+    let is_resqml = matches!(grid, GridSource::Resqml(_));
+    let other_package = files
+        .iter()
+        .filter(|(_, r)| !is_resqml && *r == Role::Resqml);
+    let not_read =
+        other_package.map(|(p, _)| (p.clone(), "it has a grid of its own; open it by itself"));
     Ok(CaseFiles {
         roff: match &grid {
             GridSource::Roff(grid) => properties_beside(grid),
@@ -272,13 +278,15 @@ pub fn find(path: &Path) -> Result<CaseFiles, ParseError> {
         added: Vec::new(),
         schedules: schedules.into_iter().collect(),
         paths: Vec::new(),
-        init: first(Role::Init),
-        restart: restart_of(&files, named),
+        // A package has properties and steps of its own.
+        init: first(Role::Init).filter(|_| !is_resqml),
+        restart: if is_resqml {
+            RestartSource::None
+        } else {
+            restart_of(&files, named)
+        },
         summary: summary_of(&files, named),
-        not_read: files
-            .iter()
-            .filter_map(|(p, r)| Some((p.clone(), reason(r)?)))
-            .collect(),
+        not_read: not_read.collect(),
     })
 }
 
@@ -345,13 +353,12 @@ pub fn find_with(path: &Path, with: &[PathBuf]) -> Result<CaseFiles, ParseError>
             Role::Init => files.init = Some(added.clone()),
             Role::Unified => restarts.push(RestartSource::Unified(added.clone())),
             Role::Separate(report) => add_separate(&mut restarts, report, added),
-            Role::Egrid => {
+            Role::Egrid | Role::Resqml => {
                 return Err(refuse(
                     "is a grid of its own and cannot be added to another one",
                 ));
             }
             Role::Summary(_) => files.summary = Some(find_summary(added)?),
-            Role::NotRead(why) => return Err(refuse(why)),
         }
     }
     files.restart = match restarts.len() {
@@ -528,24 +535,15 @@ fn properties_beside(grid: &Path) -> Vec<PathBuf> {
 }
 
 fn no_grid(path: &Path, stem: &str, files: &[(PathBuf, Role)]) -> ParseError {
-    let reason = files.iter().find_map(|(p, r)| match r {
-        Role::NotRead(why) => Some(format!("; there is {}, but {why}", p.display())),
-        _ => None,
-    });
-    let kind = match reason {
-        Some(_) => ErrorKind::Unsupported,
-        None => ErrorKind::NotFound,
-    };
     let found = if path.exists() || !files.is_empty() {
         "this case has no grid"
     } else {
         "there is no such case"
     };
     let message = format!(
-        "{found}: looked for {stem}.EGRID, {stem}.DATA, {stem}.GRDECL and {stem}.ROFF{}",
-        reason.unwrap_or_default()
+        "{found}: looked for {stem}.EGRID, {stem}.DATA, {stem}.GRDECL, {stem}.ROFF and {stem}.EPC"
     );
-    ParseError::of(kind, path, At::File, "", message)
+    ParseError::of(ErrorKind::NotFound, path, At::File, "", message)
 }
 
 fn not_found(path: &Path, message: impl Into<String>) -> ParseError {

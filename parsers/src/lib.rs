@@ -2,7 +2,7 @@
 //! no geometry, no GPU.
 //!
 //! Three levels: bytes (a memory map, records, tokens), typed records ([`egrid`], [`init`],
-//! [`restart`], [`wells`], [`paths`], [`summary`], [`deck`], [`roff`]), and the [`case`] that finds the files belonging together. Bad files
+//! [`restart`], [`wells`], [`paths`], [`summary`], [`deck`], [`roff`], [`resqml`]), and the [`case`] that finds the files belonging together. Bad files
 //! end in a [`ParseError`] that names file, keyword and place; no reader panics, prints, or
 //! allocates by a count that the remaining bytes do not cover.
 //!
@@ -111,6 +111,7 @@ mod parallel;
 pub mod paths;
 mod radial;
 pub mod records;
+pub mod resqml;
 pub mod restart;
 pub mod roff;
 pub mod summary;

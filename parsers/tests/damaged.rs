@@ -52,6 +52,8 @@ fn readers(path: &Path) -> Vec<Reader> {
         "SMSPEC" | "UNSMRY" => &["summary"],
         "ESMRY" => &["esmry"],
         "ROFF" => &["roff"],
+        "EPC" => &["resqml"],
+        "H5" => &["resqml_arrays"],
         "SGY" | "SEGY" => &["segy"],
         "NRRD" | "NHDR" | "MHA" | "MHD" | "VTI" => &["volume"],
         "PNG" | "CSV" | "JSON" | "MD" => &[],

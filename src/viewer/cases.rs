@@ -17,7 +17,9 @@ pub enum Meaning {
 }
 
 /// Endings of files that hold a grid; of a case with more than one of them the first counts.
-const GRIDS: [&str; 7] = ["EGRID", "FEGRID", "GRID", "FGRID", "GRDECL", "ROFF", "DATA"];
+const GRIDS: [&str; 8] = [
+    "EGRID", "FEGRID", "GRID", "FGRID", "GRDECL", "ROFF", "EPC", "DATA",
+];
 /// Bytes of a text file that is searched for a grid, at most; a larger one is taken to have one.
 const MOST_SEARCHED: u64 = 16 << 20;
 /// Entries that are offered while a path is typed, at most.

@@ -50,6 +50,7 @@ mod pictures;
 mod point_location;
 mod reported;
 mod reservoirs;
+mod resqml;
 mod roff;
 mod shadows;
 mod simbox;

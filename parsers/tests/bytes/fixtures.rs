@@ -1,5 +1,7 @@
 //! Small files of each format.
 
+use std::io::{Cursor, Read, Write};
+
 use strataray_parsers::cells::Head;
 use strataray_parsers::egrid::{Egrid, GridUnit, PorosityModel};
 use strataray_parsers::init;
@@ -9,6 +11,8 @@ use strataray_parsers::volume::{
     ByteOrder, Contents, Lattice, SampleType, SegyLayout, SegyWriter, metaimage, nrrd, vti,
 };
 use strataray_parsers::wells::Well;
+
+use super::properties::PACKAGE;
 
 /// A deck of one cell, with its corners at depths 0 and 1.
 pub const CELL: &str = "SPECGRID\n1 1 1 1 F /\nCOORD\n0 0 0 0 0 1  1 0 0 1 0 1  0 1 0 0 1 1  1 1 0 1 1 1 /\nZCORN\n4*0 4*1 /\n";
@@ -290,6 +294,26 @@ pub fn rich_deck() -> String {
 
 /// The file that [`rich_deck`] includes.
 pub const PORO: &str = "PORO\n 12*0.25 / of all cells\n";
+
+/// The package of the tests, of which `change` has made other objects of those whose names begin with `kind`.
+pub fn package(kind: &str, mut change: impl FnMut(Vec<u8>) -> Vec<u8>) -> Vec<u8> {
+    let mut whole = zip::ZipArchive::new(Cursor::new(PACKAGE)).unwrap();
+    let mut writer = zip::ZipWriter::new(Cursor::new(Vec::new()));
+    let stored =
+        zip::write::SimpleFileOptions::default().compression_method(zip::CompressionMethod::Stored);
+    for n in 0..whole.len() {
+        let mut part = whole.by_index(n).unwrap();
+        let mut bytes = Vec::new();
+        part.read_to_end(&mut bytes).unwrap();
+        let name = part.name().unwrap().into_owned();
+        let begins = name.trim_start_matches("obj_").starts_with(kind);
+        writer.start_file(name, stored).unwrap();
+        writer
+            .write_all(&if begins { change(bytes) } else { bytes })
+            .unwrap();
+    }
+    writer.finish().unwrap().into_inner()
+}
 
 /// Wells of a cell grid, over two dates.
 pub const SCHEDULE: &str = "START

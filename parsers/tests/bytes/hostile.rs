@@ -8,7 +8,8 @@ use strataray_parsers::deck::{Grdecl, MemoryFiles};
 use strataray_parsers::records::{RecordFile, RecordWriter};
 use strataray_parsers::{ErrorKind, FileBytes, ParseError, Warnings, case};
 
-use super::fixtures::{CELL, egrid};
+use super::fixtures::{self, CELL, egrid};
+use super::properties;
 
 fn read(files: &MemoryFiles, name: &str) -> Result<Grdecl, ParseError> {
     let start = Instant::now();
@@ -194,4 +195,23 @@ fn a_file_that_is_cut_off_while_it_is_read() -> io::Result<()> {
     let values = file.f32s(&file.entries()[0]);
     assert_eq!(values.unwrap().len(), 1 << 20);
     Ok(())
+}
+
+#[test]
+fn objects_of_packages_without_end() {
+    let start = Instant::now();
+    let with =
+        |object: &[u8]| properties::resqml(fixtures::package("IjkGrid", |_| object.to_vec()));
+    let error = with(&vec![b' '; 17 << 20]).unwrap_err();
+    assert_eq!(error.kind, ErrorKind::TooLarge, "{error}");
+    let deep = "<a>".repeat(1 << 20);
+    let error = with(deep.as_bytes()).unwrap_err();
+    assert_eq!(error.kind, ErrorKind::Malformed, "{error}");
+    let deep = ["<a>".repeat(1 << 18), "</a>".repeat(1 << 18)].concat();
+    assert!(with(deep.as_bytes()).is_err());
+    let entities = "<!DOCTYPE a [<!ENTITY b \"bbbb\">]><a>&b;</a>";
+    let error = with(entities.as_bytes()).unwrap_err();
+    assert!(error.message.contains("DTD"), "{error}");
+    properties::resqml(fixtures::package("IjkGrid", |whole| whole)).unwrap();
+    assert!(start.elapsed() < Duration::from_secs(10), "took too long");
 }

@@ -132,6 +132,26 @@ fn mutated_roff() {
 }
 
 #[test]
+fn mutated_packages_and_their_arrays() {
+    mutate(16, properties::PACKAGE, properties::resqml);
+    mutate(17, properties::ARRAYS, properties::resqml_arrays);
+}
+
+/// Objects behind no checksum.
+#[test]
+fn mutated_objects_of_packages() {
+    for kind in ["IjkGrid", "LocalDepth", "ContinuousProperty", "[Content"] {
+        let whole = fixtures::package(kind, |text| text);
+        properties::resqml(whole).unwrap();
+        let mut random = Rng::with_seed(18);
+        for _ in 0..ROUNDS / 20 {
+            let damaged = fixtures::package(kind, |bytes| mutated(&bytes, &mut random));
+            properties::holds(properties::resqml, damaged);
+        }
+    }
+}
+
+#[test]
 fn mutated_schedules_and_paths() {
     mutate(16, fixtures::SCHEDULE.as_bytes(), properties::schedule);
     for (seed, text) in [

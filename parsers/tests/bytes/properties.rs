@@ -7,11 +7,12 @@ use std::path::Path;
 use strataray_parsers::deck::{DeckCells, Grdecl, MemoryFiles, Schedule};
 use strataray_parsers::egrid::{Egrid, PorosityModel};
 use strataray_parsers::records::{Kind, RecordFile};
+use strataray_parsers::resqml::Package;
 use strataray_parsers::roff::RoffFile;
 use strataray_parsers::summary::Summary;
 use strataray_parsers::volume::{self, Options};
 use strataray_parsers::{
-    ErrorKind, ParseError, Warnings, init, paths as well_paths, restart, wells,
+    ErrorKind, FileBytes, ParseError, Warnings, init, paths as well_paths, restart, wells,
 };
 
 /// The name of the file in errors.
@@ -21,7 +22,7 @@ const NAME: &str = "ANY.FILE";
 pub type Reader = fn(Vec<u8>) -> Result<(), ParseError>;
 
 /// All readers, by the names of their fuzz targets.
-pub const READERS: [(&str, Reader); 13] = [
+pub const READERS: [(&str, Reader); 15] = [
     ("records", records),
     ("egrid", egrid),
     ("init", init),
@@ -30,6 +31,8 @@ pub const READERS: [(&str, Reader); 13] = [
     ("summary", summary),
     ("esmry", esmry),
     ("roff", roff),
+    ("resqml", resqml),
+    ("resqml_arrays", resqml_arrays),
     ("deck", deck),
     ("schedule", schedule),
     ("paths", paths),
@@ -191,6 +194,41 @@ pub fn roff(bytes: Vec<u8>) -> Result<(), ParseError> {
     for parameter in file.parameters()? {
         let cells = file.dims()?.iter().product::<usize>();
         assert_eq!(file.values(&parameter)?.len(), cells);
+    }
+    Ok(())
+}
+
+/// A package as resqpy writes it, and the file with its arrays.
+pub const PACKAGE: &[u8] = include_bytes!("../../../tests/data/resqml/small.epc");
+pub const ARRAYS: &[u8] = include_bytes!("../../../tests/data/resqml/small.h5");
+
+/// A package with the arrays of another one.
+pub fn resqml(bytes: Vec<u8>) -> Result<(), ParseError> {
+    in_package(bytes, ARRAYS.to_vec())
+}
+
+/// The arrays of a package.
+pub fn resqml_arrays(bytes: Vec<u8>) -> Result<(), ParseError> {
+    in_package(PACKAGE.to_vec(), bytes)
+}
+
+fn in_package(package: Vec<u8>, arrays: Vec<u8>) -> Result<(), ParseError> {
+    let arrays = FileBytes::from((format!("{NAME}/small.h5"), arrays));
+    let package = Package::from_bytes((NAME, package), &[arrays])?;
+    for grid in package.grids() {
+        let geometry = package.geometry(grid)?;
+        package.crs(grid)?;
+        let [ni, nj, nk] = geometry.dims;
+        assert!(
+            geometry
+                .splits
+                .iter()
+                .all(|s| s.pillar < (ni + 1) * (nj + 1))
+        );
+        for property in package.properties() {
+            let values = package.values(property, geometry.dims)?;
+            assert_eq!(values.len(), ni * nj * nk);
+        }
     }
     Ok(())
 }

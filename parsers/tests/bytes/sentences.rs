@@ -15,6 +15,7 @@ use strataray_parsers::volume::{self, Options};
 use strataray_parsers::{ParseError, Warnings, case, init, paths, restart, wells};
 
 use super::fixtures::{self, CELL};
+use super::properties;
 
 /// Sentences by the cases that provoke them.
 #[derive(Default)]
@@ -710,6 +711,76 @@ fn of_roff(all: &mut Sentences) {
     );
 }
 
+fn of_resqml(all: &mut Sentences) {
+    let mut object = |title: &str, kind: &str, from: &str, to: &str| {
+        let package = fixtures::package(kind, |bytes| {
+            let text = String::from_utf8(bytes).unwrap();
+            assert!(text.contains(from), "{from}");
+            text.replace(from, to).into_bytes()
+        });
+        all.add(title, &Warnings::default(), properties::resqml(package));
+    };
+    let grid = "IjkGrid";
+    object(
+        "RESQML: no number",
+        grid,
+        ">2</resqml2:Ni>",
+        ">two</resqml2:Ni>",
+    );
+    object(
+        "RESQML: more cells than arrays",
+        grid,
+        ">2</resqml2:Ni>",
+        ">3</resqml2:Ni>",
+    );
+    object(
+        "RESQML: dimensions beyond all memory",
+        grid,
+        ">2</resqml2:Ni>",
+        ">99999999999</resqml2:Ni>",
+    );
+    object("RESQML: no layers", grid, "resqml2:Nk", "resqml2:Mk");
+    object(
+        "RESQML: no geometry",
+        grid,
+        "resqml2:Geometry",
+        "resqml2:Genealogy",
+    );
+    object(
+        "RESQML: another form of points",
+        grid,
+        "Point3dHdf5Array",
+        "Point3dLatticeArray",
+    );
+    object("RESQML: a direction", grid, ">down<", ">not monotonic<");
+    object("RESQML: no such dataset", grid, "/Points<", "/Nodes<");
+    object(
+        "RESQML: a unit of angles",
+        "LocalDepth",
+        "\"dega\"",
+        "\"mila\"",
+    );
+    object("RESQML: another system", grid, "LocalCrs", "LocalTime");
+    object(
+        "RESQML: another version",
+        "[Content",
+        "version=2.0;type=obj_Ijk",
+        "version=2.2;type=Ijk",
+    );
+    object(
+        "RESQML: no file",
+        "[Content",
+        "EpcExternalPartReference\"",
+        "Nothing\"",
+    );
+    object(
+        "RESQML: a part that is not there",
+        "[Content",
+        "/obj_Ijk",
+        "/Ijk",
+    );
+}
+
 fn of_cases(all: &mut Sentences) {
     let folder = tempfile::tempdir().unwrap();
     let told = |error: ParseError| {
@@ -733,11 +804,6 @@ fn of_cases(all: &mut Sentences) {
         case::find(&at("CASE")).map_err(told),
     );
     std::fs::write(at("CASE.EPC"), "").unwrap();
-    all.add(
-        "case: a format that is not read",
-        &none,
-        case::find(&at("CASE.EPC")).map_err(told),
-    );
     std::fs::write(at("CASE.EGRID"), fixtures::egrid()).unwrap();
     std::fs::write(at("CASE.SMSPEC"), fixtures::summary(false)).unwrap();
     all.add(
@@ -826,6 +892,7 @@ fn people_are_told_the_same_word_for_word() {
     of_legacy_grids(&mut all);
     of_results(&mut all);
     of_roff(&mut all);
+    of_resqml(&mut all);
     of_images(&mut all);
     of_surveys(&mut all);
     of_cases(&mut all);

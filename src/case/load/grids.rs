@@ -8,9 +8,11 @@ use strataray_parsers::deck::{
     DeckCells, DeckLocalGrid, DeckProperty, FaultFaces as DeckFault, Grdecl,
 };
 use strataray_parsers::egrid::{Egrid, GridConnections, LocalGrid, PorosityModel, Reservoir};
+use strataray_parsers::roff::Pillars;
 use strataray_parsers::units::{LengthUnit, UnitSystem};
 use strataray_parsers::{At, ErrorKind, ParseError, Warnings};
 
+use super::resqml::{self, PackageValues};
 use super::roff;
 use super::slots::CellFlags;
 use crate::case::{About, LoadTimes, NamedFault};
@@ -36,6 +38,8 @@ pub struct Loaded {
     pub flags: CellFlags,
     /// Arrays of decks and other text.
     pub texts: Vec<DeckProperty>,
+    /// Properties and steps of a RESQML package.
+    pub package: Option<PackageValues>,
     pub connections: Vec<[Ijk; 2]>,
     /// With arrays of text, where they are of a deck.
     pub local_grids: Vec<DeckLocalGrid>,
@@ -105,6 +109,7 @@ pub fn read(
     let mut loaded = match &files.grid {
         GridSource::Egrid(path) => read_egrid(path, about, warnings)?,
         GridSource::Roff(path) => read_roff(path, about)?,
+        GridSource::Resqml(path) => read_resqml(path, about)?,
         GridSource::Deck(path) => {
             let deck = Grdecl::read_with(path, &files.added, warnings)?;
             read_deck(path, deck, about)?
@@ -143,6 +148,7 @@ fn read_egrid(
         grid,
         flags: CellFlags::new(egrid.actnum, egrid.coarse, egrid.porosity_model),
         texts: Vec::new(),
+        package: None,
         connections,
         local_grids: of_results(egrid.local_grids),
         reservoirs: egrid.reservoirs,
@@ -215,6 +221,7 @@ fn read_deck(path: &Path, deck: Grdecl, about: &mut About) -> Result<Loaded, Par
         grid,
         flags: CellFlags::new(deck.actnum, None, deck.porosity_model),
         texts: deck.properties,
+        package: None,
         connections: Vec::new(),
         local_grids: deck.local_grids,
         reservoirs: Vec::new(),
@@ -252,6 +259,24 @@ fn read_roff(path: &Path, about: &mut About) -> Result<Loaded, ParseError> {
         pillars,
         properties,
     } = roff::read(path)?;
+    let mut loaded = of_pillars(path, &pillars, about)?;
+    loaded.texts = properties;
+    let note = "ROFF files say no units: lengths are taken as METRES";
+    about.notes.push(note.into());
+    Ok(loaded)
+}
+
+fn read_resqml(path: &Path, about: &mut About) -> Result<Loaded, ParseError> {
+    let contents = resqml::read(path, &mut about.notes)?;
+    let mut loaded = of_pillars(path, &contents.pillars, about)?;
+    about.files.extend(contents.values.array_files());
+    loaded.package = Some(contents.values);
+    loaded.map.length = Some(contents.unit.name().to_owned());
+    Ok(loaded)
+}
+
+/// A grid of pillars in map coordinates, with nothing beside it.
+fn of_pillars(path: &Path, pillars: &Pillars, about: &mut About) -> Result<Loaded, ParseError> {
     let input = GridInput {
         dims: dims(pillars.dims),
         coord: &pillars.coord,
@@ -262,12 +287,11 @@ fn read_roff(path: &Path, about: &mut About) -> Result<Loaded, ParseError> {
     let grid = built(path, &input, about)?;
     about.files.push(path.to_owned());
     about.porosity_model = "single".into();
-    let note = "ROFF files say no units: lengths are taken as METRES";
-    about.notes.push(note.into());
     Ok(Loaded {
         grid,
         flags: CellFlags::default(),
-        texts: properties,
+        texts: Vec::new(),
+        package: None,
         connections: Vec::new(),
         local_grids: Vec::new(),
         reservoirs: Vec::new(),

@@ -6,6 +6,7 @@ mod paths;
 mod pore_volume;
 mod properties;
 mod radial;
+mod resqml;
 mod restarts;
 mod roff;
 mod slots;
@@ -290,12 +291,16 @@ fn build(mut loaded: Loaded, read: Read<'_>, mut about: About, warnings: &Warnin
         init: None,
         steps: Vec::new(),
         texts: std::mem::take(&mut loaded.texts),
+        package: loaded.package.take(),
         summary,
         wells: WellFiles::default(),
     };
     source.take_fitting(init, runs, &mut about);
     leave_unfinished(&mut source.steps, &mut about.notes);
     about.notes.extend(source.misfits());
+    if let Some(package) = source.package.as_mut().filter(|_| !source.steps.is_empty()) {
+        about.notes.extend(package.drop_steps());
+    }
     read_wells(&mut source, schedules, loaded.grid.main_dims(), &mut about);
     add_local_grids(&mut loaded, &mut source, locals, &mut about);
     let paths = paths::placed(paths, &loaded.grid, &mut about);
@@ -313,7 +318,7 @@ fn build(mut loaded: Loaded, read: Read<'_>, mut about: About, warnings: &Warnin
         about,
         fault_faces: Arc::new(loaded.fault_faces),
         connections: loaded.connections,
-        steps: source.steps.iter().map(step).collect(),
+        steps: steps_of(&source),
         properties,
         source: Arc::new(source),
         cache: Arc::new(FieldCache::default()),
@@ -363,6 +368,14 @@ fn add_local_grids(
         Err(why) => about
             .notes
             .push(format!("local grids are not shown: {why}")),
+    }
+}
+
+/// The steps of the results, else those of a package.
+fn steps_of(source: &FileSource) -> Vec<Step> {
+    match &source.package {
+        Some(package) if source.steps.is_empty() => package.steps().to_vec(),
+        _ => source.steps.iter().map(step).collect(),
     }
 }
 

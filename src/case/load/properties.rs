@@ -4,6 +4,7 @@ use strataray_parsers::arrays::is_state;
 use strataray_parsers::cells::CellArrays;
 use strataray_parsers::units::{LengthUnit, UnitSystem};
 
+use super::resqml::PackageValues;
 use super::source::FileSource;
 use crate::case::pores::Pores;
 use crate::case::{About, CONNECTIONS, Kind, POROSITY_THICKNESS, Property};
@@ -38,6 +39,8 @@ pub fn of(source: &FileSource, setting: &Setting, about: &mut About) -> Vec<Prop
             ..Property::new(&property.name, Kind::Static, unit(&property.name))
         });
     }
+    let package = source.package.iter().flat_map(PackageValues::properties);
+    list.extend(package.filter(|p| !source.texts.iter().any(|t| t.name == p.name)));
     // Dynamic ones first claim their names: a property of both INIT and restart changes with time.
     let mut counts: Vec<(&str, usize)> = Vec::new();
     for step in &source.steps {

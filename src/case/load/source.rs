@@ -11,6 +11,7 @@ use strataray_parsers::restart::Step as FileStep;
 use strataray_parsers::{At, ErrorKind, ParseError};
 
 use super::local::Places;
+use super::resqml::PackageValues;
 use super::restarts;
 use super::slots::CellSlots;
 use super::summary::SummaryFiles;
@@ -37,6 +38,8 @@ pub struct FileSource {
     pub steps: Vec<FileStep>,
     /// Arrays of decks and other text.
     pub texts: Vec<DeckProperty>,
+    /// Properties of a RESQML package.
+    pub package: Option<PackageValues>,
     /// Curves over time.
     pub summary: SummaryFiles,
     /// Wells that are not of the steps.
@@ -287,6 +290,12 @@ impl std::fmt::Display for Misfit<'_> {
 
 impl Source for FileSource {
     fn values(&self, name: &str, step: usize) -> Result<Option<Vec<f32>>, CaseError> {
+        let package = self.package.as_ref().filter(|p| p.has(name));
+        if let Some(package) = package.filter(|_| !self.changes(name) && self.text(name).is_none())
+        {
+            let values = package.values(name, step)?;
+            return Ok(values.map(|values| self.cells.pick_of_all(&values)));
+        }
         let (array, pores) = match self.text(name) {
             Some(_) => (name, Pores::Matrix),
             None => Pores::of(name),
