@@ -13,6 +13,9 @@ use crate::records::{Form, RecordFile};
 /// Deepest nesting and largest number of included files.
 const DEEPEST: usize = 64;
 const MOST_FILES: usize = 2000;
+/// Bytes of files that may be included again after their first time: each time they are read through, and their arrays
+/// noted.
+const MOST_AGAIN: usize = 64 << 20;
 
 impl Scan<'_> {
     pub(super) fn paths(&mut self, source: &Source, cursor: &mut Cursor) -> Result<(), ParseError> {
@@ -54,7 +57,7 @@ impl Scan<'_> {
             );
             source.error(ErrorKind::NotFound, at, &keyword.name, message)
         })?;
-        let file = self.places.files.open(&path);
+        let file = self.places.open(&path);
         self.include_file(source, keyword, at, file)
     }
 
@@ -74,7 +77,7 @@ impl Scan<'_> {
         }
         let found = self.places.find(&written, source.path());
         let path = found.unwrap_or_else(|places| places.into_iter().next().unwrap_or_default());
-        let file = self.places.files.open(&path);
+        let file = self.places.open(&path);
         if file.as_ref().is_ok_and(|file| !holds_arrays(file.bytes())) {
             return self.include_file(source, keyword, at, file);
         }
@@ -142,6 +145,13 @@ impl Scan<'_> {
         }
         if self.open.len() >= DEEPEST || self.opened >= MOST_FILES {
             let message = format!("more than {DEEPEST} nested or {MOST_FILES} included files");
+            return Err(source.error(ErrorKind::TooLarge, at, name, message));
+        }
+        if self.places.again > MOST_AGAIN {
+            let most = MOST_AGAIN >> 20;
+            let message = format!(
+                "the same files are included again and again, with more than {most} MiB in all"
+            );
             return Err(source.error(ErrorKind::TooLarge, at, name, message));
         }
         self.file(file, chain)

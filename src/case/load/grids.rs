@@ -9,6 +9,7 @@ use strataray_parsers::egrid::{Egrid, GridConnections, LocalGrid, PorosityModel}
 use strataray_parsers::units::{LengthUnit, UnitSystem};
 use strataray_parsers::{At, ErrorKind, ParseError, Warnings};
 
+use super::outliers::{self, Coordinate};
 use super::roff;
 use super::slots::CellFlags;
 use crate::case::{About, LoadTimes, NamedFault};
@@ -156,17 +157,14 @@ fn read_egrid(
 }
 
 /// The grid of the arrays of a file; what building it takes is noted.
-fn built<C, Z>(
+fn built<C: Coordinate, Z: Coordinate>(
     path: &Path,
     input: &GridInput<'_, C, Z>,
     about: &mut About,
-) -> Result<Grid, ParseError>
-where
-    C: Copy + Into<f64> + Sync,
-    Z: Copy + Into<f64> + Send + Sync,
-{
+) -> Result<Grid, ParseError> {
     let start = Instant::now();
-    let grid = Grid::new(input).map_err(|e| model_error(path, &e))?;
+    let grid = outliers::built(input, &mut about.notes);
+    let grid = grid.map_err(|e| model_error(path, &e))?;
     about.load_times = LoadTimes {
         model: start.elapsed(),
     };

@@ -2,6 +2,7 @@
 
 mod grids;
 mod local;
+mod outliers;
 mod pore_volume;
 mod properties;
 mod radial;
@@ -180,7 +181,9 @@ fn build(
         active: active.into_iter().find(|active| *active > 0),
         init: init.as_ref(),
     };
-    let cells = CellSlots::new(&mut loaded.grid, &loaded.flags, &results, &mut about.notes);
+    let mut cells = CellSlots::new(&mut loaded.grid, &loaded.flags, &results, &mut about.notes);
+    let left_out = outliers::leave_out(&mut loaded.grid, &mut cells);
+    about.notes.extend(left_out);
     let local_grids = std::mem::take(&mut loaded.local_grids);
     let locals = local::read(local_grids, &loaded.grid, init.as_ref(), &mut about.notes);
     let mut source = FileSource {
