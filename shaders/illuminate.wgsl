@@ -1,14 +1,17 @@
 // Light volumes: what the rays sample instead of tracing cones (campagnolo-2021, 3.3.3 and 4.2).
 //
 // Dispatch covers a slab. `main`: one thread = the transmittances of the cones from two voxels along x to
-// one emitter; reads the pyramid. `gradient`: one thread = the gradient of the field around a voxel; reads
+// one emitter, or to all sides; reads the pyramid, or mean opacities. `gradient`: one thread = the gradient of the field around a voxel; reads
 // the volume of values.
-#import cones
+#import around
 
 @group(3) @binding(0) var<uniform> slab: Slab;
 // The emitter, and the slice at which its volume begins.
 @group(3) @binding(1) var<uniform> which: vec4u;
 @group(3) @binding(2) var<storage, read_write> voxels: array<u32>;
+
+// By which method light is found.
+override METHOD: u32 = 0u;
 
 @compute @workgroup_size(16, 4)
 fn main(@builtin(global_invocation_id) id: vec3u) {
@@ -19,7 +22,14 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let first = slab.first + vec3u(2u * id.x, id.yz) - vec3u(0u, 0u, which.y);
     var pair = vec2f(0.0);
     for (var side = 0u; side < 2u; side++) {
-        pair[side] = cone_transmittance(emitter, middle_of(first + vec3u(side, 0u, 0u)));
+        let p = middle_of(first + vec3u(side, 0u, 0u));
+        if METHOD == METHOD_SURROUND {
+            pair[side] = surround_openness(emitter, p);
+        } else if METHOD == METHOD_SPAO_MIPMAP {
+            pair[side] = shells_openness(p);
+        } else {
+            pair[side] = cone_transmittance(emitter, p);
+        }
     }
     voxels[(slab.row * (id.y + slab.size.y * id.z)) / 2u + id.x] = pack2x16float(pair);
 }

@@ -8,8 +8,9 @@ use strataray_parsers::case::{self, GridSource, RestartSource};
 use strataray_parsers::cells::CellArrays;
 use strataray_parsers::deck::Grdecl;
 use strataray_parsers::egrid::Egrid;
+use strataray_parsers::restart::{self, Step};
 use strataray_parsers::roff::RoffFile;
-use strataray_parsers::{ParseError, Warnings, init, restart};
+use strataray_parsers::{ParseError, Warnings, init};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut arguments = std::env::args().skip(1);
@@ -28,11 +29,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     if let Some(path) = &files.init {
         print_range("INIT", &init::open(path, &mut warnings)?, &property)?;
     }
-    let steps = match &files.restart {
-        RestartSource::None => Vec::new(),
-        RestartSource::Unified(path) => restart::open_unified(path, &mut warnings)?,
-        RestartSource::Separate(files) => restart::open_separate(files, &mut warnings)?,
-    };
+    let steps = steps(&files.restart, &mut warnings)?;
     println!("{} steps", steps.len());
     for step in &steps {
         print_range(&step.head.time(), &step.arrays, &property)?;
@@ -41,6 +38,22 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         eprintln!("{warning}");
     }
     Ok(())
+}
+
+/// The steps of a restart, or of several one after the other.
+fn steps(source: &RestartSource, warnings: &mut Warnings) -> Result<Vec<Step>, ParseError> {
+    match source {
+        RestartSource::None => Ok(Vec::new()),
+        RestartSource::Unified(path) => restart::open_unified(path, warnings),
+        RestartSource::Separate(files) => restart::open_separate(files, warnings),
+        RestartSource::Several(sources) => {
+            let mut all = Vec::new();
+            for source in sources {
+                all.append(&mut steps(source, warnings)?);
+            }
+            Ok(all)
+        }
+    }
 }
 
 /// Prints the least and the greatest value of the active cells, where the property is there.

@@ -19,7 +19,10 @@ const CELL_ARRAYS: &[&str] = &[
     "KRG", "KRGR", "KRO", "KRORW", "KRORG", "PCW", "PCG", "ISWL", "ISWCR", "ISWU", "ISGL", "ISGCR",
     "ISGU", "ISOWCR", "ISOGCR", "IKRW", "IKRWR", "IKRG", "IKRGR", "IKRO", "IKRORW", "IKRORG",
     "IPCW", "IPCG", "SWATINIT", "SWLX", "SWCRX", "SWUX", "SGLX", "SGCRX", "SGUX",
-    // State.
+];
+
+/// Those of the state of the fluids, which changes with time.
+const STATE: &[&str] = &[
     "PRESSURE", "SWAT", "SGAS", "SOIL", "SSOLVENT", "SSOL", "SFOAM", "SPOLY", "SURF", "SALT",
     "SALTP", "RS", "RV", "RSW", "RVW", "RSSAT", "RVSAT", "PBUB", "PDEW", "TEMP", "TEMPI", "SOMAX",
     "SWMAX", "OILAPI", "GI",
@@ -49,14 +52,21 @@ const TABLES: &[&str] = &[
     // Dimensions, vectors along an axis, single numbers.
     "TABDIMS", "EQLDIMS", "REGDIMS", "WELLDIMS", "AQUDIMS", "VFPPDIMS", "VFPIDIMS", "FAULTDIM",
     "GRIDOPTS", "ENDSCALE", "NSTACK", "NUMRES", "MINPV", "MINPORV", "MINDZNET", "DXV", "DYV",
-    "DZV", "DRV", "DTHETAV", "INRAD", "OUTRAD", "START", "AQUCT", "AQUFETP", "AQUTAB", "AQUNUM",
-    "RPTGRID", "RPTPROPS", "RPTSOL", "RPTREGS", "COORDSYS", "PINCH", "PINCHXY", "DRSDT", "DRVDT",
+    "DZV", "DRV", "DTHETAV", "INRAD", "OUTRAD", "NXFIN", "NYFIN", "NZFIN", "HXFIN", "HYFIN",
+    "HZFIN", "START", "AQUCT", "AQUFETP", "AQUTAB", "AQUNUM", "RPTGRID", "RPTPROPS", "RPTSOL",
+    "RPTREGS", "COORDSYS", "PINCH", "PINCHXY", "DRSDT", "DRVDT",
 ];
 
 /// True where the keyword is known to give one value per cell.
 pub fn is_cell_array(name: &str) -> bool {
     let is_family = |start: &&str| name.len() > start.len() && name.starts_with(*start);
-    CELL_ARRAYS.contains(&name) || !is_table(name) && CELL_ARRAY_STARTS.iter().any(is_family)
+    let is_known = CELL_ARRAYS.contains(&name) || is_state(name);
+    is_known || !is_table(name) && CELL_ARRAY_STARTS.iter().any(is_family)
+}
+
+/// True of the state of the fluids, which a deck may give as it is at the start.
+pub fn is_state(name: &str) -> bool {
+    STATE.contains(&name)
 }
 
 /// True where the keyword is known to give a table or a vector.

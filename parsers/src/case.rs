@@ -2,7 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::deck::Schedule;
 use crate::error::{At, ErrorKind, ParseError};
+use crate::paths;
 use crate::records::Form;
 
 /// Where the grid is.
@@ -26,6 +28,8 @@ pub enum RestartSource {
     Unified(PathBuf),
     /// One file per step, with its report number, rising.
     Separate(Vec<(u32, PathBuf)>),
+    /// Several of them, in the order in which they were named: a run that was continued in others.
+    Several(Vec<RestartSource>),
 }
 
 /// Where the curves over time are.
@@ -60,6 +64,10 @@ pub struct CaseFiles {
     pub deck: Option<PathBuf>,
     /// Text files that were added by hand: properties, faults and what else goes on where the grid's text ends.
     pub added: Vec<PathBuf>,
+    /// Decks, and parts of them, that may say something of wells.
+    pub schedules: Vec<PathBuf>,
+    /// Files with paths of wells, added by hand.
+    pub paths: Vec<PathBuf>,
     /// ROFF files of properties: those beside a ROFF grid whose names begin with its own and `--`, and those added by hand.
     pub roff: Vec<PathBuf>,
     /// Static properties.
@@ -81,6 +89,10 @@ enum Role {
     Separate(u32),
     Deck,
     Text,
+    /// A part of a deck about wells and time.
+    Schedule,
+    /// Paths of wells.
+    Paths,
     Roff,
     /// Curves over time, which [`find_summary`] finds.
     Summary(SummaryPart),
@@ -114,6 +126,7 @@ fn role(path: &Path) -> Option<Role> {
         "UNSMRY" | "FUNSMRY" => Role::Summary(SummaryPart::Unified),
         "ESMRY" => Role::Summary(SummaryPart::Extended),
         "GRDECL" => Role::Text,
+        "SCH" => Role::Schedule,
         "ROFF" | "ROFFBIN" | "ROFFASC" => Role::Roff,
         "EPC" => Role::NotRead("RESQML is not read"),
         // Text grids are called .grid too.
@@ -140,23 +153,40 @@ fn rank(path: &Path) -> usize {
 
 /// The form of a file of arrays; `None` for other files.
 fn form(path: &Path) -> Option<Form> {
-    Form::of(&start(path)?)
+    Form::of(&start(path, 64)?)
 }
 
 /// The first bytes of a file.
-fn start(path: &Path) -> Option<Vec<u8>> {
+fn start(path: &Path, count: u64) -> Option<Vec<u8>> {
     let mut start = Vec::new();
     let file = std::fs::File::open(path).ok()?;
-    std::io::Read::read_to_end(&mut std::io::Read::take(file, 64), &mut start).ok()?;
+    std::io::Read::read_to_end(&mut std::io::Read::take(file, count), &mut start).ok()?;
     Some(start)
 }
 
 /// True for a file that begins as ROFF files do.
 fn is_roff(path: &Path) -> bool {
-    start(path).is_some_and(|start| {
+    start(path, 64).is_some_and(|start| {
         let text = String::from_utf8_lossy(&start);
         text.contains("roff-bin") || text.contains("roff-asc")
     })
+}
+
+/// Bytes by which text is told from text, at most.
+const SNIFFED: u64 = 1 << 16;
+/// Endings that promise paths of wells.
+const PATH_ENDINGS: [&str; 4] = ["DEV", "WELLPATH", "TRAJ", "RMSWELL"];
+
+/// What text that is named by the user, and not by an ending of a deck, is.
+fn text_role(path: &Path) -> Role {
+    let start = start(path, SNIFFED).unwrap_or_default();
+    let ending = path.extension().and_then(|ending| ending.to_str());
+    let ending = ending.unwrap_or_default().to_ascii_uppercase();
+    match () {
+        () if paths::begin(&start, PATH_ENDINGS.contains(&ending.as_str())) => Role::Paths,
+        () if Schedule::begins(&start) => Role::Schedule,
+        () => Role::Text,
+    }
 }
 
 /// What the content of the file named by the user shows, where its extension says nothing sure.
@@ -164,7 +194,7 @@ fn sniff(path: &Path) -> Role {
     match role(path) {
         None | Some(Role::Text) if form(path).is_some() => Role::Egrid,
         None | Some(Role::Text) if is_roff(path) => Role::Roff,
-        None => Role::Text,
+        None | Some(Role::Text) => text_role(path),
         Some(role) => role,
     }
 }
@@ -183,6 +213,9 @@ pub fn find(path: &Path) -> Result<CaseFiles, ParseError> {
         return find(&only);
     }
     let named = path.is_file().then(|| sniff(path));
+    if let Some(error) = without_grid(path, named) {
+        return Err(error);
+    }
     let (stem, files) = family(path, named)?;
     let first = |wanted: Role| {
         let file = files.iter().find(|(_, r)| *r == wanted);
@@ -215,23 +248,12 @@ pub fn find(path: &Path) -> Result<CaseFiles, ParseError> {
     else {
         return Err(no_grid(path, &stem, &files));
     };
-    let deck = deck.filter(|_| matches!(grid, GridSource::Egrid(_)));
-    let mut separate: Vec<(u32, PathBuf)> = Vec::new();
-    for (file, role) in &files {
-        if let Role::Separate(report) = role
-            && !separate.iter().any(|s| s.0 == *report)
-        {
-            separate.push((*report, file.clone()));
-        }
-    }
-    separate.sort();
-    let restart = match first(Role::Unified) {
-        Some(unified) if !matches!(named, Some(Role::Separate(_))) => {
-            RestartSource::Unified(unified)
-        }
-        _ if separate.is_empty() => RestartSource::None,
-        _ => RestartSource::Separate(separate),
+    let schedules = first(Role::Deck).filter(|_| !matches!(grid, GridSource::Roff(_)));
+    let schedules = match &grid {
+        GridSource::Deck(deck) => schedules.filter(|schedule| schedule == deck),
+        _ => schedules,
     };
+    let deck = deck.filter(|_| matches!(grid, GridSource::Egrid(_)));
     let reason = |role: &Role| {
         if let Role::NotRead(why) = role {
             Some(*why)
@@ -248,8 +270,10 @@ pub fn find(path: &Path) -> Result<CaseFiles, ParseError> {
         grid,
         deck,
         added: Vec::new(),
+        schedules: schedules.into_iter().collect(),
+        paths: Vec::new(),
         init: first(Role::Init),
-        restart,
+        restart: restart_of(&files, named),
         summary: summary_of(&files, named),
         not_read: files
             .iter()
@@ -258,14 +282,51 @@ pub fn find(path: &Path) -> Result<CaseFiles, ParseError> {
     })
 }
 
+/// The restart among the files of a case; `named` is what the user named of them.
+fn restart_of(files: &[(PathBuf, Role)], named: Option<Role>) -> RestartSource {
+    let mut separate: Vec<(u32, PathBuf)> = Vec::new();
+    for (file, role) in files {
+        if let Role::Separate(report) = role
+            && !separate.iter().any(|s| s.0 == *report)
+        {
+            separate.push((*report, file.clone()));
+        }
+    }
+    separate.sort();
+    let mut unified = files.iter().filter(|(_, role)| *role == Role::Unified);
+    match unified.next() {
+        Some((unified, _)) if !matches!(named, Some(Role::Separate(_))) => {
+            RestartSource::Unified(unified.clone())
+        }
+        _ if separate.is_empty() => RestartSource::None,
+        _ => RestartSource::Separate(separate),
+    }
+}
+
+/// Why a file that belongs to a case cannot be one.
+fn without_grid(path: &Path, role: Option<Role>) -> Option<ParseError> {
+    let what = match role? {
+        Role::Paths => "paths of wells",
+        Role::Schedule => "a schedule of wells",
+        _ => return None,
+    };
+    let message = format!("has {what} and no grid; add it to a case, as by --with");
+    let kind = ErrorKind::Unsupported;
+    Some(ParseError::of(kind, path, At::File, "", message))
+}
+
 /// As [`find`], with files added by hand to what is found: text beside the grid, an INIT, restart or summary of another
 /// name.
+///
+/// What is added takes the place of what was found, which is among what is not read then; several restarts are kept side by
+/// side.
 ///
 /// # Errors
 /// As [`find`]; and when an added file is not there or can be no part of a case.
 pub fn find_with(path: &Path, with: &[PathBuf]) -> Result<CaseFiles, ParseError> {
     let mut files = find(path)?;
-    let mut separate = Vec::new();
+    let mut restarts: Vec<RestartSource> = Vec::new();
+    let found = (files.init.clone(), files.restart.clone());
     for added in with {
         if !added.is_file() {
             return Err(not_found(added, "there is no such file"));
@@ -273,11 +334,17 @@ pub fn find_with(path: &Path, with: &[PathBuf]) -> Result<CaseFiles, ParseError>
         let refuse =
             |message: &str| ParseError::of(ErrorKind::Unsupported, added, At::File, "", message);
         match sniff(added) {
-            Role::Deck | Role::Text => files.added.push(added.clone()),
+            Role::Deck => {
+                files.added.push(added.clone());
+                files.schedules.push(added.clone());
+            }
+            Role::Text => files.added.push(added.clone()),
+            Role::Schedule => files.schedules.push(added.clone()),
+            Role::Paths => files.paths.push(added.clone()),
             Role::Roff => files.roff.push(added.clone()),
             Role::Init => files.init = Some(added.clone()),
-            Role::Unified => files.restart = RestartSource::Unified(added.clone()),
-            Role::Separate(report) => separate.push((report, added.clone())),
+            Role::Unified => restarts.push(RestartSource::Unified(added.clone())),
+            Role::Separate(report) => add_separate(&mut restarts, report, added),
             Role::Egrid => {
                 return Err(refuse(
                     "is a grid of its own and cannot be added to another one",
@@ -287,11 +354,51 @@ pub fn find_with(path: &Path, with: &[PathBuf]) -> Result<CaseFiles, ParseError>
             Role::NotRead(why) => return Err(refuse(why)),
         }
     }
-    if !separate.is_empty() {
-        separate.sort();
-        files.restart = RestartSource::Separate(separate);
-    }
+    files.restart = match restarts.len() {
+        0 => files.restart,
+        1 => restarts.swap_remove(0),
+        _ => RestartSource::Several(restarts),
+    };
+    let replaced = found.0.filter(|init| files.init.as_ref() != Some(init));
+    let why = "an INIT of another name was added";
+    files.not_read.extend(replaced.map(|init| (init, why)));
+    let kept = restart_files(&files.restart);
+    let replaced = restart_files(&found.1).into_iter();
+    let mut replaced = replaced.filter(|file| !kept.contains(file));
+    let why = "time steps of another name were added; add this file too to see both";
+    files
+        .not_read
+        .extend(replaced.next().map(|file| (file, why)));
     Ok(files)
+}
+
+/// Adds a file of one step to the others of its run, which have its folder and its name but for the ending.
+fn add_separate(restarts: &mut Vec<RestartSource>, report: u32, added: &Path) {
+    let run = |path: &Path| path.with_extension("");
+    let known = restarts.iter_mut().find_map(|source| match source {
+        RestartSource::Separate(files) => {
+            let is_of = files.iter().any(|(_, file)| run(file) == run(added));
+            is_of.then_some(files)
+        }
+        _ => None,
+    });
+    match known {
+        Some(files) => {
+            files.push((report, added.to_owned()));
+            files.sort();
+        }
+        None => restarts.push(RestartSource::Separate(vec![(report, added.to_owned())])),
+    }
+}
+
+/// The files of restarts.
+fn restart_files(source: &RestartSource) -> Vec<PathBuf> {
+    match source {
+        RestartSource::None => Vec::new(),
+        RestartSource::Unified(path) => vec![path.clone()],
+        RestartSource::Separate(files) => files.iter().map(|(_, path)| path.clone()).collect(),
+        RestartSource::Several(sources) => sources.iter().flat_map(restart_files).collect(),
+    }
 }
 
 /// Finds the summary files of the case that `path` names, as [`find`] does; the case needs no grid.

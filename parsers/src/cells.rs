@@ -9,6 +9,7 @@ use crate::arrays::is_region;
 use crate::error::ParseError;
 use crate::records::{Entry, RecordFile, RecordWriter, refused};
 use crate::units::UnitSystem;
+use crate::wells::ITEMS;
 
 /// Items of an INTEHEAD array that is written, of LOGIHEAD, and the simulator that item 95 names.
 const INTEHEAD_ITEMS: usize = 411;
@@ -51,6 +52,8 @@ pub struct Head {
     pub clock: [i32; 3],
     /// Number of wells (item 17).
     pub wells: i32,
+    /// Most connections of a well (item 18).
+    pub connections_per_well: i32,
     /// Strings per well in ZWEL (item 28).
     pub strings_per_well: i32,
 }
@@ -176,6 +179,7 @@ impl CellArrays {
             },
             clock: [item(207), item(208), item(411)],
             wells: item(17),
+            connections_per_well: item(18),
             strings_per_well: item(28),
         })
     }
@@ -217,6 +221,19 @@ impl Head {
         set(12, self.active);
         set(15, self.phases);
         set(17, self.wells);
+        set(18, self.connections_per_well);
+        if self.wells > 0 {
+            let items = [
+                (25, ITEMS.iwel),
+                (26, ITEMS.swel),
+                (27, ITEMS.xwel),
+                (33, ITEMS.icon),
+                (34, ITEMS.scon),
+            ];
+            items
+                .into_iter()
+                .for_each(|(n, count)| set(n, count as i32));
+        }
         set(28, self.strings_per_well);
         set(65, day);
         set(66, month);

@@ -1,7 +1,8 @@
-//! Readers and writers of Eclipse-style reservoir files, as written: no geometry, no GPU.
+//! Readers and writers of Eclipse-style reservoir files, and of regular volumes such as seismic ([`volume`]), as written:
+//! no geometry, no GPU.
 //!
 //! Three levels: bytes (records, tokens), typed records ([`egrid`], [`init`],
-//! [`restart`], [`wells`], [`summary`], [`deck`], [`roff`]), and the [`case`] that finds the files belonging together. Bad files
+//! [`restart`], [`wells`], [`paths`], [`summary`], [`deck`], [`roff`]), and the [`case`] that finds the files belonging together. Bad files
 //! end in a [`ParseError`] that names file, keyword and place; no reader panics, prints, or
 //! allocates by a count that the remaining bytes do not cover.
 //!
@@ -49,12 +50,12 @@
 //! # Time steps
 //!
 //! ```
-//! use strataray_parsers::{Warnings, cells::Head, restart};
+//! use strataray_parsers::{Warnings, cells::Head, restart, wells::Well};
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! let head = Head { active: 1, date: "2001-06-30".into(), ..Head::default() };
 //! let mut writer = restart::RestartWriter::new(Vec::new());
-//! writer.step(4, 31.0, &head, &["P1"], [("PRESSURE", vec![250.0])])?;
+//! writer.step(4, 31.0, &head, &[Well::named("P1")], [("PRESSURE", vec![250.0])])?;
 //! let bytes = writer.finish()?;
 //!
 //! let steps = restart::unified_from_bytes(("CASE.UNRST", bytes), &mut Warnings::default())?;
@@ -103,12 +104,14 @@ pub mod error;
 mod geometry;
 pub mod init;
 mod parallel;
+pub mod paths;
 mod radial;
 pub mod records;
 pub mod restart;
 pub mod roff;
 pub mod summary;
 pub mod units;
+pub mod volume;
 pub mod wells;
 
 pub use bytes::FileBytes;

@@ -10,6 +10,7 @@ use crate::calendar;
 use crate::cells::{CellArrays, Head, write_arrays, write_heads};
 use crate::error::{At, ErrorKind, ParseError, Warnings};
 use crate::records::{RecordFile, RecordWriter, refused};
+use crate::wells::{self, Well};
 
 /// One report step.
 #[derive(Debug, Clone)]
@@ -259,10 +260,10 @@ impl<W: Write> RestartWriter<W> {
         Self { out }
     }
 
-    /// Writes a step: SEQNUM, the heads, the wells' names as ZWEL, and `arrays` between STARTSOL and ENDSOL.
+    /// Writes a step: SEQNUM, the heads, the wells, and `arrays` between STARTSOL and ENDSOL.
     ///
-    /// Each array has one value per active cell and is made when its turn comes; the numbers of
-    /// wells and of their strings in `head` are not read but follow from `wells`.
+    /// Each array has one value per active cell and is made when its turn comes; what `head` says of wells is not read
+    /// but follows from `wells`. Of these, what is in local grids and their groups are not written.
     ///
     /// # Errors
     /// When writing fails, an array has not `head.active` values, a name is longer than 8 bytes, or
@@ -272,21 +273,24 @@ impl<W: Write> RestartWriter<W> {
         report: u32,
         days: f64,
         head: &Head,
-        wells: &[impl AsRef<str>],
+        wells: &[Well],
         arrays: impl IntoIterator<Item = (N, Vec<f32>)>,
     ) -> io::Result<()> {
         let number = |n: usize| i32::try_from(n).map_err(|_| refused(format!("{n} wells")));
+        let most = wells.iter().map(|well| well.completions.len()).max();
         let head = Head {
             wells: number(wells.len())?,
-            strings_per_well: i32::from(!wells.is_empty()),
+            connections_per_well: number(most.unwrap_or(0))?,
+            strings_per_well: match wells.is_empty() {
+                true => 0,
+                false => number(wells::ITEMS.zwel)?,
+            },
             ..head.clone()
         };
         let report = i32::try_from(report).map_err(|_| refused(format!("report {report}")))?;
         self.out.inte("SEQNUM", &[report])?;
         write_heads(&mut self.out, &head, days)?;
-        if !wells.is_empty() {
-            self.out.chars("ZWEL", wells)?;
-        }
+        wells::write(&mut self.out, wells)?;
         self.out.mess("STARTSOL")?;
         write_arrays(&mut self.out, &head, arrays)?;
         self.out.mess("ENDSOL")

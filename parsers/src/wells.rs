@@ -30,10 +30,11 @@
 //! ```
 
 use std::collections::HashMap;
+use std::io::{self, Write};
 
 use crate::cells::CellArrays;
 use crate::error::{ErrorKind, ParseError};
-use crate::records::Entry;
+use crate::records::{Entry, RecordWriter, refused};
 
 /// A well at a step.
 #[derive(Debug, Clone, PartialEq)]
@@ -58,6 +59,44 @@ pub struct Well {
     pub local: Vec<LocalWell>,
     /// What flows, where XWEL is written.
     pub flow: Option<Flow>,
+}
+
+impl Well {
+    /// A well of which nothing is known but its name: shut, and not connected to cells.
+    pub fn named(name: impl Into<String>) -> Self {
+        Self {
+            name: name.into(),
+            group: None,
+            head: [0; 2],
+            depth: None,
+            kind: Kind::Undefined,
+            status: Status::Shut,
+            segments: 0,
+            completions: Vec::new(),
+            local: Vec::new(),
+            flow: None,
+        }
+    }
+}
+
+impl Completion {
+    /// An open connection to a cell, `order` from 1 being its place in the well.
+    pub fn open(cell: [i32; 3], direction: Direction, order: i32) -> Self {
+        Self {
+            cell,
+            is_fracture: false,
+            is_open: true,
+            direction: Some(direction),
+            order,
+            number: order,
+            segment: 0,
+            factor: None,
+            depth: None,
+            diameter: None,
+            kh: None,
+            skin: None,
+        }
+    }
 }
 
 /// What a local grid says of a well.
@@ -162,6 +201,144 @@ pub struct Flow {
     /// Oil, water and gas injected since the start.
     pub injected: [f64; 3],
 }
+
+/// Items of a well and of a connection in the arrays that are written, as many as simulators write.
+pub(crate) const ITEMS: ItemCounts = ItemCounts {
+    iwel: 155,
+    swel: 122,
+    xwel: 130,
+    zwel: 3,
+    icon: 26,
+    scon: 42,
+};
+
+/// How many items each well or connection has in an array.
+pub(crate) struct ItemCounts {
+    pub(crate) iwel: usize,
+    pub(crate) swel: usize,
+    pub(crate) xwel: usize,
+    pub(crate) zwel: usize,
+    pub(crate) icon: usize,
+    pub(crate) scon: usize,
+}
+
+/// Writes IWEL, SWEL, XWEL, ZWEL, ICON and SCON of some wells, which [`read`] reads as the same wells. Groups, what is
+/// in local grids and K of fractures are not written. SWEL, XWEL and SCON are left out where nothing is known of them.
+pub(crate) fn write<W: Write>(out: &mut RecordWriter<W>, wells: &[Well]) -> io::Result<()> {
+    if wells.is_empty() {
+        return Ok(());
+    }
+    let most = wells.iter().map(|well| well.completions.len()).max();
+    let most = most.unwrap_or(0);
+    let mut iwel = vec![0; ITEMS.iwel * wells.len()];
+    let mut swel = vec![0.0; ITEMS.swel * wells.len()];
+    let mut xwel = vec![0.0; ITEMS.xwel * wells.len()];
+    let mut names = vec![""; ITEMS.zwel * wells.len()];
+    let mut icon = vec![0; ITEMS.icon * most * wells.len()];
+    let mut scon = vec![0.0; ITEMS.scon * most * wells.len()];
+    for (n, well) in wells.iter().enumerate() {
+        names[ITEMS.zwel * n] = &well.name;
+        write_well(&mut iwel[ITEMS.iwel * n..], well)?;
+        swel[ITEMS.swel * n + 9] = well.depth.unwrap_or(0.0);
+        if let Some(flow) = &well.flow {
+            write_flow(&mut xwel[ITEMS.xwel * n..], flow);
+        }
+        for (c, completion) in well.completions.iter().enumerate() {
+            let at = most * n + c;
+            write_integers(&mut icon[ITEMS.icon * at..], completion);
+            write_reals(&mut scon[ITEMS.scon * at..], completion);
+        }
+    }
+    out.inte("IWEL", &iwel)?;
+    if wells.iter().any(|well| well.depth.is_some()) {
+        out.real("SWEL", &swel)?;
+    }
+    if wells.iter().any(|well| well.flow.is_some()) {
+        out.doub("XWEL", &xwel)?;
+    }
+    out.chars("ZWEL", &names)?;
+    if most > 0 {
+        out.inte("ICON", &icon)?;
+    }
+    let mut completions = wells.iter().flat_map(|well| &well.completions);
+    if completions.any(|c| {
+        c.factor
+            .or(c.depth)
+            .or(c.diameter)
+            .or(c.kh)
+            .or(c.skin)
+            .is_some()
+    }) {
+        out.real("SCON", &scon)?;
+    }
+    Ok(())
+}
+
+fn write_well(items: &mut [i32], well: &Well) -> io::Result<()> {
+    let count = i32::try_from(well.completions.len());
+    let layers = well.completions.iter().map(|c| c.cell[2]);
+    items[..2].copy_from_slice(&well.head);
+    items[2] = layers.clone().min().unwrap_or(0);
+    items[3] = layers.max().unwrap_or(0);
+    items[4] = count.map_err(|_| refused(format!("{}: too many connections", well.name)))?;
+    items[6] = match well.kind {
+        Kind::Producer => 1,
+        Kind::OilInjector => 2,
+        Kind::WaterInjector => 3,
+        Kind::GasInjector => 4,
+        Kind::Undefined => 0,
+    };
+    items[10] = match well.status {
+        Status::Open => 1,
+        Status::Stopped => 0,
+        Status::Shut => SHUT,
+    };
+    items[71] = well.segments;
+    Ok(())
+}
+
+fn write_integers(items: &mut [i32], completion: &Completion) {
+    items[0] = completion.order;
+    items[1..4].copy_from_slice(&completion.cell);
+    items[5] = if completion.is_open { 1 } else { SHUT };
+    items[12] = completion.number;
+    items[13] = completion.direction.map_or(0, |direction| match direction {
+        Direction::X => 1,
+        Direction::Y => 2,
+        Direction::Z => 3,
+    });
+    items[14] = completion.segment;
+}
+
+fn write_reals(items: &mut [f32], completion: &Completion) {
+    let known = [
+        completion.factor,
+        completion.depth,
+        completion.diameter,
+        completion.kh,
+        completion.skin,
+    ];
+    for (item, value) in items.iter_mut().zip(known) {
+        *item = value.unwrap_or(0.0);
+    }
+}
+
+fn write_flow(items: &mut [f64], flow: &Flow) {
+    let rates = [flow.oil, flow.water, flow.gas];
+    items[..3].copy_from_slice(&rates);
+    items[4..9].copy_from_slice(&[
+        flow.voidage,
+        flow.tubing_head_pressure,
+        flow.bottom_hole_pressure,
+        flow.water_cut,
+        flow.gas_oil_ratio,
+    ]);
+    items[18..21].copy_from_slice(&flow.produced);
+    items[22..25].copy_from_slice(&flow.injected);
+}
+
+/// What stands for shut, of wells and connections.
+const SHUT: i32 = -1000;
 
 /// The wells of a step, in the order of the file; none where there are none.
 ///

@@ -1,8 +1,11 @@
-//! Real files, damaged a thousand times each: no panic, no long wait, no more memory than there are bytes for.
+//! Real files and volumes, damaged a thousand times each: no panic, no long wait, no more memory than there are bytes for.
 //!
 //! Memory is counted by the allocator of this binary, which holds this one test alone, so that nothing else counts.
 #![allow(missing_docs, clippy::unwrap_used, clippy::panic, reason = "tests")]
 
+#[path = "bytes/fixtures.rs"]
+#[allow(dead_code, reason = "shared with other tests")]
+mod fixtures;
 #[path = "bytes/properties.rs"]
 #[allow(dead_code, reason = "shared with other tests and with fuzzing")]
 mod properties;
@@ -13,6 +16,7 @@ use std::time::{Duration, Instant};
 use fastrand::Rng;
 use peak_alloc::PeakAlloc;
 use properties::{READERS, Reader, holds};
+use strataray_parsers::volume::{self, Options};
 
 #[global_allocator]
 static MEMORY: PeakAlloc = PeakAlloc;
@@ -48,9 +52,12 @@ fn readers(path: &Path) -> Vec<Reader> {
         "SMSPEC" | "UNSMRY" => &["summary"],
         "ESMRY" => &["esmry"],
         "ROFF" => &["roff"],
+        "SGY" | "SEGY" => &["segy"],
+        "NRRD" | "NHDR" | "MHA" | "MHD" | "VTI" => &["volume"],
         "PNG" | "CSV" | "JSON" | "MD" => &[],
         x if x.starts_with('X') && x.len() == 5 => &["restart", "wells"],
-        _ => &["deck"],
+        "SCH" => &["deck", "schedule", "paths"],
+        _ => &["deck", "schedule"],
     };
     let named = READERS.iter().filter(|(name, _)| names.contains(name));
     named.map(|(_, reader)| *reader).collect()
@@ -84,7 +91,7 @@ fn damaged(bytes: &[u8], random: &mut Rng) -> Vec<u8> {
 }
 
 /// What reading cost at most.
-#[derive(Default)]
+#[derive(Debug, Default)]
 struct Cost {
     readings: usize,
     slowest: (Duration, PathBuf),
@@ -119,36 +126,79 @@ impl Cost {
     }
 }
 
+/// Reads damaged copies of a file.
+fn damage(path: &Path, bytes: &[u8], readers: &[Reader], cost: &mut Cost) {
+    let whole = &bytes[..bytes.len().min(LONGEST)];
+    for seed in 0..ROUNDS {
+        let mut random = Rng::with_seed(seed as u64);
+        // Most of a long file is more of the same.
+        let length = match seed % 50 {
+            0 => whole.len(),
+            _ => whole.len().min(SHORT),
+        };
+        let bytes = damaged(&whole[..length], &mut random);
+        for reader in readers {
+            cost.add(path, seed, *reader, &bytes);
+        }
+    }
+}
+
+/// Volumes, of which there are none among the real files.
+fn volumes() -> Vec<(&'static str, Vec<u8>)> {
+    let mut all = fixtures::images([50, 40, 10]);
+    all.push(("a.sgy", fixtures::segy(2000)));
+    all
+}
+
+/// What opening a volume and reading it in slabs takes at most, beside the bytes of the file.
+fn held(bytes: Vec<u8>) -> usize {
+    MEMORY.reset_peak_usage();
+    let before = MEMORY.current_usage();
+    let volume = volume::from_bytes(("A", bytes), &Options::default()).unwrap();
+    for slab in volume.slabs(1 << 16) {
+        volume.f32s(slab).unwrap();
+    }
+    MEMORY.peak_usage() - before
+}
+
+/// Samples are not held, but those of text, in the bytes of their type.
+fn volumes_are_read_in_slabs() {
+    const SAMPLES: usize = 256 * 256 * 40;
+    for (name, bytes) in fixtures::images([256, 256, 40]) {
+        let held = held(bytes);
+        let most = match name.starts_with("text") {
+            true => 2 * SAMPLES + (3 << 20),
+            false => 3 << 20,
+        };
+        assert!(held < most, "{name}: {held} bytes");
+    }
+    let bytes = fixtures::segy(60_000);
+    assert!(held(bytes) < 3 << 20);
+}
+
 #[test]
-fn damaged_real_files() {
+fn damaged_files() {
+    volumes_are_read_in_slabs();
+    let mut cost = Cost::default();
+    for (name, bytes) in volumes() {
+        let path = Path::new(name);
+        damage(path, &bytes, &readers(path), &mut cost);
+    }
+    println!("{cost:?}");
     let Some(data) = std::env::var_os("STRATARAY_DATA") else {
         println!("STRATARAY_DATA is not set: the test on real files is left out");
         return;
     };
-    let mut paths = Vec::new();
+    let (mut paths, mut count) = (Vec::new(), 0);
     files(Path::new(&data), &mut paths);
     paths.sort();
-    let (mut cost, mut count) = (Cost::default(), 0);
     for path in &paths {
         let readers = readers(path);
         if readers.is_empty() {
             continue;
         }
         count += 1;
-        let bytes = std::fs::read(path).unwrap();
-        let whole = &bytes[..bytes.len().min(LONGEST)];
-        for seed in 0..ROUNDS {
-            let mut random = Rng::with_seed(seed as u64);
-            // Most of a long file is more of the same.
-            let length = match seed % 50 {
-                0 => whole.len(),
-                _ => whole.len().min(SHORT),
-            };
-            let bytes = damaged(&whole[..length], &mut random);
-            for reader in &readers {
-                cost.add(path, seed, *reader, &bytes);
-            }
-        }
+        damage(path, &std::fs::read(path).unwrap(), &readers, &mut cost);
     }
     assert!(count > 50, "only {count} files");
     println!(

@@ -695,8 +695,9 @@ fn ok_dual_porosity_shows_the_matrix() {
         assert_eq!(grid.porosity_model, PorosityModel::Dual);
         assert_eq!(grid.dims, [1, 1, 2]);
         assert_eq!(grid.zcorn.len(), 16);
-        assert_eq!(property(&grid, "PORO"), [0.1, 0.2]);
-        assert_eq!(property(&grid, "PERMX"), [5.0, 5.0]);
+        // The matrix, then the fractures.
+        assert_eq!(property(&grid, "PORO"), [0.1, 0.2, 0.3, 0.4]);
+        assert_eq!(property(&grid, "PERMX"), [5.0, 5.0, 500.0, 500.0]);
         // Both, and the fracture alone.
         assert_eq!(grid.actnum, Some(vec![3, 2]));
         assert_eq!((grid.faults.len(), grid.faults[0].k), (1, [1, 2]));
@@ -711,6 +712,22 @@ fn ok_dual_porosity_shows_the_matrix() {
     let grid = ok(&blocks);
     assert_eq!(grid.zcorn[12..], [111.0; 4]);
     assert_eq!(grid.actnum, Some(vec![3, 3]));
+    // Sizes are those of the matrix, and fractures that are given nothing have what the matrix has, by DPGRID alone.
+    assert_eq!(property(&grid, "DX"), [10.0, 10.0]);
+    let shared = blocks.replace("ENDBOX", "ENDBOX\nPORO\n0.1 0.2 /");
+    assert_eq!(property(&ok(&shared), "PORO"), [0.1, 0.2, 0.1, 0.2]);
+    let own = shared.replace("DPGRID\n", "");
+    assert_eq!(property(&ok(&own), "PORO"), [0.1, 0.2]);
+    // A box may reach over both halves.
+    let across = own.replace(
+        "ENDBOX",
+        "EQUALS\nPERMZ 3 1 1 1 1 2 3 /\n/\nCOPY\nPERMZ PERMY 1 1 1 1 2 3 /\n/",
+    );
+    let values = ok(&across);
+    let values = property(&values, "PERMY");
+    assert!(values[0].is_nan() && values[1..3] == [3.0, 3.0] && values[3].is_nan());
+    assert!(!own.contains("NODPPM") && !ok(&own).has_effective_fractures);
+    assert!(ok(&own.replace("DUALPORO", "DUALPORO\nNODPPM")).has_effective_fractures);
     let odd = blocks.replace("1 1 4 /", "1 1 3 /");
     err(&odd, "DIMENS: 3 layers of dual porosity");
 }
@@ -756,12 +773,150 @@ fn ok_depths_are_shifted() {
 }
 
 #[test]
-fn ok_refinements_are_left_out_with_a_warning() {
-    let (grid, warning) = warned(&cell(
-        "CARFIN\n'L' 1 1 1 1 1 1 2 2 2 /\nPORO\n0.5 /\nEQUALS\nPERMX 1 /\n/\nENDFIN\nNTG\n1 /\n",
-    ));
-    assert_eq!(names(&grid), ["NTG"]);
-    assert!(warning.contains("local refinements"), "{warning}");
+fn ok_local_grids() {
+    // Two cells side by side, of 10 m and 20 m along x.
+    let text = |local: &str| {
+        format!(
+            "RUNSPEC\nDIMENS\n2 1 2 /\nGRID\nDXV\n10 20 /\nDYV\n10 /\nDZV\n4 6 /\nTOPS\n2*100 /\n\
+             PORO\n0.1 0.2 0.3 0.4 /\nMULTZ\n4*0.5 /\nACTNUM\n1 1 0 1 /\n{local}\nPERMX\n1 2 3 4 /\n"
+        )
+    };
+    let carfin = "CARFIN\n'fine' 1 2 1 1 1 2 5 2 2 10 /\nNXFIN\n 3 2 /\nHXFIN\n 1 1 2 2* /\nPERMX\n 20*9 /\n\
+                  BOX\n 1 5 1 1 1 1 /\nNTG\n 5*0.7 /\nENDBOX\nEQUALS\n PORO 0.5 2 3 2 2 1 1 /\n/\nENDFIN\n\
+                  REFINE\n 'FINE' /\nMULTIPLY\n PORO 2 5 5 1 2 2 2 /\n/\nENDFIN\n";
+    let (grid, warning) = warned(&text(carfin));
+    assert_eq!(warning.lines().count(), 1, "{warning}");
+    assert!(
+        warning.contains("MULTZ of local grid FINE are not those"),
+        "{warning}"
+    );
+    let [fine] = grid.local_grids.as_slice() else {
+        panic!("one local grid");
+    };
+    assert_eq!(
+        (fine.grid.name.as_str(), fine.grid.dims),
+        ("FINE", [5, 2, 2])
+    );
+    // Four parts of the first host, in proportion 1 : 1 : 2, and two of the second.
+    let x: Vec<f64> = (0..6).map(|i| fine.grid.coord[6 * i]).collect();
+    assert_eq!(x, [0.0, 2.5, 5.0, 10.0, 20.0, 30.0]);
+    assert_eq!(fine.grid.zcorn[..10], [100.0; 10]);
+    assert_eq!(fine.grid.zcorn[20..30], [100.0; 10]);
+    assert_eq!(fine.grid.zcorn[40..60], [104.0; 20]);
+    assert_eq!(fine.grid.host[..5], [1, 1, 1, 2, 2]);
+    let active = [vec![1; 10], [0, 0, 0, 1, 1].repeat(2)].concat();
+    assert_eq!(fine.grid.actnum.as_deref(), Some(active.as_slice()));
+    let values = |name: &str| {
+        let found = fine.properties.iter().find(|p| p.name == name);
+        found.unwrap().values.as_slice()
+    };
+    assert_eq!(
+        values("PORO")[..10],
+        [0.1, 0.1, 0.1, 0.2, 0.2, 0.1, 0.5, 0.5, 0.2, 0.2]
+    );
+    assert_eq!(values("PORO")[10..15], [0.3, 0.3, 0.3, 0.4, 0.8]);
+    // Its own, though those of the main grid stand behind them.
+    assert_eq!(values("PERMX"), [9.0; 20]);
+    assert_eq!((values("NTG")[4], values("NTG")[5]), (0.7, 1.0));
+    assert!(fine.properties.iter().all(|p| p.name != "MULTZ"));
+    // The main grid knows nothing of it.
+    assert_eq!(property(&grid, "PERMX"), [1.0, 2.0, 3.0, 4.0]);
+    assert_eq!(property(&grid, "PORO"), [0.1, 0.2, 0.3, 0.4]);
+    assert_eq!(ok(&text("")).local_grids, []);
+    // A grid in a grid.
+    let nested = format!("{carfin}CARFIN\nIN 4 5 1 2 1 1 2 4 3 1* FINE /\nENDFIN\n");
+    let (grid, _) = warned(&text(&nested));
+    let inner = &grid.local_grids[1].grid;
+    assert_eq!((inner.parent.as_str(), inner.dims), ("FINE", [2, 4, 3]));
+    assert_eq!(inner.host[..8], [4, 5, 4, 5, 9, 10, 9, 10]);
+    // A third of the first layer.
+    assert!((inner.zcorn[32] - (100.0 + 4.0 / 3.0)).abs() < 1e-12);
+    assert_eq!((inner.coord[0], inner.coord[12]), (10.0, 30.0));
+}
+
+#[test]
+fn ok_local_grids_that_are_left_out() {
+    let blocks = "DIMENS\n4 1 1 /\nDXV\n4*1 /\nDYV\n1 /\nDZV\n1 /\nTOPS\n4*0 /\n";
+    let first = "CARFIN\nA 1 2 1 1 1 1 4 2 2 /\nENDFIN\n";
+    for (text, told, count) in [
+        (
+            "CARFIN\nA 1 5 1 1 1 1 5 1 1 /\nENDFIN\n".to_owned(),
+            "its box is outside",
+            0,
+        ),
+        (
+            "CARFIN\nA 1 2 1 1 1 1 3 1 1 /\nENDFIN\n".to_owned(),
+            "3 cells are not shared evenly among 2",
+            0,
+        ),
+        (
+            first.replace("ENDFIN", "NXFIN\n2 1 /\nENDFIN"),
+            "NXFIN needs numbers of cells that are 4",
+            0,
+        ),
+        (
+            first.replace("ENDFIN", "NXFIN\n2 /\nENDFIN"),
+            "NXFIN: expected 2 values",
+            0,
+        ),
+        (
+            first.replace("ENDFIN", "HYFIN\n1 0 /\nENDFIN"),
+            "HYFIN needs sizes above 0",
+            0,
+        ),
+        (
+            format!("{first}CARFIN\nB 2 3 1 1 1 1 2 1 1 /\nENDFIN\n"),
+            "it refines cells that A refines",
+            1,
+        ),
+        (
+            format!("{first}CARFIN\nA 3 3 1 1 1 1 2 1 1 /\nENDFIN\n"),
+            "there is a local grid 'A' already",
+            1,
+        ),
+        (
+            format!("{first}CARFIN\nB 1 1 1 1 1 1 2 1 1 1* C /\nENDFIN\n"),
+            "there is no grid C before it",
+            1,
+        ),
+        (
+            first.replace("4 2 2", "40000 200 200"),
+            "more cells than the length of the deck",
+            0,
+        ),
+        (first.replace("1 1 4", "1"), "CARFIN needs a name", 0),
+        (
+            format!("{first}REFINE\nB /\nPORO\n4*0.9 /\nENDFIN\n"),
+            "is called 'B'",
+            1,
+        ),
+        (
+            "RADFIN\nR 1 1 1 1 3 4 1 /\nINRAD\n1 /\nENDFIN\n".to_owned(),
+            "radial local grids are not read",
+            0,
+        ),
+        (
+            first.replace("ENDFIN", "DX\n16*1 /\nENDFIN"),
+            "DX of local grid A is not read",
+            1,
+        ),
+        (
+            first.replace("ENDFIN", "FAULTS\n F 1 1 1 1 1 1 X /\n/\nENDFIN"),
+            "FAULTS of local grids",
+            1,
+        ),
+    ] {
+        let (grid, warning) = warned(&format!("{blocks}{text}PORO\n4*0.2 /\n"));
+        assert!(warning.contains(told), "{text}: {warning}");
+        assert_eq!(grid.local_grids.len(), count, "{text}");
+        // What is not for the main grid does not reach it.
+        assert_eq!(property(&grid, "PORO"), [0.2; 4], "{text}");
+        assert!(grid.faults.is_empty() && grid.dims == [4, 1, 1], "{text}");
+    }
+    let dual = blocks.replace("4 1 1 /", "4 1 2 /\nGRID");
+    let (grid, warning) = warned(&format!("RUNSPEC\nDUALPORO\n{dual}{first}"));
+    assert!(warning.contains("dual porosity"), "{warning}");
+    assert!(grid.local_grids.is_empty());
 }
 
 #[test]

@@ -16,6 +16,7 @@ use strataray_parsers::egrid::{self, Egrid, LocalGrid, PorosityModel};
 use strataray_parsers::records::Kind;
 use strataray_parsers::restart::{self, RestartWriter};
 use strataray_parsers::units::UnitSystem;
+use strataray_parsers::wells::{self, Completion, Direction, Flow, Status, Well};
 use strataray_parsers::{Warnings, init};
 
 /// A file with these bytes in a folder that lives as long as the first part.
@@ -52,6 +53,7 @@ fn grid() -> Egrid {
         porosity_model: PorosityModel::DualPermeability,
         nnc: vec![[1, 60], [60, 119]],
         local_nnc: Vec::new(),
+        reservoirs: Vec::new(),
         local_grids: Vec::new(),
     }
 }
@@ -126,6 +128,7 @@ fn head() -> Head {
         date: "2001-06-30".into(),
         clock: [23, 59, 30_000_000],
         wells: 0,
+        connections_per_well: 0,
         strings_per_well: 0,
     }
 }
@@ -143,6 +146,50 @@ fn ok_init_reads_back_equal() {
         assert_eq!(bits(&read), bits(&values), "{name}");
     }
     assert!(back.find("SWAT").is_none());
+}
+
+/// A well with all that is written, and one with what differs.
+fn written_wells() -> [Well; 2] {
+    let completion = |k: i32, is_open: bool| Completion {
+        is_open,
+        number: 7,
+        segment: 2,
+        factor: Some(1.5),
+        depth: Some(2000.0),
+        diameter: Some(0.25),
+        kh: Some(40.0),
+        skin: Some(-1.0),
+        ..Completion::open([4, 5, k], Direction::X, k)
+    };
+    let well = |name: &str, completions: Vec<Completion>| Well {
+        head: [4, 5],
+        depth: Some(1990.0),
+        kind: wells::Kind::Producer,
+        status: Status::Open,
+        segments: 3,
+        completions,
+        flow: Some(Flow {
+            oil: 1.0,
+            water: 2.0,
+            gas: 3.0,
+            voidage: 4.0,
+            tubing_head_pressure: 5.0,
+            bottom_hole_pressure: 6.0,
+            water_cut: 7.0,
+            gas_oil_ratio: 8.0,
+            produced: [9.0, 10.0, 11.0],
+            injected: [12.0, 13.0, 14.0],
+        }),
+        ..Well::named(name)
+    };
+    [
+        well("PROD-1", vec![completion(1, true), completion(2, false)]),
+        Well {
+            kind: wells::Kind::GasInjector,
+            status: Status::Shut,
+            ..well("I2", vec![completion(1, true)])
+        },
+    ]
 }
 
 #[test]
@@ -163,9 +210,9 @@ fn ok_restart_reads_back_equal() {
         ..head.clone()
     };
     let mut writer = RestartWriter::new(Vec::new());
-    let wells = ["PROD-1", "I2"];
+    let wells = written_wells();
     let arrays = [("PRESSURE", values(0)), ("SWAT", values(1))];
-    writer.step(0, 0.0, &undated, &[""; 0], arrays).unwrap();
+    writer.step(0, 0.0, &undated, &[], arrays).unwrap();
     writer
         .step(20, 181.25, &head, &wells, [("SWAT", values(2))])
         .unwrap();
@@ -179,7 +226,8 @@ fn ok_restart_reads_back_equal() {
     assert_eq!(steps[0].head, undated);
     assert_eq!(steps[1].head.date, "2001-06-30");
     assert!(steps[0].wells().unwrap().is_empty());
-    assert_eq!(steps[1].wells().unwrap(), wells);
+    assert_eq!(steps[1].wells().unwrap(), ["PROD-1", "I2"]);
+    assert_eq!(wells::read(&steps[1].arrays).unwrap(), wells);
     let read = |step: usize, name: &str| {
         let arrays = &steps[step].arrays;
         arrays.find(name).map(|e| arrays.values(e).unwrap())
@@ -237,9 +285,9 @@ fn err_cell_arrays_that_could_not_be_read() {
     assert!(init(&negative, "PORO", 3).contains("expected -1"));
     let mut writer = RestartWriter::new(Vec::new());
     let none: [(&str, Vec<f32>); 0] = [];
-    let said = refusal(writer.step(0, 0.0, &head(), &["A-LONG-NAME"], none.clone()));
+    let said = refusal(writer.step(0, 0.0, &head(), &[Well::named("A-LONG-NAME")], none.clone()));
     assert!(said.contains("A-LONG-NAME"), "{said}");
-    let said = refusal(writer.step(u32::MAX, 0.0, &head(), &["A"], none));
+    let said = refusal(writer.step(u32::MAX, 0.0, &head(), &[Well::named("A")], none));
     assert!(said.contains("4294967295"), "{said}");
 }
 

@@ -2,6 +2,7 @@
 // (campagnolo-2021, 3.1.1).
 #import light
 #import random
+#import openness
 
 // Optical depth of a unit of length at a point.
 fn sharp_depth(p: vec3f) -> f32 {
@@ -9,13 +10,15 @@ fn sharp_depth(p: vec3f) -> f32 {
     return -log(1.0 - min(opacity, 0.999999));
 }
 
-// Mean of the transmittances of rays over a cone, weighted by the cosine of their angle to the axis. Their
+// Mean of the transmittances of rays over a cone, weighted by the cosine of their angle to the axis, or alike where the
+// cone is all of the sphere. Their
 // directions are uniform in solid angle, one in each of as many rings; samples of a ray begin at a random
 // part of a step.
 fn rays_transmittance(emitter: Emitter, p: vec3f) -> f32 {
     let way = toward(emitter, p);
     let side = across(way.xyz);
-    let range = vec2f(lighting.rays_gap, min(emitter.length, way.w));
+    let is_around = emitter.cosine < 0.0;
+    let range = vec2f(lighting.rays_gap, select(min(emitter.length, way.w), emitter.length, is_around));
     let bits = bitcast<vec3u>(p);
     let seed = pcg(bits.x ^ pcg(bits.y ^ pcg(bits.z ^ pcg(lighting.seed))));
     var sum = 0.0;
@@ -28,10 +31,11 @@ fn rays_transmittance(emitter: Emitter, p: vec3f) -> f32 {
         // Golden angles spread the rings' directions; one random turn for all of them.
         let turn = 2.3999632 * f32(n) + 6.2831853 * unit3(seed).y;
         let direction = cosine * way.xyz + sine * (cos(turn) * side[0] + sin(turn) * side[1]);
-        sum += cosine * exp(-ray_depth(p, direction, range, chance.z));
-        weights += cosine;
+        let weight = select(cosine, 1.0, is_around);
+        sum += weight * exp(-ray_depth(p, direction, range, chance.z));
+        weights += weight;
     }
-    return sum / weights;
+    return select(sum / weights, openness(sum / weights), is_around);
 }
 
 // Optical depth of a ray within a range of distances, up to where it leaves the box.

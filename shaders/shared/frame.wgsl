@@ -58,12 +58,14 @@ fn to_grid() -> mat3x3f {
     return mat3x3f(frame.grid_from_world_x, frame.grid_from_world_y, frame.grid_from_world_z);
 }
 
-// How a point of a ray moves from a pixel to the next one to the right, and to the one below: grid space.
+// How a point of a ray moves from a pixel of the final image to the next one to the right, and to the one below:
+// grid space.
 fn pixel_steps(direction: vec3f, distance: f32) -> mat2x3f {
     let depth = distance * dot(frame.view_z, direction);
     let right = frame.origin_right + to_grid() * (depth * frame.right);
     let up = frame.origin_up + to_grid() * (depth * frame.up);
-    return mat2x3f(2.0 / f32(frame.width) * right, -2.0 / f32(frame.height) * up);
+    let pixel = 2.0 * frame.rays_across / vec2f(f32(frame.width), f32(frame.height));
+    return mat2x3f(pixel.x * right, -pixel.y * up);
 }
 
 // True on the kept side of all clip planes.

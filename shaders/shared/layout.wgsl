@@ -46,7 +46,8 @@ struct Frame {
     // 1 where rays are parallel, else 0.
     is_parallel: f32,
     origin_up: vec3f,
-    reserved: f32,
+    // Rays along each axis of a pixel of the final image.
+    rays_across: f32,
     // The way from the viewer to the lamp beside it, at a distance of one, in grid space; and one over the length
     // of the way from there to the lamp.
     headlight: vec3f,
@@ -190,8 +191,9 @@ struct LightingInfo {
     work: u32,
     // Where rays over a cone start.
     rays_gap: f32,
-    reserved0: u32,
-    reserved1: u32,
+    // Occlusion from all sides: directions of its cones, or shells around a point; and the factor on its extinction.
+    around: u32,
+    around_attenuation: f32,
 }
 
 // The viewer, or a light.
@@ -287,6 +289,10 @@ const LIGHT_OFF: u32 = 0u;
 const LIGHT_IMAGE: u32 = 1u;
 const LIGHT_VOLUME: u32 = 2u;
 const LIGHT_RAYS: u32 = 3u;
+// How light in a volume is found.
+const METHOD_CONES: u32 = 0u;
+const METHOD_SURROUND: u32 = 1u;
+const METHOD_SPAO_MIPMAP: u32 = 2u;
 // Changes of position over a reference length between which the gradient comes to count; brightness and
 // exponent of highlights.
 const GRADIENT_FADE_LOW: f32 = 0.01;

@@ -2,10 +2,8 @@
 
 use std::sync::Arc;
 
-use super::{
-    About, Case, CaseError, FieldCache, Kind, OverSteps, Property, Source, Step, Vectors, Well,
-    WellsOfSteps,
-};
+use super::pairing::{Pairing, distinct_names, no_step};
+use super::{About, Case, CaseError, Kind, Property, Source, Step, Vectors, Well};
 use crate::model::CellField;
 
 /// Stands for the step shown, in place of another one's.
@@ -28,6 +26,13 @@ pub fn difference_name(now: &str, base: &str, at: Option<&str>) -> String {
 }
 
 impl Case {
+    /// The name of the difference to another case of a property, whatever its letter case; `None` where it has none.
+    pub fn minus_of(&self, property: &str) -> Option<&str> {
+        let mut all = self.minus.iter();
+        let found = all.find(|m| m.now.eq_ignore_ascii_case(property));
+        found.map(|m| m.name.as_str())
+    }
+
     /// The difference that a name stands for; `None` where it is a property, or no difference.
     pub fn difference<'a>(&self, name: &'a str) -> Option<Difference<'a>> {
         if self.property(name).is_ok() {
@@ -49,15 +54,14 @@ impl Case {
     /// What a property or difference is called above a picture: `SOIL change relative to 2001-06-30`.
     pub fn title_of(&self, name: &str) -> String {
         let Some(Difference { now, base, at }) = self.difference(name) else {
-            let known = self.minus.as_ref().filter(|m| m.name == name);
-            return known.map_or_else(|| name.to_owned(), |m| m.title.clone());
+            return match self.subtracted(name) {
+                Some(minus) => minus.title(),
+                None => self.title_of_statistic(name),
+            };
         };
         let at = at.and_then(|at| self.step(at).ok());
         let when = at.and_then(|n| self.steps.get(n));
-        let when = when.map(|step| match step.date.is_empty() {
-            true => format!("day {}", step.days),
-            false => step.date.clone(),
-        });
+        let when = when.map(Step::when);
         match when {
             // The date of the step shown follows.
             Some(when) if now == base => format!("{now} change relative to {when}"),
@@ -66,9 +70,14 @@ impl Case {
         }
     }
 
+    /// The property that is a difference to another case.
+    fn subtracted(&self, name: &str) -> Option<&Minus> {
+        self.minus.iter().find(|m| m.name == name)
+    }
+
     /// What stands over the legend of a property or difference.
     pub fn heading_of(&self, name: &str) -> String {
-        let known = self.minus.as_ref().filter(|m| m.name == name);
+        let known = self.subtracted(name);
         let pair = match (self.difference(name), known) {
             (Some(Difference { now, base, .. }), _) => Some([now, base]),
             (None, Some(minus)) => Some([minus.now.as_str(), minus.base.as_str()]),
@@ -83,8 +92,7 @@ impl Case {
 
     /// The property from which a difference is taken; a property itself.
     pub fn now_of<'a>(&'a self, name: &'a str) -> &'a str {
-        let own = self.minus.as_ref().filter(|m| m.name == name);
-        match (self.difference(name), own) {
+        match (self.difference(name), self.subtracted(name)) {
             (Some(difference), _) => difference.now,
             (None, Some(minus)) => &minus.now,
             (None, None) => name,
@@ -129,7 +137,7 @@ impl Case {
     }
 }
 
-/// The property of a case that is its difference to another one.
+/// A property of a case that is a difference to another one.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Minus {
     /// Its name.
@@ -138,132 +146,121 @@ pub struct Minus {
     pub now: String,
     /// The property that is taken away.
     pub base: String,
-    /// What stands above the picture.
-    title: String,
 }
 
-/// Case `a` with one property more: its values of `now` minus those of `base` in case `b`, cell by cell.
+impl Minus {
+    /// What stands above the picture.
+    fn title(&self) -> String {
+        match self.now == self.base {
+            true => self.now.clone(),
+            false => format!("{} minus {}", self.now, self.base),
+        }
+    }
+
+    /// Each property that two cases have in one unit, but those of the grid alone; a difference is called as `SWAT-SWAT@B`
+    /// where B is `other`.
+    pub fn of_all(a: &Case, b: &Case, other: &str) -> Vec<Self> {
+        let is_of_both = |p: &&Property| {
+            let twin = b.property(&p.name);
+            !p.is_of_grid() && twin.is_ok_and(|twin| twin.unit == p.unit)
+        };
+        let minus = |p: &Property| Self {
+            name: difference_name(&p.name, &p.name, Some(other)),
+            now: p.name.clone(),
+            base: p.name.clone(),
+        };
+        a.properties.iter().filter(is_of_both).map(minus).collect()
+    }
+}
+
+/// Case `a` with more properties: its values of `now` minus those of `base` in case `b`, cell by cell.
 ///
-/// A step is matched with that of `b` whose date is nearest, and where the dates differ, both are in its date;
-/// `at` is a step of `a` whose match is taken away at all steps. A cell that is active in `a` alone has no
-/// value. The grid is `a`'s own, not a copy.
+/// A step is matched with that of `b` of the same date, and has no values where there is none; `at` is a step of `a` whose
+/// match is taken away at all steps. A cell that is active in one case alone has no value. The notes are what of both does
+/// not match. The grid is `a`'s own, not a copy.
 ///
 /// # Errors
-/// When the grids have other dimensions, or the properties cannot be subtracted; the sentence says which.
+/// When the grids differ, no date is in both cases, or the properties cannot be subtracted; the sentence says which.
 pub fn minus(
     a: &Arc<Case>,
     b: &Arc<Case>,
-    [now, base]: [&str; 2],
+    differences: &[Minus],
     at: Option<usize>,
-    name: &str,
 ) -> Result<Case, String> {
-    let names = [a, b].map(|case| case.about.name.clone());
-    let dims = [a, b].map(|case| case.grid.dims());
-    if dims[0] != dims[1] {
-        let [x, y] = dims.map(|d| format!("{} x {} x {}", d.ni, d.nj, d.nk));
-        return Err(format!(
-            "{} has {x} cells and {} has {y}: a difference cell by cell needs equal grids.",
-            names[0], names[1]
-        ));
+    let names = distinct_names(&[a, b]);
+    let [of_a, of_b] = [&names[0], &names[1]].map(String::as_str);
+    let mut pairing = Pairing::of(a, b, [of_a, of_b])?;
+    if let Some(at) = at.filter(|at| *at < a.steps.len()) {
+        pairing.steps = vec![pairing.steps[at]; a.steps.len()];
     }
-    if let Some(why) = a.refuses_difference(now, base, b) {
-        return Err(why);
+    let changes = |m: &Minus| a.is_dynamic(&m.now) || b.is_dynamic(&m.base);
+    if !a.steps.is_empty()
+        && pairing.steps.iter().all(Option::is_none)
+        && differences.iter().all(changes)
+    {
+        return Err(no_date(a, b, at, [of_a, of_b]));
     }
-    let steps: Vec<Option<usize>> = (0..a.steps.len())
-        .map(|n| nearest(&a.steps[at.unwrap_or(n).min(a.steps.len() - 1)], &b.steps))
-        .collect();
-    let title = match now == base {
-        true => now.to_owned(),
-        false => format!("{now} minus {base}"),
-    };
-    let (kind, count) = match a.is_dynamic(now) || b.is_dynamic(base) {
-        true => (Kind::Dynamic, a.steps.len()),
-        false => (Kind::Static, 0),
-    };
-    let doubts = [a.property(now), b.property(base)].map(|p| p.ok().and_then(|p| p.doubt.clone()));
-    let property = Property {
-        steps: count,
-        doubt: doubts.into_iter().flatten().next(),
-        ..Property::new(name, kind, a.unit(now))
-    };
+    let mut properties = a.properties.clone();
+    for m in differences {
+        if let Some(why) = a.refuses_difference(&m.now, &m.base, b) {
+            return Err(why);
+        }
+        let (kind, steps) = match changes(m) {
+            true => (Kind::Dynamic, a.steps.len()),
+            false => (Kind::Static, 0),
+        };
+        let doubts = [a.property(&m.now), b.property(&m.base)];
+        let doubts = doubts.map(|p| p.ok().and_then(|p| p.doubt.clone()));
+        properties.push(Property {
+            steps,
+            doubt: doubts.into_iter().flatten().next(),
+            ..Property::new(&m.name, kind, a.unit(&m.now))
+        });
+    }
+    let changes = differences.iter().any(changes);
+    let lacks = pairing.lacks.take().filter(|_| changes && at.is_none());
+    let notes = lacks.into_iter().chain(std::mem::take(&mut pairing.notes));
     Ok(Case {
-        grid: a.grid.clone(),
         about: About {
-            name: format!("{} minus {}", names[0], names[1]),
+            name: format!("{of_a} minus {of_b}"),
+            notes: notes.collect(),
             ..a.about.clone()
         },
-        fault_faces: a.fault_faces.clone(),
-        connections: a.connections.clone(),
-        steps: dated(a, b, &steps),
-        properties: a.properties.iter().cloned().chain([property]).collect(),
+        properties,
         source: Arc::new(Subtracted {
             of: [a.clone(), b.clone()],
-            names: [now, base].map(str::to_owned),
-            own: name.to_owned(),
-            places: places(a, b),
-            steps,
+            differences: differences.to_vec(),
+            pairing,
+            other: of_b.to_owned(),
         }),
-        cache: Arc::new(FieldCache::default()),
-        over_steps: Arc::new(OverSteps::default()),
-        wells: Arc::new(WellsOfSteps::default()),
-        simbox: a.simbox.of_same_grid(),
-        minus: Some(Minus {
-            name: name.to_owned(),
-            now: now.to_owned(),
-            base: base.to_owned(),
-            title,
-        }),
+        minus: differences.to_vec(),
+        ..a.derived_case()
     })
 }
 
-/// The steps of `a`, with both dates where that of the match is another.
-fn dated(a: &Case, b: &Case, matches: &[Option<usize>]) -> Vec<Step> {
-    let dated = |(step, other): (&Step, &Option<usize>)| {
-        let other = other.and_then(|n| b.steps.get(n));
-        let date = match other {
-            Some(other) if other.date != step.date => format!("{} minus {}", step.date, other.date),
-            _ => step.date.clone(),
-        };
-        Step {
-            date,
-            ..step.clone()
-        }
+/// Why no step has a difference.
+fn no_date(a: &Case, b: &Case, at: Option<usize>, [of_a, of_b]: [&str; 2]) -> String {
+    if let Some(step) = at.and_then(|at| a.steps.get(at)) {
+        return no_step(step, of_b).to_string();
+    }
+    let span = |case: &Case| match (case.steps.first(), case.steps.last()) {
+        (Some(first), Some(last)) => format!("{} to {}", first.when(), last.when()),
+        _ => "none".into(),
     };
-    a.steps.iter().zip(matches).map(dated).collect()
+    format!(
+        "no step of {of_a} ({}) has the date of one of {of_b} ({}): there is no difference",
+        span(a),
+        span(b)
+    )
 }
 
-/// The active index in `b` of each active cell of `a`.
-fn places(a: &Case, b: &Case) -> Vec<Option<u32>> {
-    let cells = a.grid.active_cells().iter();
-    cells
-        .map(|&cell| b.grid.active_index(cell).map(|active| active.0))
-        .collect()
-}
-
-/// The step whose date is nearest to that of another one, or whose days are where dates are missing; `None`
-/// where there are no steps.
-pub fn nearest(step: &Step, steps: &[Step]) -> Option<usize> {
-    let moment = step.moment();
-    let apart = |other: &Step| match (moment, other.moment()) {
-        (Some(a), Some(b)) => (a - b).abs(),
-        _ => (step.days - other.days).abs(),
-    };
-    let all = steps.iter().enumerate();
-    all.min_by(|a, b| apart(a.1).total_cmp(&apart(b.1)))
-        .map(|(n, _)| n)
-}
-
-/// Values of a case, and of one property those of another case taken away.
+/// Values of a case, and of some properties those of another case taken away.
 struct Subtracted {
     of: [Arc<Case>; 2],
-    /// The properties subtracted, of each case.
-    names: [String; 2],
-    /// Name of the difference.
-    own: String,
-    /// The active index in the second case of each active cell of the first.
-    places: Vec<Option<u32>>,
-    /// The step of the second case for each of the first.
-    steps: Vec<Option<usize>>,
+    differences: Vec<Minus>,
+    pairing: Pairing,
+    /// What the second case is called.
+    other: String,
 }
 
 impl Source for Subtracted {
@@ -277,18 +274,18 @@ impl Source for Subtracted {
 
     fn values(&self, name: &str, step: usize) -> Result<Option<Vec<f32>>, CaseError> {
         let [a, b] = &self.of;
-        if name != self.own {
-            return match a.field(name, step) {
-                Ok(field) => Ok(Some(field.values().to_vec())),
-                Err(CaseError::NotAtStep { .. } | CaseError::UnknownProperty { .. }) => Ok(None),
-                Err(error) => Err(error),
-            };
-        }
-        let other = self.steps.get(step).copied().flatten().unwrap_or(0);
-        let fields = [
-            a.field(&self.names[0], step),
-            b.field(&self.names[1], other),
-        ];
+        let Some(minus) = self.differences.iter().find(|m| m.name == name) else {
+            return a.values_where_they_are(name, step);
+        };
+        let other = match b.is_dynamic(&minus.base) {
+            false => 0,
+            true => match (self.pairing.steps.get(step), a.steps.get(step)) {
+                (Some(Some(other)), _) => *other,
+                (_, Some(step)) => return Err(no_step(step, &self.other)),
+                _ => return Ok(None),
+            },
+        };
+        let fields = [a.field(&minus.now, step), b.field(&minus.base, other)];
         let [now, base] = match fields {
             [Ok(now), Ok(base)] => [now, base],
             [Err(CaseError::NotAtStep { .. }), _] | [_, Err(CaseError::NotAtStep { .. })] => {
@@ -296,12 +293,9 @@ impl Source for Subtracted {
             }
             [Err(error), _] | [_, Err(error)] => return Err(error),
         };
-        let there = |place: &Option<u32>| {
-            let value = place.and_then(|n| base.values().get(n as usize));
-            value.copied().unwrap_or(f32::NAN)
-        };
-        let pairs = now.values().iter().zip(&self.places);
-        Ok(Some(pairs.map(|(v, place)| v - there(place)).collect()))
+        let cells = now.values().iter().enumerate();
+        let difference = |(n, v): (usize, &f32)| v - self.pairing.value(base.values(), n);
+        Ok(Some(cells.map(difference).collect()))
     }
 }
 
@@ -358,35 +352,74 @@ mod tests {
         );
     }
 
-    #[test]
-    fn two_cases_are_subtracted_at_the_nearest_dates() {
-        let a = sample();
-        // The same case whose steps are a fortnight late.
-        let mut late = load::open(&a.about.files[0]).unwrap();
-        for step in &mut late.steps {
-            step.date = step.date.replace("-01-01", "-01-15");
+    /// The sample under another name, with dates that are changed.
+    fn renamed(name: &str, date: impl Fn(usize, &str) -> String) -> Arc<Case> {
+        let mut other = load::open(&sample().about.files[0]).unwrap();
+        for (n, step) in other.steps.iter_mut().enumerate() {
+            step.date = date(n, &step.date);
         }
-        late.about.name = "LATE".into();
-        let b = Arc::new(late);
-        let own = difference_name("SOIL", "SOIL", Some("LATE"));
-        let case = minus(&a, &b, ["SOIL", "SOIL"], None, &own).unwrap();
-        assert_eq!(case.about.name, "SCISSOR minus LATE");
+        other.about.name = name.into();
+        Arc::new(other)
+    }
+
+    fn of_soil(other: &str) -> Minus {
+        Minus {
+            name: difference_name("SOIL", "SOIL", Some(other)),
+            now: "SOIL".into(),
+            base: "SOIL".into(),
+        }
+    }
+
+    #[test]
+    fn two_cases_are_subtracted_at_equal_dates() {
+        let a = sample();
+        // The same dates but for one.
+        let b = renamed("OTHER", |n, date| match n {
+            1 => date.replace("-01-01", "-01-15"),
+            _ => date.to_owned(),
+        });
+        let soil = of_soil("OTHER");
+        let own = &soil.name;
+        let case = minus(&a, &b, std::slice::from_ref(&soil), None).unwrap();
+        assert_eq!(case.about.name, "SCISSOR minus OTHER");
+        assert_eq!(case.steps, a.steps);
+        assert_eq!(case.title_of(own), "SOIL");
+        assert_eq!(case.heading_of(own), "SOIL difference");
         let last = case.steps.len() - 1;
-        let dates = [&a, &b].map(|c| c.steps[last].date.clone());
-        assert_eq!(case.steps[last].date, dates.join(" minus "));
-        assert_eq!(case.title_of(&own), "SOIL");
-        assert_eq!(case.heading_of(&own), "SOIL difference");
+        let is_zero = |v: &f32| *v == 0.0;
+        assert!(case.field(own, last).unwrap().values().iter().all(is_zero));
+        // No other date's values stand in for the one that is missing, and that is said.
+        let error = case.field(own, 1).unwrap_err();
+        let date = a.steps[1].date.as_str();
         assert!(
-            case.field(&own, last)
-                .unwrap()
-                .values()
+            matches!(&error, CaseError::NoStepOfDate { case, date: d } if case == "OTHER" && d == date),
+            "{error}"
+        );
+        let told = format!("1 of {} steps of SCISSOR", a.steps.len());
+        assert!(
+            case.about
+                .notes
                 .iter()
-                .all(|v| *v == 0.0)
+                .any(|n| n.contains(&told) && n.contains(date))
+        );
+        let whole = minus(
+            &a,
+            &renamed("SAME", |_, d| d.into()),
+            &[of_soil("SAME")],
+            None,
+        );
+        assert!(
+            !whole
+                .unwrap()
+                .about
+                .notes
+                .iter()
+                .any(|n| n.contains("steps of"))
         );
         // To the first step of the other one, and what else the case has.
-        let to_first = minus(&a, &b, ["SOIL", "SOIL"], Some(0), &own).unwrap();
+        let to_first = minus(&a, &b, std::slice::from_ref(&soil), Some(0)).unwrap();
         assert_eq!(
-            to_first.field(&own, last).unwrap(),
+            to_first.field(own, last).unwrap(),
             a.field("SOIL-SOIL@0", last).unwrap()
         );
         assert_eq!(
@@ -394,5 +427,32 @@ mod tests {
             a.field("PORO", 0).unwrap()
         );
         assert!(Arc::ptr_eq(&case.grid, &a.grid));
+        // Where no date is in both there is nothing to subtract.
+        let late = renamed("LATE", |_, date| date.replace("-01-01", "-01-15"));
+        let refused = minus(&a, &late, &[of_soil("LATE")], None).err().unwrap();
+        assert!(
+            refused.contains("LATE") && refused.contains(date_of(&late)),
+            "{refused}"
+        );
+        let refused = minus(&a, &b, &[soil], Some(1)).err().unwrap();
+        assert!(refused.contains("OTHER has no step of"), "{refused}");
+    }
+
+    fn date_of(case: &Case) -> &str {
+        &case.steps[0].date
+    }
+
+    #[test]
+    fn all_properties_of_two_cases_are_subtracted_but_those_of_the_grid() {
+        let a = sample();
+        let b = renamed("B", |_, date| date.to_owned());
+        let all = Minus::of_all(&a, &b, "B");
+        let case = minus(&a, &b, &all, None).unwrap();
+        for name in ["PORO-PORO@B", "PRESSURE-PRESSURE@B", "SOIL-SOIL@B"] {
+            assert!(case.property(name).is_ok(), "{name}");
+        }
+        for name in ["DEPTH-DEPTH@B", "I-I@B"] {
+            assert!(case.property(name).is_err(), "{name}");
+        }
     }
 }

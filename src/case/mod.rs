@@ -2,10 +2,15 @@
 
 mod cache;
 mod difference;
+mod ensemble;
 pub mod load;
 mod over_steps;
+mod pairing;
+mod paths;
 mod pores;
+mod shared;
 mod simbox;
+mod units;
 mod vectors;
 mod weights;
 mod wells;
@@ -19,9 +24,14 @@ pub use strataray_parsers::calendar::{date_of, days_from};
 use crate::model::derived::Derived;
 use crate::model::{CellField, FaultFaces, Grid, Ijk};
 
-pub use difference::{Difference, Minus, difference_name, minus, nearest};
+pub use difference::{Difference, Minus, difference_name, minus};
+pub use ensemble::{Ensemble, Statistic, ensemble};
 pub use over_steps::{Categories, MAX_CATEGORIES, OverSteps, ValueRange};
+pub use pairing::{distinct_names, nearest, of_date};
+pub use paths::WellPath;
+pub use shared::GridPool;
 pub use simbox::Simbox;
+pub use units::{Measure, Units};
 pub use vectors::{Vector, VectorKind, VectorSource, Vectors};
 pub use weights::{Extent, Weighting, Weights};
 pub use wells::{Connection, ConnectionAxis, Well, WellKind, WellsOfSteps};
@@ -69,6 +79,11 @@ impl Property {
         }
     }
 
+    /// True where it follows from the grid alone.
+    pub fn is_of_grid(&self) -> bool {
+        self.name == CONNECTIONS || Derived::ALL.iter().any(|(name, _)| *name == self.name)
+    }
+
     /// How it is computed, such as `1 - SWAT - SGAS`, where that depends on what the files have.
     pub fn formula(&self) -> Option<String> {
         let terms = self.rest_of.iter().map(|name| format!(" - {name}"));
@@ -91,6 +106,14 @@ impl Step {
     /// Date and time of day in days since 1970; `None` where the file has none.
     pub fn moment(&self) -> Option<f64> {
         calendar::moment(&self.date)
+    }
+
+    /// Its date, or the day since the start where the file has none.
+    pub fn when(&self) -> String {
+        match self.date.is_empty() {
+            true => format!("day {}", self.days),
+            false => self.date.clone(),
+        }
     }
 }
 
@@ -127,6 +150,8 @@ pub struct About {
     pub named_faults: Vec<NamedFault>,
     /// Wells by name.
     pub wells: Vec<String>,
+    /// Paths of wells.
+    pub paths: Vec<Arc<WellPath>>,
     /// Files with summary vectors, which are read once they are asked for.
     pub summary: Vec<std::path::PathBuf>,
     /// What loading took.
@@ -178,9 +203,24 @@ pub enum CaseError {
         /// Step.
         step: usize,
     },
+    /// The values need another case, which has no step of this date.
+    #[error("{case} has no step of {date}, and values of another date do not take its place")]
+    NoStepOfDate {
+        /// Name of the other case.
+        case: String,
+        /// Date that it lacks.
+        date: String,
+    },
     /// The file could not be read.
     #[error(transparent)]
     Parse(#[from] strataray_parsers::ParseError),
+}
+
+impl CaseError {
+    /// True where a property has no values at a step, and may have some at others.
+    pub fn is_gap(&self) -> bool {
+        matches!(self, Self::NotAtStep { .. } | Self::NoStepOfDate { .. })
+    }
 }
 
 /// Gives the values of file properties; implemented by [`crate::case::load`].
@@ -230,8 +270,10 @@ pub struct Case {
     pub wells: Arc<WellsOfSteps>,
     /// What was found out of properties over all steps.
     pub over_steps: Arc<OverSteps>,
-    /// The property that is a difference to another case, of a case made by [`minus`].
-    pub minus: Option<Minus>,
+    /// The properties that are differences to another case, of a case made by [`minus`].
+    pub minus: Vec<Minus>,
+    /// The cases of which it has statistics, of a case made by [`ensemble`].
+    pub ensemble: Option<Ensemble>,
     /// The same case in index space.
     pub simbox: Simbox,
 }
@@ -289,6 +331,38 @@ impl Case {
     /// When their files cannot be read.
     pub fn vectors(&self) -> Result<Option<Arc<Vectors>>, CaseError> {
         self.source.vectors()
+    }
+
+    /// What belongs to a case that is made of this one with values of its own: all but these, and what they make known.
+    fn derived_case(&self) -> Self {
+        Self {
+            grid: self.grid.clone(),
+            about: self.about.clone(),
+            fault_faces: self.fault_faces.clone(),
+            connections: self.connections.clone(),
+            steps: self.steps.clone(),
+            properties: self.properties.clone(),
+            source: self.source.clone(),
+            cache: Arc::default(),
+            wells: Arc::default(),
+            over_steps: Arc::default(),
+            minus: Vec::new(),
+            ensemble: self.ensemble.clone(),
+            simbox: self.simbox.of_same_grid(),
+        }
+    }
+
+    /// Values for a case that is made of this one; `None` where there are none at this step.
+    fn values_where_they_are(
+        &self,
+        name: &str,
+        step: usize,
+    ) -> Result<Option<Vec<f32>>, CaseError> {
+        match self.field(name, step) {
+            Ok(field) => Ok(Some(field.values().to_vec())),
+            Err(CaseError::NotAtStep { .. } | CaseError::UnknownProperty { .. }) => Ok(None),
+            Err(error) => Err(error),
+        }
     }
 
     fn computed(&self, name: &str, step: usize) -> Result<CellField, CaseError> {

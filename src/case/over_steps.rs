@@ -190,8 +190,8 @@ impl Case {
         Ok(None)
     }
 
-    /// The range of a property's values (or a difference's) over all steps that have it; `None` where
-    /// no value is defined. Read at the first call.
+    /// The range of a property's values (or a difference's) over all steps that have it, but for cells that a local
+    /// grid refines; `None` where no value is defined. Read at the first call.
     ///
     /// # Errors
     /// When the property does not exist or its file cannot be read.
@@ -200,15 +200,15 @@ impl Case {
             let steps = self.steps_of(name).into_par_iter();
             let ranges = steps.map(|step| {
                 let field = self.field_where_it_is(name, step)?;
-                Ok(field.and_then(|f| ValueRange::of(&f)))
+                Ok(field.and_then(|f| ValueRange::of(&self.finest(f))))
             });
             let ranges = ranges.collect::<Result<Vec<_>, CaseError>>()?;
             Ok(ranges.into_iter().flatten().reduce(ValueRange::with))
         })
     }
 
-    /// The different values of a property at all steps, where they are whole numbers. Read at the first
-    /// call.
+    /// The different values of a property at all steps, where they are whole numbers, but for cells that a local grid
+    /// refines. Read at the first call.
     ///
     /// # Errors
     /// When the property does not exist or its file cannot be read.
@@ -216,7 +216,8 @@ impl Case {
         self.over_steps.categories.get(name, || {
             let steps = self.steps_of(name);
             let fields = steps.map(|step| self.field_where_it_is(name, step).transpose());
-            Categories::of(fields.flatten())
+            let finest = fields.flatten().map(|field| field.map(|f| self.finest(f)));
+            Categories::of(finest)
         })
     }
 
@@ -258,6 +259,17 @@ impl Case {
         self.over_steps.throws.get_or_init(find).clone()
     }
 
+    /// The values of a field but for cells that a local grid refines: the finer ones count in their place, and a
+    /// simulator may leave anything there.
+    pub(crate) fn finest(&self, field: Arc<CellField>) -> Arc<CellField> {
+        let Some(finest) = self.grid.finest() else {
+            return field;
+        };
+        let values = field.values().iter().zip(finest);
+        let values = values.map(|(value, is_finest)| if is_finest { *value } else { f32::NAN });
+        Arc::new(CellField::new(values.collect()))
+    }
+
     fn steps_of(&self, name: &str) -> std::ops::Range<usize> {
         match self.is_dynamic(name) {
             true => 0..self.steps.len(),
@@ -272,7 +284,7 @@ impl Case {
     ) -> Result<Option<Arc<CellField>>, CaseError> {
         match self.field(name, step) {
             Ok(field) => Ok(Some(field)),
-            Err(CaseError::NotAtStep { .. }) => Ok(None),
+            Err(error) if error.is_gap() => Ok(None),
             Err(error) => Err(error),
         }
     }

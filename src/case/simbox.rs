@@ -10,11 +10,19 @@ use crate::model::{Grid, Space};
 /// Cases that share a grid share the flat one too.
 #[derive(Default)]
 pub struct Simbox {
-    grid: Arc<OnceLock<Arc<Grid>>>,
+    pub(super) grid: Arc<OnceLock<Arc<Grid>>>,
     case: OnceLock<Arc<Case>>,
 }
 
 impl Simbox {
+    /// That of a case whose grid has a flat copy already, or a place for it.
+    pub(super) fn of_grid(grid: Arc<OnceLock<Arc<Grid>>>) -> Self {
+        Self {
+            grid,
+            case: OnceLock::new(),
+        }
+    }
+
     /// That of another case with the same grid.
     pub(super) fn of_same_grid(&self) -> Self {
         Self {
@@ -54,16 +62,12 @@ impl Case {
                 ..self.about.clone()
             },
             grid,
-            fault_faces: self.fault_faces.clone(),
-            connections: self.connections.clone(),
-            steps: self.steps.clone(),
-            properties: self.properties.clone(),
-            source: self.source.clone(),
             cache: self.cache.clone(),
             wells: self.wells.clone(),
             over_steps: self.over_steps.clone(),
             minus: self.minus.clone(),
             simbox: Simbox::default(),
+            ..self.derived_case()
         }
     }
 }

@@ -76,7 +76,7 @@ pub struct Vector {
 
 /// Gives the values of vectors; implemented by [`crate::case::load`].
 pub trait VectorSource: Send + Sync {
-    /// Values of the vector at a place in the list, one for each time.
+    /// Values of the vector at a place in the list, one for each time; not a number where a run before did not have it.
     ///
     /// # Errors
     /// When the file is damaged.
@@ -111,7 +111,8 @@ impl Vectors {
         moment.map_or_else(String::new, calendar::text)
     }
 
-    /// Values of the vector at a place in the list, one for each of [`Self::days`].
+    /// Values of the vector at a place in the list, one for each of [`Self::days`]; not a number where a run before did not
+    /// have it.
     ///
     /// # Errors
     /// When the file is damaged.

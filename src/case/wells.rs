@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use super::CaseError;
+use super::{CaseError, WellPath};
 use crate::model::{Grid, Ijk};
 
 /// What a well does.
@@ -19,6 +19,8 @@ pub enum WellKind {
     GasInjector,
     /// The file does not say.
     Unknown,
+    /// Nothing is known of it but its path.
+    Path,
 }
 
 impl WellKind {
@@ -30,6 +32,17 @@ impl WellKind {
             Self::WaterInjector => "water injector",
             Self::GasInjector => "gas injector",
             Self::Unknown => "unknown",
+            Self::Path => "path",
+        }
+    }
+}
+
+impl WellKind {
+    /// With its state, such as `producer, open`.
+    pub fn in_words(self, is_open: bool) -> String {
+        match self {
+            Self::Path => self.name().to_owned(),
+            _ => format!("{}, {}", self.name(), if is_open { "open" } else { "shut" }),
         }
     }
 }
@@ -59,7 +72,7 @@ pub struct Connection {
 }
 
 /// A well at a step.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Well {
     /// Its name.
     pub name: String,
@@ -69,18 +82,53 @@ pub struct Well {
     pub is_open: bool,
     /// Its connections, in the order of the file.
     pub connections: Vec<Connection>,
+    /// Its path, where a file has it.
+    pub path: Option<Arc<WellPath>>,
 }
 
 impl Well {
-    /// The cells of a case's grids that it is connected to, in the order of the file.
-    pub fn cells(&self, grid: &Grid) -> impl Iterator<Item = Ijk> {
-        self.connections.iter().filter_map(|c| c.cell_in(grid))
+    /// A well of which nothing is known but its path.
+    pub fn of_path(path: &Arc<WellPath>) -> Self {
+        Self {
+            name: path.name.clone(),
+            kind: WellKind::Path,
+            is_open: true,
+            connections: Vec::new(),
+            path: Some(path.clone()),
+        }
     }
 
-    /// The cells of [`Self::finest_connections`].
+    /// What it does, and whether it flows, such as `producer, open`.
+    pub fn in_words(&self) -> String {
+        self.kind.in_words(self.is_open)
+    }
+
+    /// False where nothing says where it is.
+    pub fn has_place(&self) -> bool {
+        !self.connections.is_empty() || self.path.is_some()
+    }
+
+    /// The cells of a case's grids that it is connected to, in the order of the file; of a well without connections
+    /// those that its path goes through.
+    pub fn cells<'a>(&'a self, grid: &'a Grid) -> impl Iterator<Item = Ijk> + use<'a> {
+        let on_path = self.path_alone().into_iter();
+        let on_path = on_path.flat_map(|path| path.crossings.iter().map(|c| c.cell));
+        let connected = self.connections.iter().filter_map(|c| c.cell_in(grid));
+        connected.chain(on_path)
+    }
+
+    /// As [`Self::cells`], of which those that a local grid refines are left out where others are in that grid.
     pub fn finest_cells<'a>(&'a self, grid: &'a Grid) -> impl Iterator<Item = Ijk> + use<'a> {
-        self.finest_connections(grid)
-            .filter_map(|c| c.cell_in(grid))
+        let on_path = self.path_alone().into_iter();
+        let on_path = on_path.flat_map(|path| path.finest_crossings(grid).map(|c| c.cell));
+        let connections = self.finest_connections(grid);
+        connections.filter_map(|c| c.cell_in(grid)).chain(on_path)
+    }
+
+    /// The path of a well without connections.
+    fn path_alone(&self) -> Option<&WellPath> {
+        let path = self.path.as_deref();
+        path.filter(|_| self.connections.is_empty())
     }
 
     /// Its connections, of which one whose cell a local grid refines is left out where others are in that grid.

@@ -1,7 +1,8 @@
 //! Choices by name, as scene files have them, with a sentence for each.
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use strataray::scene::{Interpolation, LightMode, Mode, Space, Storage, StrategyKind};
+use strataray::scene::lighting::OcclusionMethod;
+use strataray::scene::{Interpolation, LightMode, Mode, Space, Storage, StrategyKind, Units};
 use strataray::view::TurnAxis;
 
 /// A name, what it stands for, and what that is in one sentence.
@@ -70,6 +71,14 @@ pub const LIGHT_MODES: [NamedChoice<LightMode>; 4] = [
     ),
 ];
 
+pub const OCCLUSION_METHODS: [NamedChoice<OcclusionMethod>; OcclusionMethod::ALL.len()] = {
+    const fn choice(method: OcclusionMethod) -> NamedChoice<OcclusionMethod> {
+        (method.name(), method, method.describe())
+    }
+    let [cones, surround, shells] = OcclusionMethod::ALL;
+    [choice(cones), choice(surround), choice(shells)]
+};
+
 pub const STRATEGIES: [NamedChoice<StrategyKind>; StrategyKind::ALL.len()] = {
     let all = StrategyKind::ALL;
     let mut choices = [strategy(all[0]); StrategyKind::ALL.len()];
@@ -83,6 +92,21 @@ pub const STRATEGIES: [NamedChoice<StrategyKind>; StrategyKind::ALL.len()] = {
 
 const fn strategy(kind: StrategyKind) -> NamedChoice<StrategyKind> {
     (kind.name(), kind, kind.describe())
+}
+
+pub const UNITS: [NamedChoice<Units>; Units::ALL.len()] = {
+    let all = Units::ALL;
+    let mut choices = [units(all[0]); Units::ALL.len()];
+    let mut n = 1;
+    while n < all.len() {
+        choices[n] = units(all[n]);
+        n += 1;
+    }
+    choices
+};
+
+const fn units(units: Units) -> NamedChoice<Units> {
+    (units.name(), units, units.describe())
 }
 
 pub const TURN_AXES: [NamedChoice<TurnAxis>; 4] = [
@@ -117,7 +141,7 @@ mod tests {
     #[test]
     fn names_are_those_of_scene_files() {
         assert!(named(&MODES) && named(&INTERPOLATIONS) && named(&LIGHT_MODES));
-        assert!(named(&STRATEGIES));
+        assert!(named(&STRATEGIES) && named(&OCCLUSION_METHODS) && named(&UNITS));
         assert!(!named(&[("cells", Mode::Volume, "")]));
     }
 }

@@ -4,10 +4,11 @@ use std::path::PathBuf;
 
 use strataray::case::Case;
 use strataray::export::{self, Contents, Format};
-use strataray::scene::Space;
+use strataray::scene::{Space, Units};
 use strataray::view::{View, look, resolve, step};
 
 use super::Verbosity;
+use super::choice::{UNITS, one_of};
 use super::progress::Reporter;
 use super::scene_options::{AddedFiles, read_keys};
 
@@ -27,6 +28,9 @@ pub struct Arguments {
     /// leave at its step. Without it all active cells are written.
     #[arg(long)]
     scene: Option<PathBuf>,
+    /// Units of the values in .csv and .parquet; by default those of the scene. Other formats have those of the files.
+    #[arg(long, value_parser = one_of(&UNITS))]
+    units: Option<Units>,
     /// File to write, with others beside it where the format has several; its ending says the format.
     #[arg(short, long)]
     output: PathBuf,
@@ -61,7 +65,14 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
         Some(steps) => steps,
         None => (0..case.steps.len()).collect(),
     };
-    let contents = Contents::new(&case, view.as_ref(), &arguments.property, &steps)?;
+    let mut contents = Contents::new(&case, view.as_ref(), &arguments.property, &steps)?;
+    if let Some(units) = arguments.units {
+        anyhow::ensure!(
+            matches!(format, Format::Csv | Format::Parquet),
+            "--units is for tables (.csv, .parquet); other formats have the units of the files"
+        );
+        contents.units = units.into();
+    }
     let written = reporter.bar("writing", |progress| {
         export::write(&contents, &arguments.output, progress)
     })?;

@@ -4,16 +4,22 @@ use std::path::PathBuf;
 
 use rayon::prelude::*;
 use serde_json::{Value, json};
-use strataray::case::{Case, Connection, Kind, NamedFault, Property, Vector, VectorKind};
-use strataray::model::{CellField, Grid, Ijk, MapAxes, Spaces, Statistics};
+use strataray::case::{
+    Case, Connection, Kind, Measure, NamedFault, Property, Statistic, Vector, VectorKind, WellPath,
+};
+use strataray::model::{CellField, Crossing, Grid, Ijk, MapAxes, Spaces, Statistics};
+use strataray::scene::Units;
 
 use super::Verbosity;
+use super::choice::{UNITS, one_of};
 use super::progress::Reporter;
 use super::scene_options::AddedFiles;
 
 #[derive(clap::Args)]
 #[command(
-    after_help = "Example:\n  strataray info REEK.EGRID --json --stats PORO --stats SWAT@last"
+    after_help = "Examples:\n  strataray info REEK.EGRID --json --stats PORO --stats SWAT@last
+  strataray info REEK.EGRID --wells --with wells.dev
+  strataray info real-0/REEK --ensemble real-1/REEK real-2/REEK --stats SWAT.MEAN@2001-06-30"
 )]
 pub struct Arguments {
     /// Any file of the case, or its base name.
@@ -24,7 +30,10 @@ pub struct Arguments {
     /// Statistics of a property, of dynamic ones at a step (default last).
     #[arg(long, value_name = "NAME[@STEP]")]
     stats: Vec<String>,
-    /// Wells at each step: type, open or shut, connected cells.
+    /// Units of lengths, volumes and statistics.
+    #[arg(long, value_parser = one_of(&UNITS), default_value = "file")]
+    units: Units,
+    /// Wells at each step: type, open or shut, connected cells; cells on paths.
     #[arg(long)]
     wells: bool,
     /// Summary vectors by name.
@@ -39,9 +48,12 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let reporter = Reporter::new(arguments.verbosity);
     let case = arguments.added.open_case(&arguments.case, &reporter)?;
-    let mut facts = facts(&case, &arguments.stats)?;
+    let shown = Shown::of(&case, arguments.units);
+    let mut facts = facts(&shown, &arguments.stats)?;
     if arguments.wells {
         facts["wells"] = wells(&case)?;
+        let paths = case.about.paths.iter();
+        facts["paths"] = paths.map(|path| with_cells(path, &case.grid)).collect();
     }
     let vectors = match arguments.summary {
         true => Some(vectors(&case, &reporter)?),
@@ -53,7 +65,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
     if arguments.json {
         say_line!("{}", serde_json::to_string_pretty(&facts)?);
     } else {
-        print_text(&case, &facts);
+        print_text(&shown, &facts);
         if arguments.wells {
             print_wells(&case)?;
         }
@@ -88,7 +100,8 @@ fn print_vectors(vectors: &[Vector]) {
 /// Each well with its steps; cells count from 1.
 fn wells(case: &Case) -> anyhow::Result<Value> {
     let mut wells: Vec<(String, Vec<Value>)> = Vec::new();
-    for index in 0..case.steps.len() {
+    // A case without steps has wells too.
+    for index in 0..case.steps.len().max(1) {
         for well in case.wells(index)?.iter() {
             let step = json!({
                 "index": index,
@@ -119,22 +132,82 @@ fn connection(connection: &Connection) -> Value {
     })
 }
 
+/// A path; measured depths are those of its ends.
+fn path(path: &WellPath) -> Value {
+    let measured = path.measured.as_deref().unwrap_or_default();
+    json!({
+        "name": path.name,
+        "file": path.file.display().to_string(),
+        "points": path.points.len(),
+        "md": measured.first().zip(measured.last()).map(|(a, b)| [a, b]),
+        "z": path.vertical,
+        "cells": path.crossings.len(),
+    })
+}
+
+/// A path with the cells that it goes through, in its order.
+fn with_cells(of: &WellPath, grid: &Grid) -> Value {
+    let mut told = path(of);
+    let cell = |crossing: &Crossing| {
+        let cell = grid.cell_name(crossing.cell);
+        let [i, j, k] = cell.ijk;
+        json!({"grid": cell.grid, "i": i, "j": j, "k": k})
+    };
+    told["on_path"] = of.crossings.iter().map(cell).collect();
+    told
+}
+
 /// A line for each well of the last step.
 fn print_wells(case: &Case) -> anyhow::Result<()> {
     for well in case.wells(case.steps.len().saturating_sub(1))?.iter() {
         let open = well.connections.iter().filter(|c| c.is_open).count();
-        say_line!(
-            "  well {}: {}, {}, {open} of {} connections open",
-            well.name,
-            well.kind.name(),
-            if well.is_open { "open" } else { "shut" },
-            well.connections.len()
-        );
+        let state = match well.connections.len() {
+            0 => well.in_words(),
+            all => format!("{}, {open} of {all} connections open", well.in_words()),
+        };
+        say_line!("  well {}: {state}", well.name);
     }
     Ok(())
 }
 
-fn facts(case: &Case, stats: &[String]) -> anyhow::Result<Value> {
+/// A case, and how its numbers are shown.
+struct Shown<'a> {
+    case: &'a Case,
+    units: Units,
+    length: Measure,
+    map_length: Measure,
+    volume: Measure,
+}
+
+impl<'a> Shown<'a> {
+    fn of(case: &'a Case, units: Units) -> Self {
+        Self {
+            case,
+            units,
+            length: case.length(units.into()),
+            map_length: case.map_length(units.into()),
+            volume: case.measure("CELL_VOLUME", units.into()),
+        }
+    }
+
+    fn measure(&self, property: &str) -> Measure {
+        self.case.measure(property, self.units.into())
+    }
+
+    /// Statistics of a property as they are shown.
+    fn statistics(&self, property: &str, found: Option<Statistics>) -> Option<Statistics> {
+        let measure = self.measure(property);
+        found.map(|s| Statistics {
+            min: measure.show(s.min),
+            max: measure.show(s.max),
+            mean: measure.show(s.mean),
+            ..s
+        })
+    }
+}
+
+fn facts(shown: &Shown<'_>, stats: &[String]) -> anyhow::Result<Value> {
+    let case = shown.case;
     let grid = &case.grid;
     let dims = grid.main_dims();
     let faults = grid.fault_faces();
@@ -143,18 +216,18 @@ fn facts(case: &Case, stats: &[String]) -> anyhow::Result<Value> {
         bounds,
         volume: signed,
         thin,
-    } = Shape::of(grid, 0);
+    } = Shape::of(grid, 0, shown);
     let mut facts = json!({
         "case": case.about.name,
         "files": case.about.files.iter().map(|f| f.display().to_string()).collect::<Vec<_>>(),
         "dims": [dims.ni, dims.nj, dims.nk],
         "cells": dims.cells(),
         "active": active,
-        "units": case.about.length_unit,
+        "units": shown.length.unit,
         "map_axes": case.about.map_axes,
         "handedness": if signed < 0.0 { "left" } else { "right" },
         "bounds": bounds,
-        "bulk_volume": signed.abs(),
+        "bulk_volume": shown.volume.show(signed.abs()),
         "thin_cells": thin,
         "fault_faces": {
             "i": faults[0],
@@ -162,18 +235,22 @@ fn facts(case: &Case, stats: &[String]) -> anyhow::Result<Value> {
             "named": case.about.named_faults.iter().map(named_fault).collect::<Vec<_>>(),
         },
         "nnc": case.about.nnc,
-        "lgr": (1..grid.patches().len()).map(|n| local_grid(grid, n)).collect::<Vec<_>>(),
+        "lgr": local_numbers(grid).map(|n| local_grid(shown, n)).collect::<Vec<_>>(),
         "porosity_model": case.about.porosity_model,
-        "properties": case.properties.iter().map(property).collect::<Vec<_>>(),
+        "properties": case.properties.iter().map(|p| property(shown, p)).collect::<Vec<_>>(),
         "steps": case.steps.iter().enumerate().map(|(index, s)| {
             json!({"index": index, "report": s.report, "date": s.date, "days": s.days})
         }).collect::<Vec<_>>(),
         "wells": case.about.wells,
+        "paths": case.about.paths.iter().map(|p| path(p)).collect::<Vec<_>>(),
         "notes": case.about.notes,
     });
+    if shown.units != Units::File {
+        facts["unit_system"] = json!(shown.units);
+    }
     if let Some(axes) = grid.map_axes() {
-        facts["map_units"] = json!(case.about.map_unit);
-        facts["map_bounds"] = map_bounds(case, axes);
+        facts["map_units"] = json!(shown.map_length.unit);
+        facts["map_bounds"] = map_bounds(shown, axes);
     }
     let mut statistics = vec![serde_json::Map::new(); grid.patches().len()];
     for asked in stats {
@@ -187,12 +264,16 @@ fn facts(case: &Case, stats: &[String]) -> anyhow::Result<Value> {
         };
         let field = case.field(name, step)?;
         for (patch, statistics) in statistics.iter_mut().enumerate() {
-            statistics.insert(asked.clone(), json!(statistics_in(grid, patch, &field)));
+            let found = shown.statistics(name, statistics_in(grid, patch, &field));
+            statistics.insert(asked.clone(), json!(found));
         }
     }
-    for (patch, statistics) in statistics.into_iter().enumerate() {
+    // Each local grid behind the main one.
+    let numbers = std::iter::once(0).chain(local_numbers(grid));
+    for (place, patch) in numbers.enumerate() {
+        let statistics = std::mem::take(&mut statistics[patch]);
         if !stats.is_empty() {
-            let of = match patch {
+            let of = match place {
                 0 => &mut facts,
                 local => &mut facts["lgr"][local - 1],
             };
@@ -202,15 +283,27 @@ fn facts(case: &Case, stats: &[String]) -> anyhow::Result<Value> {
     Ok(facts)
 }
 
+/// The numbers of the local grids; reservoirs are parts of the main one.
+fn local_numbers(grid: &Grid) -> impl Iterator<Item = usize> + '_ {
+    (1..grid.patches().len()).filter(|number| grid.patches()[*number].layers.is_none())
+}
+
 /// Statistics of a property in the active cells of a grid.
 fn statistics_in(grid: &Grid, patch: usize, field: &CellField) -> Option<Statistics> {
     if grid.patches().len() == 1 {
         return field.statistics();
     }
-    let mut is_in = vec![false; field.values().len()];
-    grid.active_in(patch)
-        .for_each(|(active, _)| is_in[active] = true);
-    field.statistics_of(Some(&is_in))
+    let cells = grid.active_cells().iter().map(|c| grid.dims().ijk(*c));
+    let counts = cells.map(|cell| grid.is_first(cell) && is_in(grid, cell, patch));
+    let counts: Vec<bool> = counts.collect();
+    field.statistics_of(Some(&counts))
+}
+
+/// True where a cell is of a grid; the main one has its reservoirs too.
+fn is_in(grid: &Grid, cell: Ijk, patch: usize) -> bool {
+    let of_main = |number: &usize| grid.patches()[*number].layers.is_some();
+    let number = grid.patch_of(cell);
+    number.map(|n| if of_main(&n) { 0 } else { n }) == Some(patch)
 }
 
 /// What the active cells of a grid span.
@@ -222,12 +315,10 @@ struct Shape {
 }
 
 impl Shape {
-    fn of(grid: &Grid, patch: usize) -> Self {
+    fn of(grid: &Grid, patch: usize, shown: &Shown<'_>) -> Self {
         let is_one = grid.patches().len() == 1;
         let cells = grid.active_by_column();
-        let cells: Vec<Ijk> = cells
-            .filter(|c| is_one || grid.patch_of(*c) == Some(patch))
-            .collect();
+        let cells: Vec<Ijk> = cells.filter(|c| is_one || is_in(grid, *c, patch)).collect();
         let volume = match is_one {
             true => grid.signed_bulk_volume(),
             false => cells
@@ -237,8 +328,11 @@ impl Shape {
         };
         let bounds = grid.bounds_of(cells.par_iter().copied());
         Self {
-            active: grid.active_in(patch).count(),
-            bounds: json!(bounds.map(|[a, b]| json!({"min": a.to_array(), "max": b.to_array()}))),
+            active: cells.iter().filter(|c| grid.is_first(**c)).count(),
+            bounds: json!(bounds.map(|ends| {
+                let ends = ends.map(|end| end.to_array().map(|v| shown.length.show(v)));
+                json!({"min": ends[0], "max": ends[1]})
+            })),
             volume,
             thin: cells
                 .par_iter()
@@ -249,10 +343,11 @@ impl Shape {
 }
 
 /// A local grid; its bounds and volume are those of the cells that are drawn.
-fn local_grid(grid: &Grid, number: usize) -> Value {
+fn local_grid(shown: &Shown<'_>, number: usize) -> Value {
+    let grid = &shown.case.grid;
     let patch = &grid.patches()[number];
     let dims = patch.file_dims();
-    let shape = Shape::of(grid, number);
+    let shape = Shape::of(grid, number, shown);
     let mut hosts: Vec<Ijk> = grid.hosts_of(number).map(|(_, host)| host).collect();
     hosts.sort_unstable_by_key(|host| grid.dims().cell(*host));
     hosts.dedup();
@@ -262,7 +357,7 @@ fn local_grid(grid: &Grid, number: usize) -> Value {
         "dims": [dims.ni, dims.nj, dims.nk],
         "active": shape.active,
         "bounds": shape.bounds,
-        "bulk_volume": shape.volume.abs(),
+        "bulk_volume": shown.volume.show(shape.volume.abs()),
         "cells_replaced": hosts.len(),
     })
 }
@@ -275,11 +370,11 @@ fn named_fault(fault: &NamedFault) -> Value {
     entry
 }
 
-fn property(property: &Property) -> Value {
+fn property(shown: &Shown<'_>, property: &Property) -> Value {
     let mut entry = json!({
         "name": property.name,
         "kind": property.kind,
-        "unit": property.unit,
+        "unit": shown.measure(&property.name).unit,
         "values": "active",
     });
     if property.kind == Kind::Dynamic {
@@ -295,29 +390,33 @@ fn property(property: &Property) -> Value {
 }
 
 /// Bounds of the active cells in map coordinates; depth stays positive down.
-fn map_bounds(case: &Case, axes: MapAxes) -> Value {
+fn map_bounds(shown: &Shown<'_>, axes: MapAxes) -> Value {
     let spaces = Spaces::new(Some(axes), 1.0);
-    let grid = &case.grid;
+    let grid = &shown.case.grid;
     let cells = grid.active_by_column();
-    let corners = cells
-        .filter(|c| grid.patch_of(*c) == Some(0))
-        .flat_map_iter(|cell| {
-            let corners = grid.hexahedron(cell).0;
-            corners.map(|c| {
-                let world = spaces.world_from_grid.transform_point3(c);
-                spaces.map_from_world(world).to_array()
-            })
-        });
+    let corners = cells.filter(|c| is_in(grid, *c, 0)).flat_map_iter(|cell| {
+        let corners = grid.hexahedron(cell).0;
+        corners.map(|c| {
+            let world = spaces.world_from_grid.transform_point3(c);
+            spaces.map_from_world(world).to_array()
+        })
+    });
     let bounds = corners.map(|c| [c, c]).reduce_with(|a, b| {
         [
             std::array::from_fn(|n| a[0][n].min(b[0][n])),
             std::array::from_fn(|n| a[1][n].max(b[1][n])),
         ]
     });
-    bounds.map_or(Value::Null, |[a, b]| json!({"min": a, "max": b}))
+    let [across, depth] = [&shown.map_length, &shown.length];
+    let place = |[x, y, z]: [f64; 3]| [across.show(x), across.show(y), depth.show(z)];
+    bounds.map_or(
+        Value::Null,
+        |[a, b]| json!({"min": place(a), "max": place(b)}),
+    )
 }
 
-fn print_text(case: &Case, facts: &Value) {
+fn print_text(shown: &Shown<'_>, facts: &Value) {
+    let case = shown.case;
     let dims = case.grid.main_dims();
     say_line!("{}", case.about.name);
     say_line!(
@@ -330,15 +429,15 @@ fn print_text(case: &Case, facts: &Value) {
     );
     say_line!(
         "  length unit {}, bulk volume {:.6e} {}, {}-handed",
-        case.about.length_unit,
+        shown.length.unit,
         facts["bulk_volume"].as_f64().unwrap_or_default(),
-        case.unit("CELL_VOLUME"),
+        shown.volume.unit,
         facts["handedness"].as_str().unwrap_or_default()
     );
     if let Some(bounds) = facts.get("map_bounds") {
         let end = |end: &str, n: usize| bounds[end][n].as_f64().unwrap_or_default();
         let range = |n: usize| format!("{:.2} to {:.2}", end("min", n), end("max", n));
-        let unit = &case.about.map_unit;
+        let unit = &shown.map_length.unit;
         say_line!(
             "  easting {} {unit}, northing {} {unit}",
             range(0),
@@ -371,13 +470,14 @@ fn print_text(case: &Case, facts: &Value) {
         let names: Vec<_> = case
             .properties
             .iter()
-            .filter(|p| p.kind == kind)
+            .filter(|p| p.kind == kind && !is_of_cases(case, &p.name))
             .map(|p| p.name.as_str())
             .collect();
         if !names.is_empty() {
             say_line!("  {kind:?}: {}", names.join(" "));
         }
     }
+    print_cases(case);
     print_notes(case);
     if let Some(stats) = facts.get("stats").and_then(Value::as_object) {
         for (name, s) in stats {
@@ -390,6 +490,34 @@ fn print_text(case: &Case, facts: &Value) {
             );
         }
     }
+}
+
+/// True of what is found of several cases.
+fn is_of_cases(case: &Case, name: &str) -> bool {
+    case.statistic(name).is_some() || case.minus.iter().any(|m| m.name == name)
+}
+
+/// The cases of which there are differences or statistics, and how these are called.
+fn print_cases(case: &Case) {
+    if let Some(minus) = case.minus.first() {
+        let of: Vec<&str> = case.minus.iter().map(|m| m.now.as_str()).collect();
+        say_line!(
+            "  differences (such as {}) of: {}",
+            minus.name,
+            of.join(" ")
+        );
+    }
+    let Some(ensemble) = &case.ensemble else {
+        return;
+    };
+    say_line!("  cases: {}", ensemble.members.join(" "));
+    let endings = Statistic::ALL.map(|(_, ending, _)| format!(".{ending}"));
+    let of = case.properties.iter().filter_map(|p| {
+        let (of, statistic) = case.statistic(&p.name)?;
+        (statistic == Statistic::Mean).then_some(of)
+    });
+    let of: Vec<&str> = of.collect();
+    say_line!("  statistics ({}) of: {}", endings.join(" "), of.join(" "));
 }
 
 /// What is known of properties, faults, steps and wells, by name.
@@ -421,5 +549,15 @@ fn print_notes(case: &Case) {
     }
     if !case.about.wells.is_empty() {
         say_line!("  wells: {}", case.about.wells.join(" "));
+    }
+    for path in &case.about.paths {
+        let file = path.file.file_name().unwrap_or_default().to_string_lossy();
+        say_line!(
+            "  path {}: {} points through {} cells, {} taken from {file}",
+            path.name,
+            path.points.len(),
+            path.crossings.len(),
+            path.vertical
+        );
     }
 }

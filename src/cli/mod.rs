@@ -33,6 +33,8 @@ const EXAMPLES: &str = "Examples:
   strataray export samples/scissor/SCISSOR.EGRID --property PORO SWAT -o swat.vtu
   strataray sample faulted -o models
   strataray bench R1 samples/scissor/SCISSOR.EGRID
+  strataray render new/REEK.EGRID --minus old/REEK.EGRID --property PRESSURE -o difference.png
+  strataray render real-0/REEK.EGRID --ensemble real-1/REEK.EGRID real-2/REEK.EGRID --property SWAT.STD -o spread.png
   strataray pick samples/scissor/SCISSOR.EGRID --at 500,500
   strataray probe samples/scissor/SCISSOR.EGRID --property PORO --points points.csv
   strataray doctor";

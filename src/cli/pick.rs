@@ -5,10 +5,10 @@ use std::path::PathBuf;
 use anyhow::Context;
 use glam::DVec2;
 use serde_json::{Value, json};
-use strataray::case::Case;
+use strataray::case::{Case, Measure};
 use strataray::model::{GridCell, Ijk};
 use strataray::picking::{self, CellOnRay, Fault, Hit, Part, Pick};
-use strataray::picture::{Shot, short_unit};
+use strataray::picture::{Lengths, Shot};
 
 use super::Verbosity;
 use super::progress::Reporter;
@@ -50,12 +50,21 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let executor = arguments.options.open_executor(&reporter)?;
     let mut renderer = executor.renderer(&case.grid)?;
     let pick = picking::pick(&mut *renderer, &case, &shot.view, at)?;
+    let units = shot.view.notes.units;
+    let told = Told {
+        case: &case,
+        pick: &pick,
+        measure: case.measure(&pick.property, units),
+        lengths: Lengths::of(&case, units),
+        along: match case.grid.space().is_map() {
+            true => case.length(units),
+            // Between numbers of cells.
+            false => Measure::default(),
+        },
+    };
     match arguments.json {
-        true => say_line!(
-            "{}",
-            serde_json::to_string_pretty(&facts(&case, pixel, &pick))?
-        ),
-        false => say!("{}", text(&case, pixel, &pick)),
+        true => say_line!("{}", serde_json::to_string_pretty(&told.facts(pixel))?),
+        false => say!("{}", told.text(pixel)),
     }
     Ok(())
 }
@@ -91,149 +100,164 @@ fn around(pick: &Pick) -> [usize; 2] {
     hit.and_then(|h| pick.around(h.ijk)).unwrap_or_default()
 }
 
-fn facts(case: &Case, pixel: [i64; 2], pick: &Pick) -> Value {
-    let [before, behind] = around(pick);
-    let is_dynamic = case.is_dynamic(&pick.property);
-    json!({
-        "pixel": pixel,
-        "property": pick.property,
-        "step": is_dynamic.then_some(pick.step),
-        "unit": case.unit(&pick.property),
-        "hit": pick.hit.as_ref().map(|hit| fact_of_hit(case, hit)),
-        "well": pick.well.as_ref().map(|well| {
-            json!({"name": well.name, "type": well.kind.name(), "open": well.is_open})
-        }),
-        "ray": pick.cells.iter().map(|cell| fact_of_cell(case, cell)).collect::<Vec<_>>(),
-        "before": before,
-        "behind": behind,
-    })
+/// What is told, and how numbers are shown.
+struct Told<'a> {
+    case: &'a Case,
+    pick: &'a Pick,
+    measure: Measure,
+    lengths: Lengths,
+    /// Of distances along the ray.
+    along: Measure,
 }
 
-fn fact_of_hit(case: &Case, hit: &Hit) -> Value {
-    let GridCell {
-        grid,
-        ijk: [i, j, k],
-    } = case.grid.cell_name(hit.ijk);
-    let (part, fault) = match &hit.part {
-        Part::Inside => ("inside", None),
-        Part::Section => ("section", None),
-        Part::Face(_) => ("face", None),
-        Part::Fault(fault) => ("fault", Some(fact_of_fault(case, fault))),
-    };
-    json!({
-        "grid": grid,
-        "i": i,
-        "j": j,
-        "k": k,
-        "value": single(hit.value),
-        "shown": single(hit.shown),
-        "contribution": hit.contribution,
-        "part": part,
-        "fault": fault,
-        "map": hit.map.to_array(),
-    })
-}
-
-fn fact_of_fault(case: &Case, fault: &Fault) -> Value {
-    let name = |cell: Ijk| case.grid.cell_name(cell).ijk;
-    json!({
-        "name": fault.name,
-        "throw": fault.throw,
-        "near": name(fault.near),
-        "far": name(fault.far),
-    })
-}
-
-fn fact_of_cell(case: &Case, cell: &CellOnRay) -> Value {
-    let GridCell {
-        grid,
-        ijk: [i, j, k],
-    } = case.grid.cell_name(cell.ijk);
-    json!({
-        "grid": grid,
-        "i": i,
-        "j": j,
-        "k": k,
-        "value": single(cell.value),
-        "contribution": cell.contribution,
-        "from": cell.from,
-        "to": cell.to,
-    })
-}
-
-/// A value with the digits of the files, which are those of an f32.
-fn single(value: f64) -> f64 {
-    let short = (value as f32).to_string();
-    short.parse().unwrap_or(value)
-}
-
-fn text(case: &Case, [x, y]: [i64; 2], pick: &Pick) -> String {
-    if let Some(well) = &pick.well {
-        return well.in_words() + "\n";
+impl Told<'_> {
+    /// A value with the digits of the files, which are those of an f32.
+    fn value(&self, value: f64) -> f64 {
+        let short = (self.measure.show(value) as f32).to_string();
+        short.parse().unwrap_or(value)
     }
-    let Some(hit) = &pick.hit else {
-        return match pick.cells.len() {
-            0 => format!("No cell at pixel {x},{y}.\n"),
-            n => {
-                format!("Nothing is seen at pixel {x},{y}: all {n} cells there are transparent.\n")
-            }
-        };
-    };
-    let unit = case.unit(&pick.property);
-    let value = |value: f64| format!("{} {} {unit}", pick.property, single(value));
-    let mut lines = vec![format!(
-        "{}   {}",
-        case.grid.cell_name(hit.ijk),
-        value(hit.value).trim_end()
-    )];
-    if hit.is_between {
-        let shown = value(hit.shown);
-        lines.push(format!("{} at this point (interpolated)", shown.trim_end()));
-    }
-    let [east, north, depth] = hit.map.to_array();
-    let length = short_unit(&case.about.length_unit);
-    lines.push(format!(
-        "E {east:.1}  N {north:.1}  depth {depth:.2} {length}"
-    ));
-    match &hit.part {
-        Part::Inside => {}
-        Part::Section => lines.push("On a clip plane".into()),
-        Part::Face(_) => lines.push("Outer face".into()),
-        Part::Fault(fault) => lines.push(fault.in_words(&length)),
-    }
-    let [before, behind] = around(pick);
-    lines.push(format!(
-        "{before} in front, {behind} behind along the line of sight:"
-    ));
-    lines.push(String::new());
-    lines.extend(table(case, pick, before));
-    lines.join("\n") + "\n"
-}
 
-/// The cells around the one that is taken, which has a mark.
-fn table(case: &Case, pick: &Pick, taken: usize) -> Vec<String> {
-    let first = taken.saturating_sub(LISTED);
-    let last = (taken + LISTED + 1).min(pick.cells.len());
-    let heading = format!(
-        "  {:>5} {:>5} {:>5} {:>14} {:>11}",
-        "I", "J", "K", pick.property, "% of pixel"
-    );
-    let mut lines = vec![heading];
-    let more = |n: usize| (n > 0).then(|| format!("  ... {n} more"));
-    lines.extend(more(first));
-    for (n, cell) in pick.cells.iter().enumerate().take(last).skip(first) {
+    fn facts(&self, pixel: [i64; 2]) -> Value {
+        let Self { case, pick, .. } = self;
+        let [before, behind] = around(pick);
+        let is_dynamic = case.is_dynamic(&pick.property);
+        json!({
+            "pixel": pixel,
+            "property": pick.property,
+            "step": is_dynamic.then_some(pick.step),
+            "unit": self.measure.unit,
+            "length_unit": self.lengths.grid.unit,
+            "map_unit": self.lengths.map.unit,
+            "hit": pick.hit.as_ref().map(|hit| self.fact_of_hit(hit)),
+            "well": pick.well.as_ref().map(|well| {
+                json!({"name": well.name, "type": well.kind.name(), "open": well.is_open})
+            }),
+            "ray": pick.cells.iter().map(|cell| self.fact_of_cell(cell)).collect::<Vec<_>>(),
+            "before": before,
+            "behind": behind,
+        })
+    }
+
+    fn fact_of_hit(&self, hit: &Hit) -> Value {
         let GridCell {
             grid,
             ijk: [i, j, k],
-        } = case.grid.cell_name(cell.ijk);
-        let mark = if n == taken { '>' } else { ' ' };
-        let line = format!(
-            "{mark} {i:>5} {j:>5} {k:>5} {:>14} {:>11.1}  {grid}",
-            single(cell.value),
-            100.0 * cell.contribution
-        );
-        lines.push(line.trim_end().to_owned());
+        } = self.case.grid.cell_name(hit.ijk);
+        let (part, fault) = match &hit.part {
+            Part::Inside => ("inside", None),
+            Part::Section => ("section", None),
+            Part::Face(_) => ("face", None),
+            Part::Fault(fault) => ("fault", Some(self.fact_of_fault(fault))),
+        };
+        json!({
+            "grid": grid,
+            "i": i,
+            "j": j,
+            "k": k,
+            "value": self.value(hit.value),
+            "shown": self.value(hit.shown),
+            "contribution": hit.contribution,
+            "part": part,
+            "fault": fault,
+            "map": self.lengths.shown(hit.map.to_array()),
+        })
     }
-    lines.extend(more(pick.cells.len() - last));
-    lines
+
+    fn fact_of_fault(&self, fault: &Fault) -> Value {
+        let name = |cell: Ijk| self.case.grid.cell_name(cell).ijk;
+        json!({
+            "name": fault.name,
+            "throw": self.lengths.grid.show(fault.throw),
+            "near": name(fault.near),
+            "far": name(fault.far),
+        })
+    }
+
+    fn fact_of_cell(&self, cell: &CellOnRay) -> Value {
+        let GridCell {
+            grid,
+            ijk: [i, j, k],
+        } = self.case.grid.cell_name(cell.ijk);
+        json!({
+            "grid": grid,
+            "i": i,
+            "j": j,
+            "k": k,
+            "value": self.value(cell.value),
+            "contribution": cell.contribution,
+            "from": self.along.show(cell.from),
+            "to": self.along.show(cell.to),
+        })
+    }
+
+    fn text(&self, [x, y]: [i64; 2]) -> String {
+        let pick = self.pick;
+        if let Some(well) = &pick.well {
+            return well.in_words() + "\n";
+        }
+        let Some(hit) = &pick.hit else {
+            return match pick.cells.len() {
+                0 => format!("No cell at pixel {x},{y}.\n"),
+                n => {
+                    format!(
+                        "Nothing is seen at pixel {x},{y}: all {n} cells there are transparent.\n"
+                    )
+                }
+            };
+        };
+        let unit = &self.measure.unit;
+        let value = |value: f64| format!("{} {} {unit}", pick.property, self.value(value));
+        let mut lines = vec![format!(
+            "{}   {}",
+            self.case.grid.cell_name(hit.ijk),
+            value(hit.value).trim_end()
+        )];
+        if hit.is_between {
+            let shown = value(hit.shown);
+            lines.push(format!("{} at this point (interpolated)", shown.trim_end()));
+        }
+        lines.push(self.lengths.place(hit.map.to_array()));
+        match &hit.part {
+            Part::Inside => {}
+            Part::Section => lines.push("On a clip plane".into()),
+            Part::Face(_) => lines.push("Outer face".into()),
+            Part::Fault(fault) => lines.push(fault.in_words(&self.lengths.grid)),
+        }
+        let [before, behind] = around(pick);
+        lines.push(format!(
+            "{before} in front, {behind} behind along the line of sight:"
+        ));
+        lines.push(String::new());
+        lines.extend(self.table(before));
+        lines.join("\n") + "\n"
+    }
+
+    /// The cells around the one that is taken, which has a mark.
+    fn table(&self, taken: usize) -> Vec<String> {
+        let pick = self.pick;
+        let first = taken.saturating_sub(LISTED);
+        let last = (taken + LISTED + 1).min(pick.cells.len());
+        let heading = format!(
+            "  {:>5} {:>5} {:>5} {:>14} {:>11}",
+            "I", "J", "K", pick.property, "% of pixel"
+        );
+        let mut lines = vec![heading];
+        let more = |n: usize| (n > 0).then(|| format!("  ... {n} more"));
+        lines.extend(more(first));
+        for (n, cell) in pick.cells.iter().enumerate().take(last).skip(first) {
+            let GridCell {
+                grid,
+                ijk: [i, j, k],
+            } = self.case.grid.cell_name(cell.ijk);
+            let mark = if n == taken { '>' } else { ' ' };
+            let line = format!(
+                "{mark} {i:>5} {j:>5} {k:>5} {:>14} {:>11.1}  {grid}",
+                self.value(cell.value),
+                100.0 * cell.contribution
+            );
+            lines.push(line.trim_end().to_owned());
+        }
+        lines.extend(more(pick.cells.len() - last));
+        lines
+    }
 }

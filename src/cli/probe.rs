@@ -5,14 +5,14 @@ use std::path::PathBuf;
 
 use anyhow::Context;
 use glam::DVec3;
-use strataray::case::Case;
+use strataray::case::{Case, Measure};
 use strataray::model::{Grid, Ijk, Spaces};
 use strataray::reference::{self, Located};
-use strataray::scene::{Interpolation, Scene, StepSpec};
+use strataray::scene::{Interpolation, Scene, StepSpec, Units};
 use strataray::{render, view};
 
 use super::Verbosity;
-use super::choice::{INTERPOLATIONS, one_of};
+use super::choice::{INTERPOLATIONS, UNITS, one_of};
 use super::progress::Reporter;
 use super::scene_options::AddedFiles;
 
@@ -37,12 +37,16 @@ pub struct Arguments {
     /// Time step: number from 0, date, first or last.
     #[arg(long, default_value = "last")]
     step: String,
-    /// CSV of easting, northing (in MAPUNITS) and depth (positive down, in the grid's unit).
+    /// CSV of easting, northing (in MAPUNITS) and depth (positive down, in the grid's unit); in those of --units where
+    /// given.
     #[arg(long)]
     points: PathBuf,
     /// The points are raw grid coordinates, MAPAXES and MAPUNITS not applied.
     #[arg(long)]
     grid_coordinates: bool,
+    /// Units of points and values.
+    #[arg(long, value_parser = one_of(&UNITS), default_value = "file")]
+    units: Units,
     /// Values within a cell.
     #[arg(long, value_parser = one_of(&INTERPOLATIONS), default_value = "cell")]
     interpolation: Interpolation,
@@ -70,14 +74,22 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let step = case.step(&arguments.step)?;
     let field = case.field(&arguments.property, step)?;
     let given = read_points(arguments)?;
+    let units = arguments.units.into();
+    let (grid, map) = (case.length(units), case.map_length(units));
+    let across = if arguments.grid_coordinates {
+        &grid
+    } else {
+        &map
+    };
     let axes = case.grid.map_axes().filter(|_| !arguments.grid_coordinates);
     let spaces = Spaces::new(axes, 1.0);
     let in_grid: Vec<DVec3> = given
         .iter()
-        .map(|&p| {
+        .map(|p| {
+            let kept = DVec3::new(across.read(p.x), across.read(p.y), grid.read(p.z));
             spaces
                 .grid_from_world
-                .transform_point3(spaces.world_from_map(p))
+                .transform_point3(spaces.world_from_map(kept))
         })
         .collect();
     let answers = match arguments.on {
@@ -88,6 +100,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
         }
         On::Gpu => on_gpu(arguments, &case, step, &in_grid)?,
     };
+    let answers = in_units(answers, &case.measure(&arguments.property, units));
     match &arguments.output {
         Some(path) => {
             let file = std::fs::File::create(path)
@@ -96,6 +109,13 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
         }
         None => write_answers(std::io::stdout().lock(), &case.grid, &given, &answers),
     }
+}
+
+/// The answers with their values as they are shown.
+fn in_units(answers: Vec<Probed>, measure: &Measure) -> Vec<Probed> {
+    let shown =
+        |(ijk, parameters, value): (Ijk, DVec3, f64)| (ijk, parameters, measure.show(value));
+    answers.into_iter().map(|a| a.map(shown)).collect()
 }
 
 fn on_gpu(

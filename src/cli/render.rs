@@ -20,7 +20,9 @@ use super::scene_options::SceneOptions;
 #[command(after_help = "Examples:
   strataray render REEK.EGRID -o reek.png
   strataray render REEK.EGRID --property SWAT --step 2001-06-30 --camera 220,40 --size 1600x900 -o swat.png
-  strataray render REEK.EGRID --scene scene.json -o picture.exr --stats stats.json")]
+  strataray render REEK.EGRID --scene scene.json -o picture.exr --stats stats.json
+  strataray render REEK.EGRID --minus other/REEK.EGRID --property PRESSURE --step 2001-06-30 -o difference.png
+  strataray render real-0/REEK --ensemble real-1/REEK real-2/REEK --property SWAT.STD -o spread.png")]
 pub struct Arguments {
     /// Any file of the case, or its base name.
     case: PathBuf,

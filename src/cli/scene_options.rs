@@ -4,17 +4,21 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use anyhow::Context;
-use strataray::case::{Case, load};
+use strataray::case::load::{self, CasePaths};
+use strataray::case::{Case, GridPool, Minus, distinct_names, minus};
 use strataray::render::{self, Executor};
-use strataray::scene::lighting::PRESETS;
+use strataray::scene::lighting::{OcclusionMethod, PRESETS};
 use strataray::scene::read_text;
 use strataray::scene::{
     CameraSpec, FramingCamera, Interpolation, LightMode, LightingSpec, Mode, Projection, Scene,
-    Space, StepSpec, Storage, StrategyKind,
+    Space, StepSpec, Storage, StrategyKind, Units,
 };
 use strataray::view::{look, wells};
 
-use super::choice::{INTERPOLATIONS, LIGHT_MODES, MODES, SPACES, STORAGES, STRATEGIES, one_of};
+use super::choice::{
+    INTERPOLATIONS, LIGHT_MODES, MODES, OCCLUSION_METHODS, SPACES, STORAGES, STRATEGIES, UNITS,
+    one_of,
+};
 use super::progress::Reporter;
 
 #[derive(clap::Args)]
@@ -43,12 +47,18 @@ pub struct SceneOptions {
     /// True places of the cells, or those by I, J and K (simbox).
     #[arg(long, value_parser = one_of(&SPACES))]
     space: Option<Space>,
+    /// Units of the numbers that are written; those of the scene itself stay in the units of the files.
+    #[arg(long, value_parser = one_of(&UNITS))]
+    units: Option<Units>,
     /// Image size, such as 1000x1000.
     #[arg(long, value_name = "WxH")]
     pub size: Option<String>,
     /// Occlusion toward the viewer, and where it is found.
     #[arg(long, value_name = "MODE", value_parser = one_of(&LIGHT_MODES))]
     occlusion: Option<LightMode>,
+    /// Which way occlusion looks: toward the viewer, or to all sides.
+    #[arg(long, value_name = "METHOD", value_parser = one_of(&OCCLUSION_METHODS))]
+    occlusion_method: Option<OcclusionMethod>,
     /// Preset of occlusion and lights.
     #[arg(long, value_name = "NAME", value_parser = lighting_preset, help = lighting_help())]
     lighting: Option<LightingSpec>,
@@ -62,6 +72,9 @@ pub struct SceneOptions {
     /// Vertical exaggeration.
     #[arg(long)]
     exaggeration: Option<f64>,
+    /// Rays along each axis of a pixel, 1 to 8: 2 makes edges smooth and takes four times as long.
+    #[arg(long, value_name = "N")]
+    supersample: Option<u32>,
     /// Threads of the CPU work.
     #[arg(long)]
     threads: Option<usize>,
@@ -73,12 +86,21 @@ pub struct SceneOptions {
     added: AddedFiles,
 }
 
-/// Files that are added to a case.
-#[derive(clap::Args)]
+/// Files that are added to a case, and cases that it is compared with.
+#[derive(clap::Args, Default)]
 pub struct AddedFiles {
-    /// Files to add to the case: properties or faults in text, an INIT, restart or summary of another name.
+    /// Files to add to the case: properties or faults in text, paths of wells (.dev and others), a deck or its schedule with
+    /// wells, an INIT, restart or summary of another name; of several restarts steps are put together.
     #[arg(long, value_name = "FILE", num_args = 1..)]
     with: Vec<PathBuf>,
+    /// Another case on the same grid, whose values on the same date are subtracted: PRESSURE-PRESSURE@NAME is one more
+    /// property, which is shown in place of PRESSURE.
+    #[arg(long, value_name = "CASE")]
+    minus: Option<PathBuf>,
+    /// Further cases on the same grid, such as realizations: PRESSURE.MEAN, .STD, .MIN, .P10, .P50, .P90 and .MAX are of
+    /// all of them on the same date.
+    #[arg(long, value_name = "CASE", num_args = 1.., conflicts_with = "minus")]
+    ensemble: Vec<PathBuf>,
 }
 
 impl SceneOptions {
@@ -88,6 +110,13 @@ impl SceneOptions {
         let mut written = self.written()?;
         if let Some(property) = &self.property {
             written.insert("property".into(), property.clone().into());
+        }
+        if self.added.minus.is_some() {
+            let given = written.get("property").and_then(|p| p.as_str());
+            let property = given.map_or_else(|| look::default_property(case), str::to_owned);
+            if let Some(difference) = case.minus_of(&property) {
+                written.insert("property".into(), difference.into());
+            }
         }
         if let Some(mode) = self.mode {
             written.insert("mode".into(), serde_json::to_value(mode)?);
@@ -123,6 +152,7 @@ impl SceneOptions {
         if let Some(interpolation) = self.interpolation {
             scene.interpolation = interpolation;
         }
+        scene.units = self.units.unwrap_or(scene.units);
         if let Some(storage) = self.storage {
             scene.storage = storage;
         }
@@ -131,6 +161,9 @@ impl SceneOptions {
         }
         if let Some(mode) = self.occlusion {
             scene.lighting.occlusion.get_or_insert_default().mode = mode;
+        }
+        if let Some(method) = self.occlusion_method {
+            scene.lighting.occlusion.get_or_insert_default().method = method;
         }
         if let Some(size) = &self.size {
             let parsed = size
@@ -146,6 +179,7 @@ impl SceneOptions {
                 ..framing(camera)?
             });
         }
+        scene.supersample = self.supersample.unwrap_or(scene.supersample);
         if self.exaggeration.is_some() {
             scene.vertical_exaggeration = self.exaggeration;
         }
@@ -246,7 +280,19 @@ pub fn read_keys(path: &Path) -> anyhow::Result<SceneKeys> {
 impl AddedFiles {
     /// Opens a case with the files added to it and says what was not loaded.
     pub fn open_case(&self, path: &Path, reporter: &Reporter) -> anyhow::Result<Case> {
-        let case = load::open_with(path, &self.with)?;
+        let pool = GridPool::default();
+        let paths = CasePaths {
+            path: path.to_owned(),
+            with: self.with.clone(),
+            others: self.ensemble.iter().cloned().map(CasePaths::of).collect(),
+        };
+        let opened = load::open_paths(&paths, &pool, &|_| true)?;
+        let mut case = opened.context("the case was not opened")?;
+        if let Some(other) = &self.minus {
+            let mut other = load::open(other)?;
+            pool.share(&mut other);
+            case = subtracted(case, other)?;
+        }
         for note in &case.about.notes {
             reporter.note(note);
         }
@@ -254,9 +300,23 @@ impl AddedFiles {
     }
 }
 
+/// A case with its differences to another one.
+fn subtracted(case: Case, other: Case) -> anyhow::Result<Case> {
+    let [case, other] = [case, other].map(Arc::new);
+    let names = distinct_names(&[&case, &other]);
+    let differences = Minus::of_all(&case, &other, &names[1]);
+    if differences.is_empty() {
+        anyhow::bail!("{} and {} have no property in common", names[0], names[1]);
+    }
+    let mut made = minus(&case, &other, &differences, None).map_err(anyhow::Error::msg)?;
+    let notes = case.about.notes.iter().cloned();
+    made.about.notes.splice(0..0, notes);
+    Ok(made)
+}
+
 /// Opens a case and says what was not loaded.
 pub fn open_case(path: &Path, reporter: &Reporter) -> anyhow::Result<Case> {
-    AddedFiles { with: Vec::new() }.open_case(path, reporter)
+    AddedFiles::default().open_case(path, reporter)
 }
 
 /// The preset of light that has a name.

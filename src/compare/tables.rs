@@ -242,7 +242,10 @@ fn conditions_of_view(case: &Case, view: &View) -> [markdown::Row; 3] {
         row([
             "sampling step",
             &match view.world.space {
-                Space::Map => format!("{:.4} {}", view.sampling.step, case.about.length_unit),
+                Space::Map => {
+                    let length = case.length(view.notes.units);
+                    format!("{:.4} {}", length.show(view.sampling.step), length.unit)
+                }
                 Space::Ijk => format!("{:.4} cells", view.sampling.step),
             },
         ]),

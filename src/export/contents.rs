@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::{DAffine3, DMat3};
 
 use super::error::ExportError;
-use crate::case::{Case, CaseError};
+use crate::case::{Case, CaseError, Units};
 use crate::model::{CellIndex, Grid, Ijk, Spaces};
 use crate::view::View;
 
@@ -15,6 +15,9 @@ pub struct Contents<'a> {
     pub case: &'a Case,
     /// What is seen of it; absent where all active cells are written.
     pub view: Option<&'a View>,
+    /// Units of the numbers in tables: at first those of the view, else those of the files. All other formats have those
+    /// of the files.
+    pub units: Units,
     /// Properties.
     pub properties: Vec<Exported>,
     /// Steps of those that change with time.
@@ -69,6 +72,7 @@ impl<'a> Contents<'a> {
         Ok(Self {
             case,
             view,
+            units: view.map_or_else(Units::default, |view| view.notes.units),
             properties,
             steps: steps.to_vec(),
             grid: case.grid.clone(),
@@ -94,6 +98,7 @@ impl<'a> Contents<'a> {
         Ok(Self {
             case: self.case,
             view: self.view,
+            units: self.units,
             properties: self.properties.clone(),
             steps: self.steps.clone(),
             grid: Arc::new(main),
@@ -163,7 +168,7 @@ impl<'a> Contents<'a> {
     /// When they cannot be read.
     pub fn values(&self, property: &str, step: usize) -> Result<Option<Vec<f32>>, ExportError> {
         let field = match self.case.field(property, step) {
-            Err(CaseError::NotAtStep { .. }) => return Ok(None),
+            Err(error) if error.is_gap() => return Ok(None),
             field => field?,
         };
         let values = field.values();
@@ -226,7 +231,7 @@ fn has_values(case: &Case, name: &str, steps: &[usize]) -> Result<(), CaseError>
     let mut missing = None;
     for step in steps {
         match case.field(name, *step) {
-            Err(error @ CaseError::NotAtStep { .. }) => missing = missing.or(Some(error)),
+            Err(error) if error.is_gap() => missing = missing.or(Some(error)),
             field => return field.map(drop),
         }
     }

@@ -13,6 +13,7 @@ use super::contents::{Contents, Exported};
 use super::error::{ExportError, failed};
 use super::names::{keyword, note_keywords};
 use super::output::Output;
+use super::wells;
 use crate::case::{Case, Kind, Step};
 use crate::model::Ijk;
 
@@ -28,6 +29,7 @@ pub(super) fn write(
     output: &mut Output<'_>,
 ) -> Result<(), ExportError> {
     note_keywords(contents, path, output)?;
+    wells::note_paths(contents, output);
     let (cells, count) = (contents.grid().dims().cells(), contents.count());
     output.expect(9 * cells + contents.pairs().len() * count);
     let [init, restart] = ["INIT", "UNRST"].map(|name| sibling(path, name));
@@ -50,8 +52,9 @@ pub(super) fn write(
         let of_step = contents.case.steps.get(step);
         let (report, days) = of_step.map_or((0, 0.0), |s| (s.report, s.days));
         let head = at(of_step, &head);
+        let wells = wells::of_step(contents, step)?;
         let mut arrays = Arrays::new(contents, contents.dynamics(), step, output);
-        let written = writer.step(report, days, &head, &[""; 0], &mut arrays);
+        let written = writer.step(report, days, &head, &wells, &mut arrays);
         arrays.end(written, &restart)?;
     }
     writer.finish().map(drop).map_err(failed(&restart))
@@ -79,6 +82,7 @@ pub(super) fn egrid(contents: &Contents<'_>) -> Egrid {
         porosity_model: PorosityModel::Single,
         nnc: connections(contents),
         local_nnc: Vec::new(),
+        reservoirs: Vec::new(),
         local_grids: Vec::new(),
     }
 }

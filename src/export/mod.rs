@@ -26,6 +26,7 @@ mod roff;
 pub mod synthetic;
 pub mod table;
 mod vtu;
+mod wells;
 
 use std::path::{Path, PathBuf};
 

@@ -9,11 +9,13 @@ use strataray_parsers::egrid::{self, Egrid, PorosityModel};
 use strataray_parsers::init;
 use strataray_parsers::restart::RestartWriter;
 use strataray_parsers::units::UnitSystem;
+use strataray_parsers::wells::{Direction, Kind, Well};
 
 use super::error::{ExportError, failed};
 use super::grdecl;
 use super::output::Output;
-use crate::model::synthetic::{Fields, Geometry, Step, Synthetic};
+use super::wells;
+use crate::model::synthetic::{self, Fields, Geometry, Step, Synthetic};
 
 /// Length unit of synthetic models and of their map.
 const METRES: &str = "METRES";
@@ -139,6 +141,7 @@ fn to_egrid(geometry: Geometry) -> Egrid {
         porosity_model: PorosityModel::Single,
         nnc: Vec::new(),
         local_nnc: Vec::new(),
+        reservoirs: Vec::new(),
         local_grids: Vec::new(),
     }
 }
@@ -153,6 +156,15 @@ fn arrays<'a>(
     names.iter().filter_map(values)
 }
 
+fn well(well: &synthetic::Well) -> Well {
+    let kind = match well.is_injector {
+        true => Kind::WaterInjector,
+        false => Kind::Producer,
+    };
+    let cells = well.cells.iter().map(|cell| (*cell, true, Direction::Z));
+    wells::open_to(&well.name, kind, cells)
+}
+
 fn write_step(
     writer: &mut RestartWriter<std::fs::File>,
     step: &Step,
@@ -164,7 +176,8 @@ fn write_step(
         ..head.clone()
     };
     let arrays = arrays(fields, &Fields::DYNAMIC, step.time);
-    writer.step(step.report, step.days, &head, fields.wells(), arrays)
+    let wells: Vec<Well> = fields.wells().iter().map(well).collect();
+    writer.step(step.report, step.days, &head, &wells, arrays)
 }
 
 fn write_text(file: std::fs::File, egrid: &Egrid, fields: &Fields) -> io::Result<()> {

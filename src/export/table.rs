@@ -14,7 +14,7 @@ use parquet::schema::types::{Type, TypePtr};
 use super::contents::{Contents, Exported};
 use super::error::{ExportError, failed};
 use super::output::Output;
-use crate::case::Case;
+use crate::case::{Case, Measure, Units};
 use crate::model::GridCell;
 
 /// Heads of the columns.
@@ -60,18 +60,26 @@ pub struct Row<'a> {
 /// Rows as comma-separated text. Values that do not change with time have no date and no step.
 pub struct CsvTable<'a, W: Write> {
     case: &'a Case,
+    units: Units,
+    /// The property of the last row, and how its values are written.
+    measure: (String, Measure),
     writer: csv::Writer<W>,
 }
 
 impl<'a, W: Write> CsvTable<'a, W> {
-    /// A table of cells of a case, with its heads.
+    /// A table of cells of a case in some units, with its heads.
     ///
     /// # Errors
     /// When writing fails.
-    pub fn new(case: &'a Case, out: W) -> io::Result<Self> {
+    pub fn new(case: &'a Case, units: Units, out: W) -> io::Result<Self> {
         let mut writer = csv::Writer::from_writer(out);
         writer.write_record(HEADS)?;
-        Ok(Self { case, writer })
+        Ok(Self {
+            case,
+            units,
+            measure: Default::default(),
+            writer,
+        })
     }
 
     /// Writes a row.
@@ -79,6 +87,11 @@ impl<'a, W: Write> CsvTable<'a, W> {
     /// # Errors
     /// When writing fails.
     pub fn row(&mut self, row: &Row<'_>) -> io::Result<()> {
+        if self.measure.0 != row.property {
+            let measure = self.case.measure(row.property, self.units);
+            self.measure = (row.property.to_owned(), measure);
+        }
+        let measure = &self.measure.1;
         let [i, j, k] = row.cell.ijk.map(|n| n.to_string());
         let step = row.step.and_then(|n| Some((n, self.case.steps.get(n)?)));
         let number = step.map(|(n, _)| n.to_string()).unwrap_or_default();
@@ -91,8 +104,8 @@ impl<'a, W: Write> CsvTable<'a, W> {
             step.map_or("", |(_, step)| &step.date),
             &number,
             row.property,
-            &row.value.to_string(),
-            self.case.unit(row.property),
+            &measure.show_single(row.value).to_string(),
+            &measure.unit,
         ])?)
     }
 
@@ -136,7 +149,8 @@ pub(super) fn write_csv(
     output: &mut Output<'_>,
 ) -> Result<(), ExportError> {
     let fail = failed(path);
-    let mut table = CsvTable::new(contents.case, output.file(path)?).map_err(&fail)?;
+    let mut table =
+        CsvTable::new(contents.case, contents.units, output.file(path)?).map_err(&fail)?;
     each(contents, output, |(property, step, values)| {
         for (cell, value) in named(contents, values) {
             let row = Row {
@@ -168,7 +182,9 @@ pub(super) fn write_parquet(
     let mut writer = SerializedFileWriter::new(file, schema, settings).map_err(fail)?;
     let mut rows = Columns::default();
     each(contents, output, |(property, step, values)| {
-        rows.add(contents.case, property, step, named(contents, values));
+        let measure = contents.case.measure(&property.name, contents.units);
+        let values = named(contents, values);
+        rows.add(contents.case, (property, &measure), step, values);
         match rows.values.len() >= ROWS {
             true => rows.write(&mut writer).map_err(fail),
             false => Ok(()),
@@ -219,7 +235,7 @@ impl Columns {
     fn add<'c>(
         &mut self,
         case: &Case,
-        property: &Exported,
+        (property, measure): (&Exported, &Measure),
         step: Option<usize>,
         values: impl Iterator<Item = (GridCell<'c>, f32)>,
     ) {
@@ -235,7 +251,7 @@ impl Columns {
             for (column, number) in self.cells.iter_mut().zip(cell.ijk) {
                 column.push(number as i32);
             }
-            self.values.push(value);
+            self.values.push(measure.show_single(value));
         }
         let count = self.values.len() - before;
         let text = |column: &mut Vec<ByteArray>, text: &str| {
@@ -243,7 +259,7 @@ impl Columns {
         };
         text(&mut self.case, &case.about.name);
         text(&mut self.properties, &property.name);
-        text(&mut self.units, &property.unit);
+        text(&mut self.units, &measure.unit);
         let step = step.and_then(|n| Some((n, case.steps.get(n)?)));
         if let Some((n, step)) = step {
             text(&mut self.dates, &step.date);

@@ -3,6 +3,7 @@
 mod blending;
 pub mod color;
 pub mod metrics;
+pub mod resampling;
 
 use std::borrow::Cow;
 

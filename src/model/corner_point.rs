@@ -6,6 +6,9 @@ use glam::{DMat3, DVec3};
 /// and is never drawn (length units of the file).
 pub const NO_THICKNESS: f64 = 1e-6;
 
+/// Steps of Newton's method, which doubles the right digits in each.
+const STEPS: usize = 8;
+
 /// Eight corners, number `di + 2 dj + 4 dk`, of the trilinear map from (s, t, r) in [-1, 1]^3.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hexahedron(pub [DVec3; 8]);
@@ -15,6 +18,20 @@ impl Hexahedron {
     pub fn at(&self, str: DVec3) -> DVec3 {
         let w = weights(str);
         (0..8).map(|c| self.0[c] * w[c]).sum()
+    }
+
+    /// Parameters of a point in the cell, or of one near it, by some steps of Newton's method from the middle.
+    pub fn parameters_near(&self, point: DVec3) -> DVec3 {
+        let mut str = DVec3::ZERO;
+        for _ in 0..STEPS {
+            let jacobian = self.jacobian(str);
+            if jacobian.determinant() == 0.0 {
+                break;
+            }
+            let step = jacobian.inverse() * (point - self.at(str));
+            str = (str + step).clamp(DVec3::NEG_ONE, DVec3::ONE);
+        }
+        str
     }
 
     /// Derivative of [`Self::at`]: columns are the tangents along s, t and r.
@@ -119,6 +136,20 @@ mod tests {
             other.0[3] += DVec3::splat(0.1);
             assert!((other.signed_volume() - integral).abs() > 1e-8);
         }
+    }
+
+    #[test]
+    fn parameters_are_the_inverse_of_points() {
+        let mut hexahedron = sheared();
+        hexahedron.0[7] += DVec3::new(0.3, -0.2, 0.4);
+        for n in 0..27 {
+            let at = [n % 3, n / 3 % 3, n / 9].map(|n| 0.9 * (f64::from(n) - 1.0));
+            let at = DVec3::from_array(at);
+            let found = hexahedron.parameters_near(hexahedron.at(at));
+            assert!(found.distance(at) < 1e-9, "{at} {found}");
+        }
+        let beside = hexahedron.parameters_near(DVec3::splat(100.0));
+        assert!(beside.abs().max_element() <= 1.0);
     }
 
     #[test]

@@ -155,7 +155,11 @@ impl FaceHit {
 }
 
 /// Distance of a triangle (Moller and Trumbore 1997); `None` where the ray misses it.
-fn meets_triangle(origin: DVec3, direction: DVec3, [a, b, c]: [DVec3; 3]) -> Option<f64> {
+pub(super) fn meets_triangle(
+    origin: DVec3,
+    direction: DVec3,
+    [a, b, c]: [DVec3; 3],
+) -> Option<f64> {
     let (ab, ac) = (b - a, c - a);
     let across = direction.cross(ac);
     let volume = ab.dot(across);
@@ -170,7 +174,7 @@ fn meets_triangle(origin: DVec3, direction: DVec3, [a, b, c]: [DVec3; 3]) -> Opt
     (u >= 0.0 && v >= 0.0 && u + v <= 1.0 && distance > 0.0).then_some(distance)
 }
 
-fn is_met([low, high]: [DVec3; 2], origin: DVec3, direction: DVec3) -> bool {
+pub(super) fn is_met([low, high]: [DVec3; 2], origin: DVec3, direction: DVec3) -> bool {
     let (mut enter, mut leave) = (0.0, f64::INFINITY);
     for axis in 0..3 {
         let to = |plane: DVec3| (plane[axis] - origin[axis]) / direction[axis];

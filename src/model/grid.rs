@@ -244,6 +244,38 @@ impl Grid {
         self.found = Found::default();
     }
 
+    /// True where another grid holds the same corners in the same memory.
+    pub fn shares_geometry(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.depths, &other.depths) && Arc::ptr_eq(&self.pillars, &other.pillars)
+    }
+
+    /// True where another grid has exactly the same cells, whichever of them are active.
+    pub fn has_equal_geometry(&self, other: &Self) -> bool {
+        let are_alike = self.dims == other.dims
+            && self.map_axes == other.map_axes
+            && self.flat.is_none()
+            && other.flat.is_none();
+        are_alike
+            && (self.shares_geometry(other)
+                || self.pillars == other.pillars
+                    && self.lists == other.lists
+                    && self.depths == other.depths
+                    && self.patches() == other.patches())
+    }
+
+    /// The same grid, which holds the geometry of an equal one in place of its own.
+    pub fn with_geometry_of(&self, other: &Self) -> Self {
+        Self {
+            pillars: other.pillars.clone(),
+            slopes: other.slopes.clone(),
+            lists: other.lists.clone(),
+            depths: other.depths.clone(),
+            sorted: other.sorted.clone(),
+            patches: other.patches.clone(),
+            ..self.clone()
+        }
+    }
+
     /// Sets the map coordinate system.
     pub fn set_map_axes(&mut self, map_axes: Option<MapAxes>) {
         self.map_axes = map_axes;

@@ -1,5 +1,6 @@
 //! The lattice in which the grids of a model lie side by side (see `patches.rs`): its geometry, and who is where in it.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use glam::DVec2;
@@ -24,6 +25,8 @@ pub struct LocalGrid {
     pub parent: usize,
     /// Its cells.
     pub grid: Grid,
+    /// As [`Patch::layers`].
+    pub layers: Option<Range<usize>>,
     /// As [`Patch::split`].
     pub split: usize,
     /// By cell, in natural order: the parent's cell that it lies in.
@@ -36,6 +39,7 @@ impl Patch {
             name: local.name.clone(),
             parent: local.parent,
             dims: local.grid.dims(),
+            layers: local.layers.clone(),
             split: local.split,
             first: [0; 2],
             hosts: local.hosts.clone(),
@@ -291,7 +295,9 @@ impl Grid {
 
     /// A cell as its file knows it; between grids as if it were of the main one.
     pub fn cell_name(&self, at: Ijk) -> GridCell<'_> {
-        let (patch, own) = self.own_cell(at);
+        let (patch, mut own) = self.own_cell(at);
+        // Layers of a reservoir are known by their number in the main grid.
+        own.k += patch.layers.as_ref().map_or(0, |layers| layers.start);
         GridCell {
             grid: &patch.name,
             ijk: own.one_based(),
@@ -330,9 +336,15 @@ impl Grid {
     }
 
     /// Where the cell of a grid is in the lattice, given as its file counts cells from 0: the first of those that are
-    /// one. `None` outside of that grid.
-    pub fn in_lattice(&self, patch: usize, cell: Ijk) -> Option<Ijk> {
-        let patch = self.patches.list.get(patch)?;
+    /// one. `None` outside of that grid. Layers of a reservoir with pillars of its own are counted in the main grid.
+    pub fn in_lattice(&self, patch: usize, mut cell: Ijk) -> Option<Ijk> {
+        let mut patch = self.patches.list.get(patch)?;
+        if patch.hosts.is_empty()
+            && let Some((reservoir, layers)) = self.reservoir_of(cell.k)
+        {
+            patch = reservoir;
+            cell.k -= layers.start;
+        }
         let Dims { ni, nj, nk } = patch.file_dims();
         let is_inside = cell.i < ni && cell.j < nj && cell.k < nk;
         let own = Ijk {
@@ -340,6 +352,13 @@ impl Grid {
             ..cell
         };
         is_inside.then(|| patch.to_lattice(own))
+    }
+
+    /// The reservoir with pillars of its own that a layer of the main grid belongs to, and its layers.
+    fn reservoir_of(&self, k: usize) -> Option<(&Patch, &Range<usize>)> {
+        let reservoirs = self.patches.list.iter();
+        let mut reservoirs = reservoirs.filter_map(|p| Some((p, p.layers.as_ref()?)));
+        reservoirs.find(|(_, layers)| layers.contains(&k))
     }
 
     /// The number of the grid of that name, whatever its letter case; the main one has none.

@@ -10,6 +10,8 @@
 //! +-------+ +-------+   inactive, and have no thickness.
 //! ```
 
+use std::ops::Range;
+
 use super::ids::{CellIndex, Dims, Ijk};
 
 /// A grid of the model, by its place in the lattice.
@@ -21,6 +23,8 @@ pub struct Patch {
     pub parent: usize,
     /// Cells along i, j and k.
     pub dims: Dims,
+    /// Layers of the main grid whose place it takes: those of a reservoir with pillars of its own. `None` of local grids.
+    pub layers: Option<Range<usize>>,
     /// How many cells of the lattice along j are one cell of the file: circles need more corners than sectors have.
     pub split: usize,
     /// Column of the lattice, along i and j, where it begins.
@@ -103,6 +107,7 @@ impl Patches {
                 name: String::new(),
                 parent: 0,
                 dims,
+                layers: None,
                 split: 1,
                 first: [0; 2],
                 hosts: Vec::new(),

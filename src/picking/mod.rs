@@ -25,7 +25,7 @@ mod sight;
 
 use glam::{DVec2, DVec3};
 
-use crate::case::{Case, CaseError};
+use crate::case::{Case, CaseError, Measure};
 use crate::model::topology::{Behind, Face};
 use crate::model::{FaceHit, Grid, Ijk, Spaces};
 use crate::render::{RenderError, Renderer, tube_at};
@@ -80,7 +80,8 @@ pub struct Hit {
     pub ijk: Ijk,
     /// Place in world space: that of the cell which contributes most to the pixel.
     pub world: DVec3,
-    /// East, north and depth in map coordinates; in index space those of the middle of the cell.
+    /// East and north in the unit of the map, and depth in that of the grid; in index space those of the middle of the
+    /// cell.
     pub map: DVec3,
     /// What of the cell is seen.
     pub part: Part,
@@ -122,15 +123,16 @@ pub struct Fault {
 }
 
 impl Fault {
-    /// Name and throw, and what its sign says; `unit` is that of lengths.
-    pub fn in_words(&self, unit: &str) -> String {
+    /// Name and throw, and what its sign says; `length` is how lengths are shown.
+    pub fn in_words(&self, length: &Measure) -> String {
         let name = self.name.as_deref().unwrap_or("without a name");
         let side = match self.throw {
             throw if throw > 0.0 => ": far side deeper",
             throw if throw < 0.0 => ": far side shallower",
             _ => "",
         };
-        format!("Fault {name}, throw {:.1} {unit}{side}", self.throw.abs())
+        let throw = length.show(self.throw.abs());
+        format!("Fault {name}, throw {throw:.1} {}{side}", length.unit)
     }
 }
 
@@ -263,13 +265,12 @@ fn hit(
 /// Where a point in a cell is on the map.
 fn on_map(case: &Case, view: &View, ijk: Ijk, world: DVec3) -> DVec3 {
     if view.world.space.is_map() {
-        let depth = -world.z / view.world.vertical_exaggeration;
-        return world.with_z(depth);
+        return view.world.spaces.map_from_world(world);
     }
     let grid = case.grid.in_map_space();
-    let to_world = Spaces::new(grid.map_axes(), 1.0).world_from_grid;
-    let middle = to_world.transform_point3(grid.hexahedron(ijk).center());
-    middle.with_z(-middle.z)
+    let spaces = Spaces::new(grid.map_axes(), 1.0);
+    let middle = grid.hexahedron(ijk).center();
+    spaces.map_from_world(spaces.world_from_grid.transform_point3(middle))
 }
 
 /// The nearest sheet that is seen.

@@ -10,8 +10,8 @@ use super::legend::Key;
 use super::marks::mark_cells;
 use super::orientation::{Area, Orientation, Paper, well_names};
 use super::pen::Pen;
-use super::units::short_unit;
-use crate::case::{Case, Step};
+use super::units::Lengths;
+use crate::case::{Case, Measure, Step};
 use crate::image::{Image, Rgb8, srgb_8bit};
 use crate::scene::Scene;
 use crate::view::{SceneError, View, resolve};
@@ -25,10 +25,10 @@ pub struct Annotations {
     pub when: String,
     /// Name over the legend.
     pub property: String,
-    /// Unit behind the name; may be empty.
-    pub unit: String,
-    /// Unit of lengths; may be empty.
-    pub length_unit: String,
+    /// How its values are written; the unit stands behind the name.
+    pub measure: Measure,
+    /// How lengths are written.
+    pub lengths: Lengths,
     /// The legend has a curve of the opacity.
     pub has_opacity: bool,
     /// Draw title and legend.
@@ -56,8 +56,8 @@ impl Annotations {
                 false => format!("   {when}"),
             },
             property: case.heading_of(&view.shown.property),
-            unit: case.unit(&view.shown.property).to_owned(),
-            length_unit: short_unit(&case.about.length_unit),
+            measure: case.measure(&view.shown.property, view.notes.units),
+            lengths: Lengths::of(case, view.notes.units),
             has_opacity: !view.style.surfaces.solid,
             show_legend: view.notes.has_legend,
             show_box: view.notes.has_box,
@@ -69,7 +69,8 @@ impl Annotations {
         Key {
             transfer: &view.style.transfer,
             beyond: view.style.beyond,
-            heading: [&self.property, &self.unit],
+            heading: [&self.property, &self.measure.unit],
+            measure: &self.measure,
             has_opacity: self.has_opacity,
             unit,
             width,
@@ -225,7 +226,7 @@ fn over_volume(
         let areas = names.iter().map(|name| name.area(width(&name.text)));
         paper.taken.extend(areas);
         let mut marks = match annotations.show_box {
-            true => Orientation::of(view, &annotations.length_unit, paper),
+            true => Orientation::of(view, &annotations.lengths, paper),
             false => Orientation::default(),
         };
         marks.texts.extend(names);
@@ -320,6 +321,7 @@ pub(super) mod tests {
                 strategy: StrategyKind::ALL[0],
                 step: 1.0,
                 early_termination: 0.0,
+                supersample: 1,
                 libc: crate::scene::LibcSettings::default(),
                 plts: crate::scene::PltsSettings::default(),
                 srg: crate::scene::SrgSettings::default(),
@@ -343,6 +345,7 @@ pub(super) mod tests {
                 has_box: true,
                 has_legend: true,
                 facts: None,
+                units: crate::case::Units::default(),
                 warnings: Vec::new(),
             },
         }
@@ -352,8 +355,8 @@ pub(super) mod tests {
         Annotations {
             title: title.into(),
             property: "SWAT".into(),
-            unit: "m3".into(),
-            length_unit: "m".into(),
+            measure: Measure::of_file("m3"),
+            lengths: Lengths::named("m"),
             show_legend,
             show_box,
             ..Annotations::default()

@@ -5,6 +5,7 @@ use glam::DVec2;
 use super::legend::Key;
 use super::pen::Pen;
 use super::ticks::label;
+use crate::case::Measure;
 use crate::image::{Rgb8, srgb_8bit};
 use crate::transfer::{TransferFunction, presets};
 
@@ -43,6 +44,7 @@ pub fn difference_picture(differences: &[f64], size: [u32; 2], scale: f64, title
         transfer: &colors(scale),
         beyond: [false, beyond],
         heading: ["CIEDE2000", &largest],
+        measure: &Measure::default(),
         has_opacity: false,
         unit,
         width: &|text| pen.canvas.text_width(text, unit),

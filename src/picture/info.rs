@@ -1,7 +1,7 @@
 //! The line below a picture: what is drawn, in numbers and words.
 
 use super::ticks::{short_label, shortened};
-use crate::case::{Case, Weighting};
+use crate::case::{Case, Measure, Weighting};
 use crate::model::Space;
 use crate::scene::StrategyKind;
 use crate::transfer::Scale;
@@ -44,10 +44,15 @@ impl Info {
         }
         items.push(cells(facts));
         if let Some(values) = &facts.values {
-            let unit = case.unit(&view.shown.property);
+            let measure = case.measure(&view.shown.property, view.notes.units);
             let is_log = view.style.transfer.scale == Scale::Log;
             let heading = case.heading_of(&view.shown.property);
-            items.push(said(values, &heading, unit, is_log));
+            items.push(said(
+                &shown(values, &measure),
+                &heading,
+                &measure.unit,
+                is_log,
+            ));
         }
         let doubt = case
             .property(&view.shown.property)
@@ -180,6 +185,18 @@ fn small(value: f64) -> String {
         Ok(v) if v.abs() >= 1e-4 => v.to_string(),
         Ok(v) => format!("{v:e}"),
         Err(_) => value.to_string(),
+    }
+}
+
+/// The values as they are written.
+fn shown(values: &Values, measure: &Measure) -> Values {
+    Values {
+        min: measure.show(values.min),
+        max: measure.show(values.max),
+        mean: values
+            .mean
+            .map(|(mean, weights)| (measure.show(mean), weights)),
+        ..*values
     }
 }
 

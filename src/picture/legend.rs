@@ -7,6 +7,7 @@ use glam::DVec2;
 use super::layout::{LINE, LegendWidths};
 use super::orientation::{Area, Text};
 use super::ticks::{label, labels, log_labels, short_label};
+use crate::case::Measure;
 use crate::image::srgb_8bit;
 use crate::transfer::{Scale, TransferFunction};
 
@@ -36,6 +37,8 @@ pub struct Key<'a> {
     pub beyond: [bool; 2],
     /// Name of the property, and its unit, which may be empty.
     pub heading: [&'a str; 2],
+    /// How the values are written.
+    pub measure: &'a Measure,
     /// The opacity counts in the picture: a curve of it stands beside the bar.
     pub has_opacity: bool,
     /// Text height; the unit of every size here.
@@ -203,7 +206,7 @@ impl Key<'_> {
 
     /// What stands beside the bar, the ends marked where their colors stand for values beyond them too.
     fn marks(&self, wanted: usize, most: usize) -> Vec<(f64, String)> {
-        let mut marks = marks(self.transfer, wanted, most);
+        let mut marks = marks(self.transfer, self.measure, wanted, most);
         let mark =
             |(_, text): &mut (f64, String), sign: char| text.insert_str(0, &format!("{sign} "));
         if let ([true, _], Some(first)) = (self.beyond, marks.first_mut()) {
@@ -368,11 +371,20 @@ const WANTED: usize = 7;
 /// What stands beside a legend's bar: positions from 0 at the low end to 1, rising, each with its label.
 ///
 /// The true ends, and between them about `wanted` round values; where the bar has parts of one color, the limits
-/// of the bands, or every category in its middle. Of them each so many that at most `most` are left.
-fn marks(transfer: &TransferFunction, wanted: usize, most: usize) -> Vec<(f64, String)> {
+/// of the bands, or every category in its middle. Of them each so many that at most `most` are left. Values are
+/// written, and round, as a measure says.
+fn marks(
+    transfer: &TransferFunction,
+    measure: &Measure,
+    wanted: usize,
+    most: usize,
+) -> Vec<(f64, String)> {
     let [low, high] = transfer.range;
-    let placed =
-        |(value, text): (f64, String)| (transfer.position(transfer.scale.shown(value, low)), text);
+    let placed = |(value, text): (f64, String)| {
+        let kept = transfer.scale.shown(measure.read(value), low);
+        (transfer.position(kept), text)
+    };
+    let range = transfer.true_range().map(|end| measure.show(end));
     let round = match (&transfer.scale, transfer.bands) {
         (Scale::Categories(values), _) => {
             let every = values.len().div_ceil(most.max(1)).max(1);
@@ -381,16 +393,16 @@ fn marks(transfer: &TransferFunction, wanted: usize, most: usize) -> Vec<(f64, S
             let all = values.iter().enumerate();
             return all.step_by(every).map(middle).collect();
         }
-        (_, Some(bands)) => return limits(transfer, bands, most),
-        (Scale::Log, None) if high > low => log_labels(transfer.true_range(), wanted),
-        _ if high > low => labels(transfer.range, wanted),
+        (_, Some(bands)) => return limits(transfer, measure, bands, most),
+        (Scale::Log, None) if high > low => log_labels(range, wanted),
+        _ if high > low => labels(range, wanted),
         // An empty range is shown in its middle.
         _ => {
-            let one = labels([transfer.scale.true_value(low); 2], 1).into_iter();
+            let one = labels([measure.show(transfer.scale.true_value(low)); 2], 1).into_iter();
             return one.map(|(_, text)| (0.5, text)).collect();
         }
     };
-    let [first, last] = ends(transfer);
+    let [first, last] = ends(&transfer.scale, range);
     let apart = 1.0 / most.max(1) as f64;
     let is_between = |mark: &(f64, String)| mark.0 >= apart && mark.0 <= 1.0 - apart;
     let between = round.into_iter().map(placed).filter(is_between);
@@ -402,21 +414,25 @@ fn marks(transfer: &TransferFunction, wanted: usize, most: usize) -> Vec<(f64, S
 }
 
 /// The true ends of the range, with the digits that the range needs.
-fn ends(transfer: &TransferFunction) -> [String; 2] {
-    let range = transfer.true_range();
+fn ends(scale: &Scale, range: [f64; 2]) -> [String; 2] {
     let largest = range[0].abs().max(range[1].abs());
-    range.map(|value| match transfer.scale {
+    range.map(|value| match scale {
         Scale::Log => short_label(value, value, 5e-3 * value),
         _ => short_label(value, largest, 2e-3 * (range[1] - range[0])),
     })
 }
 
 /// The ends of the bands.
-fn limits(transfer: &TransferFunction, bands: usize, most: usize) -> Vec<(f64, String)> {
+fn limits(
+    transfer: &TransferFunction,
+    measure: &Measure,
+    bands: usize,
+    most: usize,
+) -> Vec<(f64, String)> {
     let [low, high] = transfer.range;
     let every = (bands + 1).div_ceil(most.max(2)).max(1);
     let at = |n: usize| n as f64 / bands as f64;
-    let value = |n: usize| transfer.scale.true_value(low + (high - low) * at(n));
+    let value = |n: usize| measure.show(transfer.scale.true_value(low + (high - low) * at(n)));
     let largest = value(0).abs().max(value(bands).abs());
     let text = |n: usize| {
         // A digit more than the width of the next band has, and than the value itself in the logarithm.
@@ -447,11 +463,47 @@ mod tests {
             bands,
             reference_length: 1.0,
         };
-        marks(&transfer, 5, 10)
+        marks(&transfer, &Measure::default(), 5, 10)
     }
 
     fn named(marks: &[(f64, String)]) -> Vec<(f64, &str)> {
         marks.iter().map(|m| (m.0, m.1.as_str())).collect()
+    }
+
+    #[test]
+    fn marks_are_round_in_the_units_shown() {
+        let transfer = TransferFunction {
+            color: color_map("turbo").unwrap(),
+            opacity: vec![(0.0, 0.1)],
+            range: [0.0, 100.0],
+            scale: Scale::Linear,
+            bands: None,
+            reference_length: 1.0,
+        };
+        // Celsius in Fahrenheit.
+        let measure = crate::case::Units::FIELD.of_unit("C", "TEMP");
+        let found = marks(&transfer, &measure, 5, 10);
+        let [first, .., last] = &found[..] else {
+            panic!("{found:?}")
+        };
+        assert_eq!((first.1.as_str(), last.1.as_str()), ("32", "212"));
+        let middle = found.iter().find(|mark| mark.1 == "100").unwrap();
+        assert!((middle.0 - 68.0 / 180.0).abs() < 1e-9);
+        assert!(
+            marks(&transfer, &Measure::default(), 5, 10)
+                .iter()
+                .all(|m| m.1 != "212")
+        );
+        let logarithmic = TransferFunction {
+            range: [1.0, 3.0],
+            scale: Scale::Log,
+            ..transfer
+        };
+        let measure = crate::case::Units::FIELD.of_unit("BARSA", "PRESSURE");
+        let found = marks(&logarithmic, &measure, 5, 10);
+        let thousand = found.iter().find(|mark| mark.1 == "1000").unwrap();
+        let expected = ((1000.0 / 14.503_773_773_f64).log10() - 1.0) / 2.0;
+        assert!((thousand.0 - expected).abs() < 1e-9, "{found:?}");
     }
 
     #[test]
@@ -540,6 +592,7 @@ mod tests {
             transfer,
             beyond: [false, true],
             heading: ["PRESSURE-PRESSURE@0", "BARSA"],
+            measure: &Measure::default(),
             has_opacity: true,
             unit: 12.0,
             width: &width,

@@ -33,4 +33,4 @@ pub use marks::{cell_edges, mark_cells, mark_color};
 pub use orientation::{Area, Arrow, Orientation, Paper, Text, on_screen, well_names};
 pub use plot::{Plot, Series};
 pub use sheet::{SheetError, SheetImage, contact_sheet};
-pub use units::short_unit;
+pub use units::{Lengths, short_unit};

@@ -1,4 +1,6 @@
-//! Names of units as they stand in pictures.
+//! Lengths and places as they are written in pictures and beside them.
+
+use crate::case::{Case, Measure, Units};
 
 /// A length unit of a grid file as it is written behind numbers.
 pub fn short_unit(name: &str) -> String {
@@ -6,5 +8,77 @@ pub fn short_unit(name: &str) -> String {
         "METRES" => "m".into(),
         "FEET" => "ft".into(),
         other => other.to_lowercase(),
+    }
+}
+
+/// How lengths of a case are written, with short units.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Lengths {
+    /// Lengths and depths of the grid.
+    pub grid: Measure,
+    /// Eastings and northings.
+    pub map: Measure,
+}
+
+impl Lengths {
+    /// Those of a case in some units.
+    pub fn of(case: &Case, units: Units) -> Self {
+        let short = |mut measure: Measure| {
+            measure.unit = short_unit(&measure.unit);
+            measure
+        };
+        Self {
+            grid: short(case.length(units)),
+            map: short(case.map_length(units)),
+        }
+    }
+
+    /// Lengths as they are, in one unit.
+    #[cfg(test)]
+    pub fn named(unit: &str) -> Self {
+        Self {
+            grid: Measure::of_file(unit),
+            map: Measure::of_file(unit),
+        }
+    }
+
+    /// Easting, northing and depth as they are shown.
+    pub fn shown(&self, [east, north, depth]: [f64; 3]) -> [f64; 3] {
+        [
+            self.map.show(east),
+            self.map.show(north),
+            self.grid.show(depth),
+        ]
+    }
+
+    /// A place on the map in words.
+    pub fn place(&self, place: [f64; 3]) -> String {
+        let [east, north, depth] = self.shown(place);
+        let (map, grid) = (&self.map.unit, &self.grid.unit);
+        let unit = match map == grid {
+            true => String::new(),
+            false => format!(" {map}"),
+        };
+        format!("E {east:.1}{unit}  N {north:.1}{unit}  depth {depth:.2} {grid}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn places_name_the_unit_of_the_map_where_it_is_another_one() {
+        let mut lengths = Lengths::named("m");
+        let place = [500_000.04, 6e6, 2000.0];
+        assert_eq!(
+            lengths.place(place),
+            "E 500000.0  N 6000000.0  depth 2000.00 m"
+        );
+        lengths.grid.unit = "ft".into();
+        assert_eq!(
+            lengths.place(place),
+            "E 500000.0 m  N 6000000.0 m  depth 2000.00 ft"
+        );
     }
 }

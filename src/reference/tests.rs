@@ -131,6 +131,7 @@ fn view(grid: &Grid, field: CellField, extinction: f64, sampling_step: f64) -> V
             strategy: StrategyKind::ALL[0],
             step: sampling_step,
             early_termination: 0.0,
+            supersample: 1,
             libc: crate::scene::LibcSettings::default(),
             plts: crate::scene::PltsSettings::default(),
             srg: crate::scene::SrgSettings::default(),
@@ -154,6 +155,7 @@ fn view(grid: &Grid, field: CellField, extinction: f64, sampling_step: f64) -> V
             has_box: false,
             has_legend: false,
             facts: None,
+            units: crate::case::Units::default(),
             warnings: Vec::new(),
         },
     }

@@ -26,8 +26,10 @@ pub use job::Job;
 pub use line_of_sight::{LineOfSight, SurfacePoint, TubePoint, tube_at};
 pub use stats::{DeviceBytes, Frame, FrameStats, LightTimes, StorageError};
 
+use crate::image::resampling::reduced;
 use crate::model::{Grid, Ijk};
 use crate::view::View;
+use job::{Progress, Work};
 use line_of_sight::{Sighting, SurfaceTree};
 
 /// Who makes images.
@@ -88,7 +90,19 @@ pub trait Renderer {
     fn prepare(&mut self, view: &View) -> Result<(), RenderError>;
 
     /// Begins an image.
-    fn start<'a>(&'a mut self, view: &'a View) -> Job<'a, Frame>;
+    fn start<'a>(&'a mut self, view: &'a View) -> Job<'a, Frame> {
+        Job::new(|progress| match view.sampling.supersample {
+            1 => self.cast(view, progress),
+            _ => Box::pin(async move {
+                let mut frame = self.cast(&view.of_rays(), progress).await?;
+                frame.image = reduced(frame.image, view.size);
+                Ok(frame)
+            }),
+        })
+    }
+
+    /// Casts the rays of an image, given a view with a pixel for each of them ([`View::of_rays`]).
+    fn cast<'a>(&'a mut self, rays: &'a View, progress: Progress) -> Work<'a, Frame>;
 
     /// Locates points of world space in the drawn cells of a view; `None` where a point lies in none.
     ///

@@ -64,10 +64,51 @@ pub enum LightMode {
     MonteCarlo,
 }
 
-/// Directional occlusion.
+/// Which way occlusion looks, and how.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum OcclusionMethod {
+    /// Along a cone toward the viewer: what lies before something else is seen. It changes with the camera.
+    #[default]
+    Cones,
+    /// Along cones to all sides: hollows, faults and the inside are dark. It is there for good once it is made, so that
+    /// the camera turns at no cost.
+    Surround,
+    /// To all sides by mean opacities of shells around a point (SPAO): quicker to make, less exact.
+    SpaoMipmap,
+}
+
+impl OcclusionMethod {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Cones, Self::Surround, Self::SpaoMipmap];
+
+    /// As scenes write it.
+    pub const fn name(self) -> &'static str {
+        ["cones", "surround", "spao_mipmap"][self as usize]
+    }
+
+    /// What it does and when to use it.
+    pub const fn describe(self) -> &'static str {
+        [
+            "Cones toward the viewer: what lies before something else is seen; made anew when the camera moves",
+            "Cones to all sides: hollows and the inside are dark; the camera turns at no cost",
+            "To all sides by mean opacities of shells (SPAO): quicker to make, less exact",
+        ][self as usize]
+    }
+
+    /// True where it does not look toward the viewer.
+    pub fn is_around(self) -> bool {
+        self != Self::Cones
+    }
+}
+
+/// Occlusion.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct OcclusionSpec {
+    /// Which way it looks, and how.
+    #[serde(skip_serializing_if = "is_default")]
+    pub method: OcclusionMethod,
     /// Where it is found.
     pub mode: LightMode,
     /// Half of the cone's opening.
@@ -84,11 +125,16 @@ pub struct OcclusionSpec {
     pub length: f64,
     /// Sections count as if the medium in them were even, so that even media are not too light.
     pub even_media: bool,
+    /// Of the method `spao_mipmap`: each shell darkens as one voxel does, as in the paper; else by its thickness, which
+    /// is right in even media and far too dark on opaque surfaces.
+    #[serde(skip_serializing_if = "is_true")]
+    pub per_shell: bool,
 }
 
 impl Default for OcclusionSpec {
     fn default() -> Self {
         Self {
+            method: OcclusionMethod::default(),
             mode: LightMode::Preilluminated,
             half_angle_degrees: 20.0,
             splits: 7,
@@ -97,8 +143,18 @@ impl Default for OcclusionSpec {
             gap: 3.0,
             length: 0.5,
             even_media: false,
+            per_shell: true,
         }
     }
+}
+
+fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
+}
+
+#[allow(clippy::trivially_copy_pass_by_ref, reason = "what serde calls")]
+fn is_true(value: &bool) -> bool {
+    *value
 }
 
 /// Shadows of all lights.

@@ -53,6 +53,9 @@ pub struct Scene {
     /// The true geometry, or flat layers and square columns by I, J and K.
     #[serde(skip_serializing_if = "Space::is_map")]
     pub space: Space,
+    /// The units in which numbers are shown and typed. All numbers of the scene itself are in those of the files.
+    #[serde(skip_serializing_if = "Units::are_of_file")]
+    pub units: Units,
     /// How values vary inside a cell; in the mode `cells` each has one value.
     pub interpolation: Interpolation,
     /// Values at both ends of the color map; those of the step shown where absent.
@@ -68,6 +71,9 @@ pub struct Scene {
     pub sampling_step: Option<f64>,
     /// Transmittance at which a ray ends; 0 turns early termination off.
     pub early_termination: f64,
+    /// Rays along each axis of a pixel, whose color is made of theirs: edges get smooth.
+    #[serde(skip_serializing_if = "is_one")]
+    pub supersample: u32,
     /// Settings of the resampled-grid strategy.
     pub srg: SrgSettings,
     /// Settings of the cell-to-cell strategy.
@@ -101,6 +107,7 @@ impl Default for Scene {
             step: StepSpec::Name("last".into()),
             mode: Mode::default(),
             space: Space::default(),
+            units: Units::default(),
             interpolation: Interpolation::Vertex,
             range: RangeSpec::STEP,
             transfer: TransferSpec::default(),
@@ -108,6 +115,7 @@ impl Default for Scene {
             strategy: StrategyKind::Plts,
             sampling_step: None,
             early_termination: 0.01,
+            supersample: 1,
             srg: SrgSettings::default(),
             libc: LibcSettings::default(),
             plts: PltsSettings::default(),
@@ -149,6 +157,11 @@ impl Scene {
             ..self
         }
     }
+}
+
+#[allow(clippy::trivially_copy_pass_by_ref, reason = "what serde calls")]
+fn is_one(number: &u32) -> bool {
+    *number == 1
 }
 
 /// Which local grids are drawn.
@@ -203,6 +216,55 @@ impl Space {
     #[allow(clippy::trivially_copy_pass_by_ref, reason = "what serde calls")]
     fn is_map(&self) -> bool {
         *self == Self::Map
+    }
+}
+
+/// In which units numbers are shown and typed.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Units {
+    /// Those of the files.
+    #[default]
+    File,
+    /// Meters, bar, standard cubic meters.
+    Metric,
+    /// Feet, psi, barrels.
+    Field,
+    /// Centimeters, atmospheres, standard cubic centimeters, hours.
+    Lab,
+    /// Meters, atmospheres, standard cubic meters.
+    PvtM,
+}
+
+impl Units {
+    /// All of them.
+    pub const ALL: [Self; 5] = [Self::File, Self::Metric, Self::Field, Self::Lab, Self::PvtM];
+
+    /// Name in scene files.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::File => "file",
+            Self::Metric => "metric",
+            Self::Field => "field",
+            Self::Lab => "lab",
+            Self::PvtM => "pvt-m",
+        }
+    }
+
+    /// What they are, in a few words.
+    pub const fn describe(self) -> &'static str {
+        match self {
+            Self::File => "As in the files",
+            Self::Metric => "m, bar, sm3, days",
+            Self::Field => "ft, psi, stb and Mscf, days",
+            Self::Lab => "cm, atm, scc, hours",
+            Self::PvtM => "m, atm, sm3, days",
+        }
+    }
+
+    #[allow(clippy::trivially_copy_pass_by_ref, reason = "what serde calls")]
+    fn are_of_file(&self) -> bool {
+        *self == Self::File
     }
 }
 

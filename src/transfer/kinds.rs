@@ -56,7 +56,11 @@ impl Quantity {
         if name.contains('@') {
             return Self::Difference;
         }
-        // Of matrix, fractures or both.
+        // How far the values of several cases are spread is another quantity than these.
+        if name.ends_with(".STD") {
+            return Self::Other;
+        }
+        // Of matrix, fractures or both, or a statistic over cases.
         let name = name.split('.').next().unwrap_or_default();
         let fits = |pattern: &&str| match (pattern.strip_suffix('*'), pattern.strip_prefix('*')) {
             (Some(start), _) => name.starts_with(start),
@@ -106,6 +110,8 @@ mod tests {
             ("DEPTH", Quantity::Depth),
             ("PORV", Quantity::Wide),
             ("RS", Quantity::Other),
+            ("SWAT.MEAN", Quantity::Water),
+            ("SWAT.STD", Quantity::Other),
             ("", Quantity::Other),
         ] {
             assert_eq!(Quantity::of(name), kind, "{name}");

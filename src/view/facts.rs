@@ -84,17 +84,24 @@ impl Facts {
             active,
             drawn,
             values,
-            filter: words(scene),
+            filter: words(case, scene),
             planes: scene.clip.len(),
         }
     }
 }
 
 /// What is not drawn for the filter and the grids that are hidden.
-fn words(scene: &Scene) -> String {
+fn words(case: &Case, scene: &Scene) -> String {
     let hidden = &scene.grids.hidden;
     let hidden = (!hidden.is_empty()).then(|| format!("without {}", hidden.join(", ")));
-    let all = [Some(scene.filter.words()), hidden];
+    let mut filter = scene.filter.clone();
+    for row in &mut filter.properties {
+        let measure = case.measure(&row.name, scene.units.into());
+        for bound in row.min.iter_mut().chain(&mut row.max) {
+            *bound = measure.show(*bound);
+        }
+    }
+    let all = [Some(filter.words()), hidden];
     let all = all.into_iter().flatten().filter(|text| !text.is_empty());
     all.collect::<Vec<_>>().join(", ")
 }

@@ -3,12 +3,15 @@
 //! Both effects look along a cone: occlusion toward the viewer, shadows toward a light
 //! (campagnolo-2021, chapter 3 and 4.2). Defaults and ranges are the paper's.
 
+use std::f64::consts::FRAC_PI_2;
+
 use glam::DVec3;
 
 use super::error::{SceneError, within, wrong};
 use crate::image::Blending;
 use crate::scene::lighting::{
-    LightMode, LightSpec, LightingSpec, OcclusionSpec, SHADOW_HALF_ANGLE, VolumeSpec,
+    LightMode, LightSpec, LightingSpec, OcclusionMethod, OcclusionSpec, SHADOW_HALF_ANGLE,
+    VolumeSpec,
 };
 use crate::transfer::presets::parse_color;
 
@@ -27,6 +30,13 @@ pub struct Cone {
     pub length: f64,
     /// Sections count as if the medium in them were even.
     pub even_media: bool,
+}
+
+impl Cone {
+    /// True where it is all of the sphere: what stands at an emitter, or behind it, counts too.
+    pub fn is_around(&self) -> bool {
+        self.half_angle > FRAC_PI_2
+    }
 }
 
 /// Where a light is and what it reaches, in world space.
@@ -87,9 +97,13 @@ impl Light {
 /// Occlusion toward the viewer, checked.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Occlusion {
-    /// Where it is found; never `Off`.
+    /// Where it is found; never `Off`, nor `Image` of a method that looks to all sides.
     pub mode: LightMode,
-    /// Its cone.
+    /// Which way it looks, and how.
+    pub method: OcclusionMethod,
+    /// Of shells: each counts as one voxel, whatever its thickness.
+    pub per_shell: bool,
+    /// Its cone; all of the sphere for a method that looks to all sides.
     pub cone: Cone,
     /// Part of the darkening that is applied.
     pub strength: f64,
@@ -286,15 +300,28 @@ pub(crate) fn resolve(
 }
 
 fn occlusion(o: &OcclusionSpec, diagonal: f64) -> Result<Occlusion, SceneError> {
+    let is_around = o.method.is_around();
+    if is_around && o.mode == LightMode::Image {
+        let problem = format!(
+            "is preilluminated or monte_carlo with the method {}",
+            o.method.name()
+        );
+        return Err(wrong("lighting.occlusion.mode", problem));
+    }
+    let half_angle = within(
+        "lighting.occlusion.half_angle_degrees",
+        o.half_angle_degrees,
+        [1.0, 45.0],
+    )?;
     Ok(Occlusion {
         mode: o.mode,
+        method: o.method,
+        per_shell: o.per_shell,
         cone: Cone {
-            half_angle: within(
-                "lighting.occlusion.half_angle_degrees",
-                o.half_angle_degrees,
-                [1.0, 45.0],
-            )?
-            .to_radians(),
+            half_angle: match is_around {
+                true => std::f64::consts::PI,
+                false => half_angle.to_radians(),
+            },
             splits: splits("lighting.occlusion.splits", o.splits)?,
             attenuation: within("lighting.occlusion.attenuation", o.attenuation, [0.0, 4.0])?,
             gap: within("lighting.occlusion.gap", o.gap, [0.0, 20.0])?,

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::error::SceneError;
-use crate::case::{Case, Categories, Kind, ValueRange};
+use crate::case::{Case, Categories, Kind, ValueRange, Well};
 use crate::scene::{
     ColorSpec, Coloring, Hull, Integration, Interpolation, LibcSettings, LightingSpec, Mode,
     OpacitySpec, RangeSpec, ScaleSpec, Scene, Show, StrategyKind, TransferSpec,
@@ -102,11 +102,11 @@ pub fn varies(case: &Case, property: &str) -> bool {
     }
 }
 
-/// True where wells of the last step are connected to cells.
+/// True where wells of the last step are connected to cells, or have paths.
 fn has_wells(case: &Case) -> bool {
     let last = case.steps.len().saturating_sub(1);
     let wells = case.wells(last).ok();
-    wells.is_some_and(|wells| wells.iter().any(|well| !well.connections.is_empty()))
+    wells.is_some_and(|wells| wells.iter().any(Well::has_place))
 }
 
 /// The property shown where a scene names none: what the case is about.

@@ -39,6 +39,7 @@ pub use sequence::{Sequence, Turn};
 pub use surfaces::Surfaces;
 pub use wells::Wells;
 
+use crate::case::Units;
 use crate::image::Blending;
 use crate::model::{CellField, FaultFaces, Grid, Space, Spaces};
 use crate::scene::{
@@ -76,6 +77,18 @@ impl From<crate::scene::Space> for Space {
         match space {
             crate::scene::Space::Map => Self::Map,
             crate::scene::Space::Ijk => Self::Ijk,
+        }
+    }
+}
+
+impl From<crate::scene::Units> for Units {
+    fn from(units: crate::scene::Units) -> Self {
+        match units {
+            crate::scene::Units::File => Self::default(),
+            crate::scene::Units::Metric => Self::METRIC,
+            crate::scene::Units::Field => Self::FIELD,
+            crate::scene::Units::Lab => Self::LAB,
+            crate::scene::Units::PvtM => Self::PVT_M,
         }
     }
 }
@@ -145,6 +158,8 @@ pub struct Sampling {
     pub step: f64,
     /// Transmittance at which a ray ends.
     pub early_termination: f64,
+    /// Rays along each axis of a pixel.
+    pub supersample: u32,
     /// Settings of the cell-to-cell strategy.
     pub libc: LibcSettings,
     /// Settings of point location with topological search.
@@ -164,6 +179,8 @@ pub struct Notes {
     pub has_legend: bool,
     /// What is drawn in numbers, for the line below the picture; `None` where that is hidden.
     pub facts: Option<Arc<Facts>>,
+    /// The units in which numbers are written; all others of a view are in those of the files.
+    pub units: Units,
     /// What the scene asks for in vain, one sentence each.
     pub warnings: Vec<String>,
 }
@@ -238,7 +255,7 @@ impl View {
     /// # Errors
     /// When camera or size are not allowed.
     pub fn seen_from(&self, camera_spec: &CameraSpec, size: [u32; 2]) -> Result<Self, SceneError> {
-        let size = checked_size(size)?;
+        let size = checked_size(size, self.sampling.supersample)?;
         let of = (&*self.world.subject, &self.world.corners);
         let camera = placed(camera_spec, size, of, self.notes.has_box)?;
         Ok(Self {
@@ -246,6 +263,15 @@ impl View {
             camera,
             ..self.clone()
         })
+    }
+
+    /// The same view with a pixel for each ray. Lines are as wide there as [`Sampling::supersample`] pixels.
+    #[must_use]
+    pub fn of_rays(&self) -> Self {
+        Self {
+            size: self.size.map(|n| n * self.sampling.supersample),
+            ..self.clone()
+        }
     }
 
     /// Smallest and largest corner in grid space of the drawn cells of `grid` (the case's), ghosts aside; `None`

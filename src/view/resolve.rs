@@ -74,7 +74,7 @@ pub(super) fn resolve_over(
     } = cells(&asked, [&field, &in_scale], &spaces, &clip)?;
     let world_bounds = bounds_of(&box_corners);
     let wells = wells::shown(scene, case, &Measures::of(&spaces, &box_corners, edges))?;
-    let size = checked_size(scene.size)?;
+    let size = checked_size(scene.size, scene.supersample)?;
     Ok(View {
         size,
         camera: camera(
@@ -125,6 +125,7 @@ fn notes(scene: &Scene, case: &Case, facts: Option<Arc<Facts>>) -> Result<Notes,
         has_box: scene.show.r#box,
         has_legend: scene.show.legend,
         facts,
+        units: scene.units.into(),
         warnings: wells::warnings(scene, case)?,
     })
 }
@@ -144,6 +145,7 @@ fn sampling(
         strategy: scene.strategy,
         step: sampling_step(scene, edges, bounds)?,
         early_termination: early_termination(scene)?,
+        supersample: scene.supersample,
         libc: scene.libc,
         plts: scene.plts,
         srg: srg(scene, dims)?,
@@ -202,10 +204,28 @@ fn early_termination(scene: &Scene) -> Result<f64, SceneError> {
     }
 }
 
-pub(super) fn checked_size(size: [u32; 2]) -> Result<[u32; 2], SceneError> {
-    match size.iter().all(|n| (1..=16384).contains(n)) {
-        true => Ok(size),
-        false => Err(wrong("size", "must be 1 to 16384 pixels each way")),
+/// Rays of an image each way, at most.
+const MOST_RAYS: u32 = 16384;
+
+/// Rays along each axis of a pixel, at most.
+const MOST_SUPERSAMPLES: u32 = 8;
+
+pub(super) fn checked_size(size: [u32; 2], supersample: u32) -> Result<[u32; 2], SceneError> {
+    if !(1..=MOST_SUPERSAMPLES).contains(&supersample) {
+        let problem = format!("must be 1 to {MOST_SUPERSAMPLES} rays along each axis of a pixel");
+        return Err(wrong("supersample", problem));
+    }
+    let most = MOST_RAYS / supersample;
+    match (size.iter().all(|n| (1..=most).contains(n)), supersample) {
+        (true, _) => Ok(size),
+        (false, 1) => Err(wrong(
+            "size",
+            format!("must be 1 to {most} pixels each way"),
+        )),
+        (false, n) => {
+            let problem = format!("must be 1 to {most} pixels each way with \"supersample\": {n}");
+            Err(wrong("size", problem))
+        }
     }
 }
 

@@ -5,7 +5,7 @@ use glam::DQuat;
 use super::look::default_property;
 use super::resolve::resolve_over;
 use super::{Camera, SceneError, View, resolve};
-use crate::case::{Case, CaseError};
+use crate::case::Case;
 use crate::scene::{RangeSpec, ScaleSpec, Scene, StepSpec};
 
 /// A way around the model.
@@ -88,7 +88,7 @@ impl Sequence {
                     used.push(step);
                     range = union(range, defined_range(scene, &view));
                 }
-                Err(SceneError::Case(error @ CaseError::NotAtStep { .. })) => {
+                Err(SceneError::Case(error)) if error.is_gap() => {
                     left_out.push(format!("step {step} is left out: {error}"));
                     missing = Some(error);
                 }

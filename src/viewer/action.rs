@@ -7,7 +7,7 @@ use super::state::{Comparison, CurvePlots, Playback, State};
 use crate::scene::{
     CameraSpec, ClipSpec, Filter, Grids, Interpolation, LibcSettings, LightingSpec, Mode,
     PltsSettings, RangeSpec, Scene, Show, Space, SrgSettings, StepSpec, Storage, StrategyKind,
-    TransferSpec,
+    TransferSpec, Units,
 };
 
 /// A change of a tab's state.
@@ -39,6 +39,8 @@ pub enum Action {
     Storage(Storage),
     /// Distance of samples; `None` for the default.
     SamplingStep(Option<f64>),
+    /// Rays along each axis of a pixel.
+    Supersample(u32),
     /// Occlusion and lights.
     Lighting(LightingSpec),
     /// Which local grids are drawn.
@@ -55,6 +57,8 @@ pub enum Action {
     Show(Show),
     /// Background color.
     Background(String),
+    /// Units in which numbers are shown and typed.
+    Units(Units),
     /// A whole scene, as from a file.
     Scene(Box<Scene>),
     /// A second picture, or none.
@@ -99,6 +103,7 @@ impl Action {
             Self::Srg(_) | Self::Libc(_) | Self::Plts(_) => "strategy settings",
             Self::Storage(_) => "storage",
             Self::SamplingStep(_) => "sampling step",
+            Self::Supersample(_) => "rays per pixel",
             Self::Lighting(_) => "lighting",
             Self::Grids(_) => "local grids",
             Self::Filter(_) => "filter",
@@ -107,6 +112,7 @@ impl Action {
             Self::Exaggeration(_) => "vertical exaggeration",
             Self::Show(_) => "what is shown",
             Self::Background(_) => "background",
+            Self::Units(_) => "units",
             Self::Scene(_) => "scene",
             Self::Compare(_) => "comparison",
             Self::Select(..) | Self::Well(..) | Self::Deselect => "selection",
@@ -133,6 +139,7 @@ impl Action {
             Self::Plts(v) => scene.plts = v,
             Self::Storage(v) => scene.storage = v,
             Self::SamplingStep(v) => scene.sampling_step = v,
+            Self::Supersample(v) => scene.supersample = v,
             Self::Lighting(v) => scene.lighting = v,
             Self::Grids(v) => scene.grids = v,
             Self::Filter(v) => scene.filter = v,
@@ -141,6 +148,7 @@ impl Action {
             Self::Exaggeration(v) => scene.vertical_exaggeration = v,
             Self::Show(v) => scene.show = v,
             Self::Background(v) => scene.background = v,
+            Self::Units(v) => scene.units = v,
             Self::Scene(v) => *scene = *v,
             Self::Compare(v) => state.setup.comparison = v,
             Self::Select(cell, beside) => {

@@ -32,7 +32,7 @@ const REMEMBERED: usize = 4;
 pub struct Spent {
     /// How its rays were cast.
     pub strategy: StrategyKind,
-    /// Number of pixels, and what their rays took.
+    /// Number of pixels, of their rays where several make one, and what these took.
     pub pixels: f64,
     /// See [`Self::pixels`].
     pub rays_ms: f64,

@@ -12,8 +12,8 @@ use super::spread::Spread;
 use super::state::State;
 use super::vectors::VectorCurves;
 use super::watch::Watch;
-use crate::case::Case;
 use crate::case::load::CasePaths;
+use crate::case::{Case, Units};
 use crate::picking::Pick;
 use crate::scene::{CameraSpec, StepSpec};
 
@@ -23,6 +23,8 @@ pub struct Document {
     pub path: PathBuf,
     /// Files that were added to the case.
     pub with: Vec<PathBuf>,
+    /// Other cases of which it has statistics.
+    pub others: Vec<CasePaths>,
     /// The case, once it is there. It stays while it is read again.
     pub case: Option<Arc<Case>>,
     /// It is being read.
@@ -37,6 +39,8 @@ pub struct Document {
     pub playing: Option<Instant>,
     /// Tells when the case's files change.
     pub watch: Option<Watch>,
+    /// Tells when those of its summary do.
+    pub summary_watch: Option<Watch>,
     /// What was seen at the place clicked last.
     pub pick: Option<Pick>,
     /// All properties of the selected cells.
@@ -57,6 +61,7 @@ impl Document {
         Self {
             path: paths.path,
             with: paths.with,
+            others: paths.others,
             case: None,
             loading: Some(loading),
             error: None,
@@ -64,6 +69,7 @@ impl Document {
             history: History::default(),
             playing: None,
             watch: None,
+            summary_watch: None,
             pick: None,
             table: None,
             curves: None,
@@ -73,11 +79,30 @@ impl Document {
         }
     }
 
+    /// The units in which numbers are shown.
+    pub fn units(&self) -> Units {
+        self.state.setup.scene.units.into()
+    }
+
     /// The files that the case is read from.
     pub fn paths(&self) -> CasePaths {
         CasePaths {
             path: self.path.clone(),
             with: self.with.clone(),
+            others: self.others.clone(),
+        }
+    }
+
+    /// True where it is the case, or the cases together, that some paths name, whatever files were added.
+    pub fn is_of(&self, paths: &CasePaths) -> bool {
+        self.path == paths.path && self.others == paths.others
+    }
+
+    /// What tells it from other tabs: its path, and how many cases it has statistics of with it.
+    pub fn key(&self) -> PathBuf {
+        match self.others.len() {
+            0 => self.path.clone(),
+            more => PathBuf::from(format!("{} and {more} more", self.path.display())),
         }
     }
 
@@ -113,6 +138,23 @@ impl Document {
                 false
             }
         }
+    }
+
+    /// Takes in the wells of a step. The cells of the well that is selected are those of this step, beside what else is
+    /// selected.
+    pub fn take_wells(&mut self, list: WellList) {
+        let cells = |list: &WellList| -> Vec<[usize; 3]> {
+            let named = list.wells.iter();
+            let mut named = named.filter(|well| Some(&well.name) == self.state.well.as_ref());
+            let cells = named.next().map(|well| well.finest_cells(&list.case.grid));
+            cells.into_iter().flatten().map(|c| c.one_based()).collect()
+        };
+        let before = self.wells.as_ref().map_or_else(Vec::new, cells);
+        let now = cells(&list);
+        if self.state.well.is_some() && before != now {
+            self.state.selected = followed(&self.state.selected, &before, now);
+        }
+        self.wells = Some(list);
     }
 
     /// Makes a change that can be undone.
@@ -162,5 +204,31 @@ impl Document {
             };
             self.apply(Action::Step(next));
         }
+    }
+}
+
+/// The selected cells once a well has others: these, and what was selected beside those it had before.
+fn followed(
+    selected: &[[usize; 3]],
+    before: &[[usize; 3]],
+    mut now: Vec<[usize; 3]>,
+) -> Vec<[usize; 3]> {
+    let others = selected.iter();
+    let others = others.filter(|cell| !before.contains(cell) && !now.contains(cell));
+    let others: Vec<_> = others.copied().collect();
+    now.extend(others);
+    now
+}
+
+#[cfg(test)]
+mod tests {
+    use super::followed;
+
+    #[test]
+    fn a_wells_cells_follow_the_step_and_others_stay() {
+        let [a, b, c, other] = [1, 2, 3, 9].map(|k| [5, 5, k]);
+        let now = followed(&[a, b, other], &[a, b], vec![b, c]);
+        assert_eq!(now, [b, c, other]);
+        assert_eq!(followed(&[a], &[a], Vec::new()), [[0; 3]; 0]);
     }
 }

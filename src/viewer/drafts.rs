@@ -70,7 +70,8 @@ impl ShownSide {
         let voxels = self.voxels(&wanted.scene);
         let asked = wanted.scene.strategy;
         let of_draft = self.draft_strategy(wanted, is_software);
-        if of_draft == asked && budget.affords_whole(asked, goal_ms, pixels, voxels) {
+        let rays = pixels * f64::from(wanted.scene.supersample.pow(2));
+        if of_draft == asked && budget.affords_whole(asked, goal_ms, rays, voxels) {
             Due::Quick(None)
         } else if !is(&self.drafted) {
             Due::Quick(Some(budget.draft(of_draft, goal_ms, pixels, voxels)))
@@ -85,6 +86,7 @@ impl ShownSide {
         let scene = &mut wanted.scene;
         let smaller = |n: u32| ((f64::from(n) * draft.part).round() as u32).max(16);
         scene.size = scene.size.map(smaller);
+        scene.supersample = 1;
         if is_lit(&scene.lighting) && scene.lighting.volume.light_size.is_none() {
             let part = draft.light_part;
             let coarse = self
@@ -174,7 +176,7 @@ fn is_lit(lighting: &LightingSpec) -> bool {
 
 fn spent(picture: &Picture) -> Spent {
     let ms = |time: std::time::Duration| 1e3 * time.as_secs_f64();
-    let [width, height] = picture.rgb.size.map(f64::from);
+    let [width, height] = picture.view.of_rays().size.map(f64::from);
     let light = picture.light.volumes;
     let voxels = picture.view.style.lighting.light_size();
     let voxels: f64 = voxels.into_iter().map(f64::from).product();

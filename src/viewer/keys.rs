@@ -46,6 +46,10 @@ pub enum Command {
     Step(isize),
     /// To the first step, or the last.
     End(bool),
+    /// To the next case that is open, or the one before, seen in the same way.
+    Case(isize),
+    /// Statistics over the open cases that have the grid of the one in front.
+    Ensemble,
     /// Changes the camera.
     Camera(CameraMove),
     /// The next preset of the mouse's buttons.
@@ -109,7 +113,7 @@ const fn from(view: usize) -> Command {
 }
 
 /// Every shortcut, with what it says in the sheet.
-pub const SHORTCUTS: [(Modifiers, Key, Command, &str); 62] = [
+pub const SHORTCUTS: [(Modifiers, Key, Command, &str); 65] = [
     (CTRL, Key::O, Command::Open, "Open a case"),
     (
         CTRL_SHIFT,
@@ -135,6 +139,24 @@ pub const SHORTCUTS: [(Modifiers, Key, Command, &str); 62] = [
     (NONE, Key::ArrowLeft, Command::Step(-1), "Step back"),
     (NONE, Key::Home, Command::End(false), "First step"),
     (NONE, Key::End, Command::End(true), "Last step"),
+    (
+        CTRL,
+        Key::PageDown,
+        Command::Case(1),
+        "Next open case, seen in the same way",
+    ),
+    (
+        CTRL,
+        Key::PageUp,
+        Command::Case(-1),
+        "Previous open case, seen in the same way",
+    ),
+    (
+        CTRL_SHIFT,
+        Key::E,
+        Command::Ensemble,
+        "Statistics over the open cases of this grid",
+    ),
     (NONE, Key::PageDown, Command::Slice(1), "Next slice"),
     (NONE, Key::PageUp, Command::Slice(-1), "Previous slice"),
     (

@@ -4,8 +4,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 
-use crate::case::Case;
 use crate::case::load::{self, CasePaths};
+use crate::case::{Case, GridPool};
 use crate::scene::Scene;
 use crate::view::look;
 
@@ -25,11 +25,13 @@ pub struct Loading {
 }
 
 impl Loading {
-    /// Begins to open, with a property in front where the case has it; `wake` is called when that comes to
+    /// Begins to open, with a property in front where the case has it and the grid of one that is open where they are equal;
+    /// `wake` is called when that comes to
     /// another stage, and at the end.
     pub fn begin(
         paths: CasePaths,
         property: Option<String>,
+        pool: Arc<GridPool>,
         wake: impl Fn() + Send + 'static,
     ) -> Self {
         let (send, answer) = channel();
@@ -43,7 +45,7 @@ impl Loading {
                 wake();
                 !shared_cancel.load(Ordering::Relaxed)
             };
-            let case = match load::open_reporting(&paths.path, &paths.with, &progress) {
+            let case = match load::open_paths(&paths, &pool, &progress) {
                 Ok(Some(case)) => {
                     progress("values");
                     let property = property.filter(|p| look::varies(&case, p));

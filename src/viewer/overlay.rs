@@ -41,7 +41,7 @@ pub fn draw(
     paper.taken.extend(areas);
     if annotations.show_box {
         model_box(painter, rect, picture, view, ink);
-        let made = Orientation::of(view, &annotations.length_unit, paper);
+        let made = Orientation::of(view, &annotations.lengths, paper);
         orientation(painter, rect, &made, ink);
     }
     for name in &names {

@@ -34,8 +34,13 @@ pub fn command(program: &Path, paths: &CasePaths, scene: &Scene) -> Result<Strin
             format!(" --with {}", files.join(" "))
         }
     };
+    let others: Vec<_> = paths.others.iter().map(|o| absolute(&o.path)).collect();
+    let ensemble = match others.is_empty() {
+        true => String::new(),
+        false => format!(" --ensemble {}", others.join(" ")),
+    };
     Ok(format!(
-        "printf '%s' {} | {} render {}{with} --scene - -o {}-$(date +%Y%m%d-%H%M%S).png",
+        "printf '%s' {} | {} render {}{with}{ensemble} --scene - -o {}-$(date +%Y%m%d-%H%M%S).png",
         quoted(&json),
         absolute(program),
         absolute(&paths.path),
@@ -78,6 +83,7 @@ mod tests {
         let paths = CasePaths {
             path: case.clone(),
             with: vec![folder.path().join("its faults.inc")],
+            others: Vec::new(),
         };
         let line = command(&program, &paths, &scene).unwrap();
         let run = std::process::Command::new("sh")

@@ -56,7 +56,7 @@ impl Spread {
 
 fn counts(case: &Case, property: &str, step: usize) -> Option<Counts> {
     // A step without values has no bars, and the range still says where filters may be set.
-    let field = case.field(property, step).ok();
+    let field = case.field(property, step).ok().map(|f| case.finest(f));
     let values = field.as_ref().map_or(&[][..], |f| f.values());
     if look::numbers_regions(case, property)
         && let Ok(Categories::Values(known)) = case.categories(property)

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::case::{Case, Vector, Vectors};
+use crate::case::{Case, Measure, Units, Vector, Vectors};
 
 /// Vectors of a selected well that are shown, where the case has them.
 const OF_WELL: [&str; 7] = ["WOPR", "WWPR", "WGPR", "WWCT", "WBHP", "WWIR", "WGIR"];
@@ -33,13 +33,13 @@ pub struct VectorCurves {
 pub struct VectorCurve {
     /// Which one.
     pub vector: Vector,
-    /// A value for each time of [`Vectors`].
+    /// A value for each time of [`Vectors`]; not a number before a run has the vector.
     pub values: Vec<f32>,
 }
 
 impl VectorCurve {
     fn is_zero(&self) -> bool {
-        self.values.iter().all(|v| *v == 0.0)
+        self.values.iter().all(|v| *v == 0.0 || v.is_nan())
     }
 }
 
@@ -73,28 +73,34 @@ impl VectorCurves {
     }
 
     /// A row for each time with its date and days since the start, a column for each vector, as comma-separated
-    /// text.
+    /// text in some units.
     ///
     /// # Errors
     /// When it cannot be written; the sentence is for people.
-    pub fn csv(&self) -> Result<String, String> {
+    pub fn csv(&self, units: Units) -> Result<String, String> {
         let why = |e: &dyn std::fmt::Display| format!("the table cannot be written: {e}");
         let vectors = self.vectors.as_ref().map_err(String::clone)?;
         let mut writer = csv::Writer::from_writer(Vec::new());
-        let head = |c: &VectorCurve| match c.vector.unit.as_str() {
+        let measures = self.curves.iter().map(|c| units.of_vector(&c.vector));
+        let measures: Vec<_> = measures.collect();
+        let head = |(c, measure): (&VectorCurve, &Measure)| match measure.unit.as_str() {
             "" => c.vector.name.clone(),
             unit => format!("{} [{unit}]", c.vector.name),
         };
         let heads = ["date".to_owned(), "days".to_owned()].into_iter();
         writer
-            .write_record(heads.chain(self.curves.iter().map(head)))
+            .write_record(heads.chain(self.curves.iter().zip(&measures).map(head)))
             .map_err(|e| why(&e))?;
         for (n, days) in vectors.days.iter().enumerate() {
             // Times in files are such numbers.
             let time = [vectors.date(n), (*days as f32).to_string()].into_iter();
-            let value = |c: &VectorCurve| c.values.get(n).map_or_else(String::new, f32::to_string);
+            let value = |(c, measure): (&VectorCurve, &Measure)| {
+                let value = c.values.get(n).filter(|v| !v.is_nan());
+                let value = value.map(|v| measure.show_single(*v));
+                value.map_or_else(String::new, |v| v.to_string())
+            };
             writer
-                .write_record(time.chain(self.curves.iter().map(value)))
+                .write_record(time.chain(self.curves.iter().zip(&measures).map(value)))
                 .map_err(|e| why(&e))?;
         }
         let bytes = writer.into_inner().map_err(|e| why(&e))?;

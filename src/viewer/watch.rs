@@ -8,6 +8,8 @@ use std::time::{Duration, SystemTime};
 
 /// How often the files are looked at.
 const INTERVAL: Duration = Duration::from_secs(1);
+/// Looks after which a change is told though it goes on, as that of a file to which a simulation adds all the time.
+const PATIENCE: usize = 10;
 
 /// What was seen of a file; `None` where it is not there.
 type Seen = Option<(u64, Option<SystemTime>)>;
@@ -15,7 +17,7 @@ type Seen = Option<(u64, Option<SystemTime>)>;
 /// What happened to the files.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Change {
-    /// They changed, and have been still for a moment since.
+    /// They changed, and have been still for a moment since, or change for long.
     Written,
     /// One of them is gone.
     Gone,
@@ -37,11 +39,13 @@ impl Watch {
             let look = || -> Vec<Seen> { files.iter().map(|f| seen(f)).collect() };
             let mut told = look();
             let mut before = told.clone();
+            let mut waited = 0;
             while !ended.load(Ordering::Relaxed) {
                 std::thread::sleep(INTERVAL);
                 let now = look();
                 // A writer takes its time: what changes from look to look is waited for.
-                if now == before && now != told {
+                waited = if now == told { 0 } else { waited + 1 };
+                if now != told && (now == before || waited > PATIENCE) {
                     let is_gone = now.iter().any(Option::is_none);
                     let change = if is_gone {
                         Change::Gone
@@ -53,6 +57,7 @@ impl Watch {
                     }
                     wake();
                     told.clone_from(&now);
+                    waited = 0;
                 }
                 before = now;
             }

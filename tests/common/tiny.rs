@@ -88,6 +88,7 @@ pub fn egrid() -> Egrid {
         porosity_model: PorosityModel::Single,
         nnc: Vec::new(),
         local_nnc: Vec::new(),
+        reservoirs: Vec::new(),
         local_grids: Vec::new(),
     }
 }
@@ -126,8 +127,7 @@ pub fn restart(steps: &[(Head, Arrays<'_>)]) -> Vec<u8> {
     for (n, (head, arrays)) in steps.iter().enumerate() {
         let arrays = arrays.iter().map(|(name, values)| (*name, values.clone()));
         let days = 31.0 * n as f64;
-        let wells: [&str; 0] = [];
-        writer.step(n as u32, days, head, &wells, arrays).unwrap();
+        writer.step(n as u32, days, head, &[], arrays).unwrap();
     }
     writer.finish().unwrap()
 }

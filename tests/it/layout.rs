@@ -83,7 +83,7 @@ fn structs_of_frames(m: &Module) -> Vec<&'static str> {
             origin_right,
             is_parallel,
             origin_up,
-            reserved,
+            rays_across,
             headlight,
             headlight_scale,
             ghost,
@@ -199,8 +199,8 @@ fn structs_of_light(m: &Module) -> Vec<&'static str> {
             gradient_scale,
             work,
             rays_gap,
-            reserved0,
-            reserved1
+            around,
+            around_attenuation
         ),
         agrees!(
             m, Emitter, at, kind, axis, cos_outer, color, cos_inner, first, ones, threes, sevens,
@@ -298,6 +298,9 @@ fn twins() -> BTreeMap<String, Number> {
         ("LIGHT_IMAGE", layout::LIGHT_IMAGE),
         ("LIGHT_VOLUME", layout::LIGHT_VOLUME),
         ("LIGHT_RAYS", layout::LIGHT_RAYS),
+        ("METHOD_CONES", layout::METHOD_CONES),
+        ("METHOD_SURROUND", layout::METHOD_SURROUND),
+        ("METHOD_SPAO_MIPMAP", layout::METHOD_SPAO_MIPMAP),
     ];
     let real = [
         ("GRADIENT_FADE_LOW", lighting::GRADIENT_FADE[0]),

@@ -108,6 +108,7 @@ fn a_change_remakes_what_depends_on_it_alone() {
             fields,
             pyramids,
             light_volumes,
+            ..
         } = renderer.light().made;
         [fields, pyramids, light_volumes]
     };

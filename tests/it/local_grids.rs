@@ -1,11 +1,12 @@
 //! Local grids: drawn in place of the cells that they refine, with their own values, by every strategy.
 
 use std::collections::HashMap;
+use std::path::Path;
 use std::sync::Arc;
 
 use glam::DVec3;
 use serde_json::{Value, json};
-use strataray::case::{Case, CaseError, Source, load};
+use strataray::case::{Case, CaseError, Source, ValueRange, load};
 use strataray::image::Image;
 use strataray::image::metrics::psnr_8bit;
 use strataray::model::{CellIndex, Dims, Grid, GridInput, Ijk, LocalGrid};
@@ -15,9 +16,11 @@ use strataray::render::gpu::GpuExecutor;
 use strataray::render::{Executor, Renderer};
 use strataray::scene::StrategyKind;
 use strataray::view::{self, View};
+use strataray_parsers::Warnings;
+use strataray_parsers::egrid::Egrid;
 
-use crate::common;
 use crate::common::shape::parallelepipeds::{self, corner};
+use crate::common::{self, tiny};
 
 /// Cells that one is refined to along each axis.
 const FINE: usize = 3;
@@ -98,6 +101,7 @@ impl Refined<'_> {
             name: self.name.into(),
             parent: self.parent.0,
             grid: grid.unwrap(),
+            layers: None,
             split: 1,
             hosts: (0..dims.cells() as u32).map(host).collect(),
         }
@@ -328,4 +332,88 @@ fn arrays_that_only_a_local_grid_has_are_named() {
     assert_eq!(of("LGR1"), None);
     // Its connections count for the property too.
     assert!(case.property("NNC").is_ok());
+}
+
+/// The main grid of a file as a deck, with its arrays of rock, and a CARFIN for each local grid.
+fn deck_of(path: &Path) -> String {
+    let mut warnings = Warnings::default();
+    let grid = Egrid::read(path, &mut warnings).unwrap();
+    let init = strataray_parsers::init::open(&path.with_extension("INIT"), &mut warnings).unwrap();
+    let [ni, nj, nk] = grid.dims;
+    let [coord, zcorn] = [&grid.coord, &grid.zcorn].map(|values| tiny::numbers(values));
+    let mut deck = format!(
+        "GRID\nSPECGRID\n{ni} {nj} {nk} 1 F /\nGRIDUNIT\nMETRES /\nCOORD\n{coord} /\nZCORN\n{zcorn} /\n"
+    );
+    for local in &grid.local_grids {
+        let [low, high] = local.host_box.unwrap();
+        let hosts = [0, 1, 2].map(|axis| format!("{} {}", low[axis], high[axis]));
+        let [ni, nj, nk] = local.dims;
+        let (name, hosts) = (&local.name, hosts.join(" "));
+        deck += &format!("CARFIN\n'{name}' {hosts} {ni} {nj} {nk} /\nENDFIN\n");
+    }
+    for name in ["PORO", "PERMX", "PERMZ", "NTG", "DX", "DZ"] {
+        let values = init.values(init.find(name).unwrap()).unwrap();
+        deck += &format!("{name}\n{} /\n", tiny::numbers(&values));
+    }
+    deck
+}
+
+#[test]
+fn ranges_leave_out_cells_that_are_refined() {
+    let case = case(0.0);
+    let field = case.field("VALUE", 0).unwrap();
+    let all = ValueRange::of(&field).unwrap();
+    let range = case.range_over_steps("VALUE").unwrap().unwrap();
+    assert_eq!(all.max, 1e3);
+    assert!(range.max < 100.0 && range.min == all.min, "{range:?}");
+}
+
+#[test]
+fn a_deck_has_the_local_grids_and_values_of_its_simulator() {
+    let Some(path) = common::data("lgr_nnc/SIMPLE_SUMMARY2.EGRID") else {
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let open =
+        |name: &str, deck: &str| load::open(&tiny::write(folder.path(), name, deck)).unwrap();
+    let text = deck_of(&path);
+    let (simulated, case) = (load::open(&path).unwrap(), open("A.DATA", &text));
+    let (a, b) = (&simulated.grid, &case.grid);
+    assert_eq!(
+        (a.patches(), a.active_cells()),
+        (b.patches(), b.active_cells())
+    );
+    for cell in a.active_cells() {
+        let at = a.dims().ijk(*cell);
+        assert_eq!(a.cell_name(at), b.cell_name(at));
+        let pairs = a.hexahedron(at).0.into_iter().zip(b.hexahedron(at).0);
+        for (a, b) in pairs {
+            assert!((a - b).length() < 1e-3, "{a} {b}");
+        }
+    }
+    let values = |case: &Case, name: &str| case.field(name, 0).unwrap().values().to_vec();
+    for name in ["PORO", "PERMX", "PERMZ", "NTG", "DX", "DZ"] {
+        let pairs = values(&simulated, name)
+            .into_iter()
+            .zip(values(&case, name));
+        let off = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+        assert!(off < 1e-3, "{name}: {off}");
+    }
+    // What the deck does to a local grid is seen there and nowhere else.
+    let edits =
+        "REFINE\nCENTER /\nEQUALS\n PERMX 7 1 20 1 20 1 3 /\n/\nACTNUM\n 3599*1 0 /\nENDFIN\n";
+    let edited = open("B.DATA", &(text + edits));
+    assert_eq!(edited.grid.active_cells().len(), a.active_cells().len() - 1);
+    let permeabilities = values(&edited, "PERMX");
+    let cells = edited.grid.active_cells().iter().zip(&permeabilities);
+    let seven = cells.filter(|(_, value)| **value == 7.0);
+    let names: Vec<_> = seven
+        .map(|(cell, _)| edited.grid.cell_name(edited.grid.dims().ijk(*cell)))
+        .collect();
+    assert_eq!(names.len(), 1200);
+    assert!(
+        names
+            .iter()
+            .all(|name| name.grid == "CENTER" && name.ijk[2] <= 3)
+    );
 }

@@ -7,7 +7,7 @@ use crate::common;
 use crate::common::shape::{Shape, boxes};
 use glam::DVec2;
 use serde_json::Value;
-use strataray::case::{Case, load};
+use strataray::case::{Case, Measure, load};
 use strataray::image::Image;
 use strataray::image::metrics::{ciede2000, lab};
 use strataray::model::Ijk;
@@ -454,7 +454,7 @@ fn a_fault_is_picked_where_it_is_what_is_seen() {
     assert_eq!((fault.near.i, fault.far.i), (0, 1));
     assert!(near(fault.throw, 8.0), "{fault:?}");
     assert_eq!(
-        fault.in_words("m"),
+        fault.in_words(&Measure::of_file("m")),
         "Fault NORTH, throw 8.0 m: far side deeper"
     );
     assert!(
@@ -470,7 +470,7 @@ fn a_fault_is_picked_where_it_is_what_is_seen() {
     let fault = pick(&case, &other).unwrap().fault.unwrap();
     assert_eq!((fault.near.i, fault.far.i), (1, 0));
     assert_eq!(
-        fault.in_words("m"),
+        fault.in_words(&Measure::of_file("m")),
         "Fault NORTH, throw 8.0 m: far side shallower"
     );
     // Before a dense cell it is not seen, and behind half of one it is, though the cell is what is picked.

@@ -309,6 +309,7 @@ fn a_local_grid_whose_rows_follow_no_rows_is_left_out() {
         name: name.into(),
         parent: 0,
         grid: strataray::model::Grid::clone(&block_of_four().grid),
+        layers: None,
         split: 1,
         hosts: hosts.to_vec(),
     };

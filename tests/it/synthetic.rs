@@ -3,10 +3,10 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use strataray::case::{Case, load};
+use strataray::case::{Case, WellKind, load};
 use strataray::export::{ExportError, synthetic};
 use strataray::model::corner_point::NO_THICKNESS;
-use strataray::model::synthetic::{Fields, RECIPES, Recipe, Synthetic};
+use strataray::model::synthetic::{Fields, RECIPES, Recipe, Synthetic, Well};
 use strataray::model::topology::COINCIDENT;
 use strataray::model::{CellIndex, Dims, Grid, GridInput, Ijk, ModelError};
 use strataray::render::plan::{CompactGrid, drawn_words};
@@ -52,6 +52,27 @@ fn values(case: &Case, name: &str, step: usize) -> Vec<f32> {
     case.field(name, step).unwrap().values().to_vec()
 }
 
+/// Wells of all steps are those of the model, open to their cells.
+fn check_wells(case: &Case, expected: &[Well]) {
+    let names: Vec<&String> = expected.iter().map(|well| &well.name).collect();
+    assert_eq!(case.about.wells.iter().collect::<Vec<_>>(), names);
+    for step in 0..case.steps.len() {
+        let wells = case.wells(step).unwrap();
+        assert_eq!(wells.len(), expected.len());
+        for (well, made) in wells.iter().zip(expected) {
+            let kind = match made.is_injector {
+                true => WellKind::WaterInjector,
+                false => WellKind::Producer,
+            };
+            assert_eq!((well.kind, well.is_open), (kind, true));
+            assert!(well.connections.iter().all(|c| c.is_open));
+            let cells: Vec<Ijk> = well.cells(&case.grid).collect();
+            assert_eq!(cells, made.cells);
+            assert!(!cells.is_empty() && cells.iter().all(|cell| case.grid.is_active(*cell)));
+        }
+    }
+}
+
 #[test]
 fn ok_every_model_reads_back_as_it_was_made() {
     for recipe in &RECIPES {
@@ -75,7 +96,7 @@ fn ok_every_model_reads_back_as_it_was_made() {
                 "{}: {faults}",
                 recipe.name
             );
-            assert_eq!(case.about.wells, expected.fields.wells());
+            check_wells(&case, expected.fields.wells());
             for (step, of) in case.steps.iter().zip(&expected.steps) {
                 let found = (step.report, &step.date, step.days);
                 assert_eq!(found, (of.report, &of.date, of.days));

@@ -7,6 +7,7 @@
     reason = "tests"
 )]
 
+mod cases;
 mod coloring;
 #[path = "../common/mod.rs"]
 mod common;

@@ -6,6 +6,7 @@ use super::array::{Rule, Runs, runs};
 use super::cells::{CellArray, CellArrays};
 use super::edit::{Edit, Place, cells_of};
 use super::lexer::{Mistake, keyword};
+use super::refine::{self, Corners};
 use super::scan::{Block, Data, DepthShift, Found, product_text};
 use super::skip::is_read;
 use super::{DeckCells, FaultFaces, Grdecl, GridUnit, blocks, faults};
@@ -32,7 +33,7 @@ pub(super) const ACTIVITY: Rule = Rule {
 };
 
 /// Most cells for each byte of text; a deck needs some text for each column and each layer.
-const MOST_CELLS_PER_BYTE: usize = 1000;
+pub(super) const MOST_CELLS_PER_BYTE: usize = 1000;
 
 /// Builds the grid of what the scan found in the deck at `path`.
 pub(super) fn assemble(
@@ -50,24 +51,19 @@ pub(super) fn assemble(
         check_text(path, all, found.bytes)?;
     }
     let depths = 8 * dims.iter().product::<usize>();
-    let corners = match (&found.coord, &found.zcorn, file) {
-        (Some(coord), Some(zcorn), _) => {
-            let mut coord = array(coord, GEOMETRY, &[lengths.coord])?;
-            if found.radial_corners {
-                let note = radial::straighten(&mut coord, dims[0]);
-                warnings.push(path, At::File, note);
-            }
-            Some([coord, array(zcorn, GEOMETRY, &[lengths.zcorn, depths])?])
-        }
-        (_, _, Some(corners)) => Some(corners),
-        _ => None,
+    let corners = match given_corners(path, &found, lengths, dims, warnings)? {
+        None => file,
+        given => given,
     };
     let absent = missing(path, &found);
     let vectors = std::mem::take(&mut found.vectors);
-    let mut arrays = CellArrays::play(&mut found, all, warnings)?;
+    let refinements = std::mem::take(&mut found.refinements);
+    let mut arrays = CellArrays::of_main(&mut found, all, warnings)?;
+    let local_grids = refine::refined(refinements, &arrays, found.bytes, warnings)?;
+    arrays.join_factors();
     let actnum = arrays.take("ACTNUM");
     let actnum = actnum.map(|array| activity(&array)).transpose()?;
-    arrays.keep(dims);
+    arrays.show(dims);
     let [coord, mut zcorn] = match corners {
         Some(corners) => corners,
         None if !blocks::are_given(&arrays, &vectors, found.radial) => {
@@ -88,14 +84,15 @@ pub(super) fn assemble(
     for shift in &found.depth_shifts {
         shift_depths(&mut zcorn, dims, shift, warnings);
     }
-    for (name, values) in [("COORD", &coord), ("ZCORN", &zcorn)] {
-        if let Some(number) = first_not(values, |value| value.is_finite()) {
-            let message = format!("value {number} becomes infinite by what the deck does to it");
-            let kind = ErrorKind::BadValue;
-            return Err(ParseError::of(kind, path, At::File, name, message));
-        }
-    }
+    check_finite(path, [("COORD", &coord), ("ZCORN", &zcorn)])?;
+    let corners = Corners {
+        dims,
+        coord: &coord,
+        zcorn: &zcorn,
+    };
+    let local_grids = refine::grids(local_grids, &corners);
     Ok(Grdecl {
+        local_grids,
         dims,
         coord,
         zcorn,
@@ -104,6 +101,7 @@ pub(super) fn assemble(
             _ => Some(matrix_and_fractures(actnum, depths / 8)),
         },
         porosity_model: found.porosity_model,
+        has_effective_fractures: found.has_effective_fractures,
         map_axes: found.map_axes,
         map_units: found.map_units.take(),
         grid_unit: found.grid_unit.take(),
@@ -115,6 +113,39 @@ pub(super) fn assemble(
         faults: inside(&mut found, all, dims, warnings),
         files: found.files,
     })
+}
+
+/// COORD and ZCORN of the deck, where it has both; ZCORN may be that of the `dims` cells alone that are shown.
+fn given_corners(
+    path: &Path,
+    found: &Found,
+    lengths: Lengths,
+    dims: [usize; 3],
+    warnings: &mut Warnings,
+) -> Result<Option<[Vec<f64>; 2]>, ParseError> {
+    let (Some(coord), Some(zcorn)) = (&found.coord, &found.zcorn) else {
+        return Ok(None);
+    };
+    let mut coord = array(coord, GEOMETRY, &[lengths.coord])?;
+    if found.radial_corners {
+        let note = radial::straighten(&mut coord, dims[0]);
+        warnings.push(path, At::File, note);
+    }
+    let depths = 8 * dims.iter().product::<usize>();
+    let zcorn = array(zcorn, GEOMETRY, &[lengths.zcorn, depths])?;
+    Ok(Some([coord, zcorn]))
+}
+
+/// Refuses values that a deck makes infinite.
+fn check_finite(path: &Path, arrays: [(&str, &[f64]); 2]) -> Result<(), ParseError> {
+    for (name, values) in arrays {
+        if let Some(number) = first_not(values, |value| value.is_finite()) {
+            let message = format!("value {number} becomes infinite by what the deck does to it");
+            let kind = ErrorKind::BadValue;
+            return Err(ParseError::of(kind, path, At::File, name, message));
+        }
+    }
+    Ok(())
 }
 
 /// The part of a deck's cells that is shown: with dual porosity the upper half of the layers, which are the matrix.
@@ -159,9 +190,14 @@ pub(super) fn cells(
         _ => [ni, nj, 2 * nk],
     };
     checked_lengths(path, all)?;
-    let mut arrays = CellArrays::play(&mut found, all, warnings)?;
+    if let Some(refinement) = found.refinements.first() {
+        let message = "values of local grids are not read from files that are added to a grid";
+        refinement.place.warn(warnings, message);
+    }
+    let mut arrays = CellArrays::of_main(&mut found, all, warnings)?;
+    arrays.join_factors();
     arrays.take("ACTNUM");
-    arrays.keep(dims);
+    arrays.show(dims);
     Ok(DeckCells {
         properties: arrays.into_properties(),
         faults: inside(&mut found, all, dims, warnings),

@@ -14,7 +14,7 @@ const PROPERTY_LIKE: usize = 1000;
 
 /// Most values of all arrays together that a deck may have whatever its length (4 GiB), so that a short text cannot ask for
 /// all memory; longer ones may have one for each byte.
-const MOST_VALUES: usize = 1 << 29;
+pub(super) const MOST_VALUES: usize = 1 << 29;
 
 /// An array in the making.
 pub(super) struct CellArray {
@@ -37,8 +37,12 @@ pub(super) struct CellArrays {
     dims: [usize; 3],
     /// True where the lower half of the layers are the fractures.
     is_dual: bool,
+    /// True where fractures have what their matrix has unless they are given their own (DPGRID).
+    is_shared: bool,
     arrays: Vec<CellArray>,
     left_out: LeftOut,
+    /// Of a local grid, the arrays that it does not have from its hosts.
+    lost: Vec<String>,
     /// The array of regions that is meant where a record names none, and the one where that is not given.
     regions: [&'static str; 2],
 }
@@ -48,8 +52,8 @@ const MULTIPLIER_REGIONS: [&str; 2] = ["MULTNUM", "FLUXNUM"];
 const FLUX_REGIONS: [&str; 2] = ["FLUXNUM", "MULTNUM"];
 
 impl CellArrays {
-    /// Plays the edits of a deck whose grid has `dims` cells.
-    pub(super) fn play(
+    /// The arrays of a deck whose main grid has `dims` cells, but for [what is joined](Self::join_factors).
+    pub(super) fn of_main(
         found: &mut Found,
         dims: [usize; 3],
         warnings: &mut Warnings,
@@ -57,8 +61,10 @@ impl CellArrays {
         let mut all = Self {
             dims,
             is_dual: found.porosity_model != PorosityModel::Single,
+            is_shared: found.shares_matrix,
             arrays: Vec::new(),
             left_out: LeftOut::default(),
+            lost: Vec::new(),
             regions: match found.has_multiplier_regions {
                 true => MULTIPLIER_REGIONS,
                 false => FLUX_REGIONS,
@@ -69,24 +75,99 @@ impl CellArrays {
             active.values = actnum.into_iter().map(f64::from).collect();
         }
         check_values(found, dims)?;
-        for edit in std::mem::take(&mut found.edits) {
-            match edit {
-                Edit::Given(block, cells) => all.give(&block, cells, warnings)?,
-                Edit::Changed(operation) => {
-                    if let Err(why) = all.change(&operation, warnings) {
-                        all.leave_out(&operation.place, &operation.target, why);
-                    }
-                }
-                Edit::NotApplied { place, target, why } => all.leave_out(&place, &target, why),
-            }
-        }
-        std::mem::take(&mut all.left_out).report(warnings);
-        all.join_factors();
+        all.play(std::mem::take(&mut found.edits), warnings)?;
         Ok(all)
     }
 
+    /// Plays edits in their order.
+    pub(super) fn play(
+        &mut self,
+        edits: Vec<Edit>,
+        warnings: &mut Warnings,
+    ) -> Result<(), ParseError> {
+        for edit in edits {
+            match edit {
+                Edit::Given(block, cells) => self.give(&block, cells, warnings)?,
+                Edit::Changed(operation) => {
+                    if let Err(why) = self.change(&operation, warnings) {
+                        self.leave_out(&operation.place, &operation.target, why);
+                    }
+                }
+                Edit::NotApplied { place, target, why } => self.leave_out(&place, &target, why),
+            }
+        }
+        std::mem::take(&mut self.left_out).report(warnings);
+        Ok(())
+    }
+
+    /// The arrays that a local grid of `dims` cells begins with: those of the host of each cell. `size` says how much of
+    /// its host a cell is along an axis.
+    pub(super) fn of_hosts(
+        &self,
+        dims: [usize; 3],
+        hosts: &[usize],
+        size: impl Fn(usize, usize) -> f64,
+    ) -> Self {
+        let mut arrays = Vec::new();
+        let mut lost = Vec::new();
+        for array in &self.arrays {
+            let of_host = |factor: &dyn Fn(usize) -> f64| -> Vec<f64> {
+                let cells = hosts.iter().enumerate();
+                let values = cells.map(|(cell, host)| factor(cell) * array.values[*host]);
+                values.collect()
+            };
+            let values = match inheritance(&array.name, array.is_edit_factor) {
+                Inheritance::Same => of_host(&|_| 1.0),
+                Inheritance::Share(axis) => of_host(&|cell| size(cell, axis)),
+                Inheritance::None => {
+                    let start = array.start();
+                    let is_start = |value: f64| value == start || value.is_nan() && start.is_nan();
+                    if !hosts.iter().all(|host| is_start(array.values[*host])) {
+                        lost.push(array.name.clone());
+                    }
+                    continue;
+                }
+            };
+            arrays.push(CellArray {
+                name: array.name.clone(),
+                is_edit_factor: array.is_edit_factor,
+                values,
+                doubts: array.doubts.clone(),
+                place: array.place.clone(),
+                is_given: false,
+            });
+        }
+        Self {
+            dims,
+            is_dual: self.is_dual,
+            is_shared: self.is_shared,
+            arrays,
+            left_out: LeftOut::default(),
+            lost,
+            regions: self.regions,
+        }
+    }
+
+    /// The arrays that a local grid does not have from its hosts though they say something there.
+    pub(super) fn take_lost(&mut self) -> Vec<String> {
+        std::mem::take(&mut self.lost)
+    }
+
+    pub(super) fn is_dual(&self) -> bool {
+        self.is_dual
+    }
+
+    pub(super) fn dims(&self) -> [usize; 3] {
+        self.dims
+    }
+
+    /// How many arrays there are.
+    pub(super) fn count(&self) -> usize {
+        self.arrays.len()
+    }
+
     /// Multiplies what the EDIT section has as factors into what they are factors of.
-    fn join_factors(&mut self) {
+    pub(super) fn join_factors(&mut self) {
         let all = std::mem::take(&mut self.arrays);
         let (factors, arrays) = all.into_iter().partition(|array| array.is_edit_factor);
         self.arrays = arrays;
@@ -125,14 +206,10 @@ impl CellArrays {
     fn find_or_begin(&mut self, name: &str, is_edit_factor: bool, place: &Place) -> &mut CellArray {
         let at = self.place_of(name, is_edit_factor);
         let at = at.unwrap_or_else(|| {
-            let start = match is_edit_factor {
-                true => 1.0,
-                false => default_value(name).unwrap_or(f64::NAN),
-            };
             self.arrays.push(CellArray {
                 name: name.to_owned(),
                 is_edit_factor,
-                values: vec![start; self.cells()],
+                values: vec![start(name, is_edit_factor); self.cells()],
                 doubts: Vec::new(),
                 place: place.clone(),
                 is_given: false,
@@ -142,12 +219,21 @@ impl CellArrays {
         &mut self.arrays[at]
     }
 
-    /// Leaves out what is not of the first `dims` cells: of dual porosity the fractures, which follow the matrix.
-    pub(super) fn keep(&mut self, dims: [usize; 3]) {
+    /// Goes on with the first `dims` cells: of dual porosity the matrix, whose values those of the fractures follow.
+    /// These are left out of what has none of its own, and of what says where cells lie.
+    pub(super) fn show(&mut self, dims: [usize; 3]) {
         self.dims = dims;
         let cells = self.cells();
-        for array in &mut self.arrays {
-            array.values.truncate(cells);
+        for array in self.arrays.iter_mut().filter(|a| a.values.len() > cells) {
+            let (matrix, fractures) = array.values.split_at_mut(cells);
+            let is_size = is_size(&array.name);
+            if is_size || fractures.iter().all(|value| value.is_nan()) && !self.is_shared {
+                array.values.truncate(cells);
+            } else if self.is_shared {
+                for (value, of_matrix) in fractures.iter_mut().zip(matrix) {
+                    *value = if value.is_nan() { *of_matrix } else { *value };
+                }
+            }
         }
     }
 
@@ -163,10 +249,10 @@ impl CellArrays {
         Some(&array.place)
     }
 
-    /// The values of an array.
+    /// The values of an array, one for each cell that is shown.
     pub(super) fn values(&self, name: &str) -> Option<&[f64]> {
         let array = self.arrays.iter().find(|array| array.name == name)?;
-        Some(&array.values)
+        array.values.get(..self.cells())
     }
 
     /// All arrays as properties.
@@ -401,12 +487,56 @@ const NOT_GIVEN: &str = ", which the deck does not give";
 /// Why a change of no cells is not made.
 const EMPTY: &str = ": no cell is in its region";
 
+/// What cells have of an array where nothing is given.
+fn start(name: &str, is_edit_factor: bool) -> f64 {
+    match is_edit_factor {
+        true => 1.0,
+        false => default_value(name).unwrap_or(f64::NAN),
+    }
+}
+
+/// What the cells of a local grid have from the cells that they divide.
+enum Inheritance {
+    Same,
+    /// As much as they are of these along an axis.
+    Share(usize),
+    /// Nothing: amounts of whole cells, and what is between these.
+    None,
+}
+
+fn inheritance(name: &str, is_edit_factor: bool) -> Inheritance {
+    let sizes = [["DX", "DR"], ["DY", "DTHETA"], ["DZ", "DZNET"]];
+    if let Some(axis) = sizes.iter().position(|names| names.contains(&name)) {
+        return Inheritance::Share(axis);
+    }
+    let between = ["MULT", "TRAN", "DIFF", "HEATT"].iter().any(|start| {
+        let direction = name.strip_prefix(start);
+        direction.is_some_and(|d| ["X", "X-", "Y", "Y-", "Z", "Z-", "R", "THT"].contains(&d))
+    });
+    match name {
+        "TOPS" => Inheritance::None,
+        // As a factor it is one on volumes, which are in proportion.
+        "PORV" if !is_edit_factor => Inheritance::None,
+        _ if between => Inheritance::None,
+        _ => Inheritance::Same,
+    }
+}
+
+/// True of arrays that say how large cells are and where: fractures lie in their matrix.
+pub(super) fn is_size(name: &str) -> bool {
+    ["DX", "DY", "DZ", "DR", "DTHETA", "TOPS"].contains(&name)
+}
+
 /// True of an array of the EDIT section that is a factor on what the GRID section has under that name.
 fn is_edit_factor(name: &str, section: Option<Section>) -> bool {
     section == Some(Section::Edit) && is_multiplier(name)
 }
 
 impl CellArray {
+    fn start(&self) -> f64 {
+        start(&self.name, self.is_edit_factor)
+    }
+
     fn multiply(&mut self, factor: &Self) {
         for (value, factor) in self.values.iter_mut().zip(&factor.values) {
             *value *= factor;

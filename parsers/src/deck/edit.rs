@@ -173,6 +173,17 @@ impl Edit {
     }
 }
 
+impl Edit {
+    /// The array that it gives or changes.
+    pub(super) fn target(&self) -> &str {
+        match self {
+            Self::Given(block, _) => &block.name,
+            Self::Changed(operation) => &operation.target,
+            Self::NotApplied { target, .. } => target,
+        }
+    }
+}
+
 impl Scan<'_> {
     /// The records of an operation up to the empty one.
     pub(super) fn operation(
@@ -195,8 +206,8 @@ impl Scan<'_> {
                 keyword: keyword.name.clone(),
             };
             let edit = edit(place, self.section, &items, &mut cells).map_err(placed)?;
-            if !self.in_refinement() {
-                self.found.edits.extend(edit);
+            if let Some(edits) = self.edits() {
+                edits.extend(edit);
             }
         }
         Ok(())

@@ -1,11 +1,13 @@
 //! INCLUDE, GDFILE, IMPORT and PATHS: how one file leads to the next.
 
+use std::collections::HashSet;
+use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
 use super::edit::{CellBox, Place};
 use super::lexer::{Cursor, Keyword, Token, line_end, record_end};
 use super::scan::{Block, Data, Flow, Scan};
-use super::source::Source;
+use super::source::{Places, Source};
 use crate::bytes::FileBytes;
 use crate::error::{ErrorKind, ParseError};
 use crate::records::{Form, RecordFile};
@@ -17,8 +19,79 @@ const MOST_FILES: usize = 2000;
 /// noted.
 const MOST_AGAIN: usize = 64 << 20;
 
-impl Scan<'_> {
-    pub(super) fn paths(&mut self, source: &Source, cursor: &mut Cursor) -> Result<(), ParseError> {
+/// The files being read.
+#[derive(Default)]
+pub(super) struct Nesting {
+    /// Their paths, outermost first.
+    open: Vec<PathBuf>,
+    /// How many were opened so far.
+    opened: usize,
+    /// All that were included, and bytes of those that were again.
+    known: HashSet<PathBuf>,
+    again: usize,
+}
+
+/// Files that included one, innermost first, with the line of the INCLUDE.
+type Chain = Vec<(PathBuf, usize)>;
+
+impl Nesting {
+    pub(super) fn enter(&mut self, path: &Path) {
+        self.opened += 1;
+        self.open.push(path.to_owned());
+    }
+
+    pub(super) fn leave(&mut self) {
+        self.open.pop();
+    }
+
+    /// The file that a keyword names, with those that include it, unless it is one of them or they are too many.
+    pub(super) fn include(
+        &mut self,
+        source: &Source,
+        keyword: &Keyword,
+        at: usize,
+        file: Result<FileBytes, ParseError>,
+    ) -> Result<(FileBytes, Chain), ParseError> {
+        let name = keyword.name.as_str();
+        let mut chain = vec![(source.path().to_owned(), source.line(keyword.at))];
+        chain.extend_from_slice(&source.included_from);
+        let file = match file {
+            Ok(file) => file,
+            Err(mut error) => {
+                error.included_from = chain;
+                return Err(error);
+            }
+        };
+        let path = file.path();
+        if self.open.iter().any(|open| open == path) {
+            let message = format!("'{}' includes itself through other files", path.display());
+            return Err(source.error(ErrorKind::Malformed, at, name, message));
+        }
+        if self.open.len() >= DEEPEST || self.opened >= MOST_FILES {
+            let message = format!("more than {DEEPEST} nested or {MOST_FILES} included files");
+            return Err(source.error(ErrorKind::TooLarge, at, name, message));
+        }
+        if !self.known.insert(path.to_owned()) {
+            self.again = self.again.saturating_add(file.bytes().len());
+        }
+        if self.again > MOST_AGAIN {
+            let most = MOST_AGAIN >> 20;
+            let message = format!(
+                "the same files are included again and again, with more than {most} MiB in all"
+            );
+            return Err(source.error(ErrorKind::TooLarge, at, name, message));
+        }
+        Ok((file, chain))
+    }
+}
+
+impl Places<'_> {
+    /// PATHS: names of folders.
+    pub(super) fn add_aliases(
+        &mut self,
+        source: &Source,
+        cursor: &mut Cursor,
+    ) -> Result<(), ParseError> {
         loop {
             let items = cursor
                 .record()
@@ -33,31 +106,43 @@ impl Scan<'_> {
                     .map(|text| String::from_utf8_lossy(text).into_owned())
             };
             if let (Some(alias), Some(path)) = (text(0), text(1)) {
-                self.places.aliases.insert(alias, path);
+                self.aliases.insert(alias, path);
             }
         }
     }
+}
 
+/// The file that INCLUDE names, opened, and where its name stands.
+pub(super) fn included(
+    places: &mut Places<'_>,
+    source: &Source,
+    cursor: &mut Cursor,
+    keyword: &Keyword,
+) -> Result<(usize, Result<FileBytes, ParseError>), ParseError> {
+    let (at, written) = named_file(source, cursor, keyword)?;
+    let found = places.find(&written, source.path());
+    let path = found.map_err(|places| {
+        let places: Vec<_> = places
+            .iter()
+            .map(|place| place.display().to_string())
+            .collect();
+        let message = format!(
+            "'{written}' was not found; looked for {}",
+            places.join(" and ")
+        );
+        source.error(ErrorKind::NotFound, at, &keyword.name, message)
+    })?;
+    Ok((at, places.open(&path)))
+}
+
+impl Scan<'_> {
     pub(super) fn include(
         &mut self,
         source: &Rc<Source>,
         cursor: &mut Cursor,
         keyword: &Keyword,
     ) -> Result<Flow, ParseError> {
-        let (at, written) = named_file(source, cursor, keyword)?;
-        let found = self.places.find(&written, source.path());
-        let path = found.map_err(|places| {
-            let places: Vec<_> = places
-                .iter()
-                .map(|place| place.display().to_string())
-                .collect();
-            let message = format!(
-                "'{written}' was not found; looked for {}",
-                places.join(" and ")
-            );
-            source.error(ErrorKind::NotFound, at, &keyword.name, message)
-        })?;
-        let file = self.places.open(&path);
+        let (at, file) = included(&mut self.places, source, cursor, keyword)?;
         self.include_file(source, keyword, at, file)
     }
 
@@ -114,7 +199,6 @@ impl Scan<'_> {
                 "MAPAXES" => self.found.map_axes = file.f64s(entry)?.try_into().ok(),
                 // Dimensions are the deck's.
                 "SPECGRID" | "DIMENS" => {}
-                _ if self.in_refinement() => {}
                 _ => self.keep(block, CellBox::default()),
             }
         }
@@ -128,38 +212,13 @@ impl Scan<'_> {
         at: usize,
         file: Result<FileBytes, ParseError>,
     ) -> Result<Flow, ParseError> {
-        let name = keyword.name.as_str();
-        let mut chain = vec![(source.path().to_owned(), source.line(keyword.at))];
-        chain.extend_from_slice(&source.included_from);
-        let file = match file {
-            Ok(file) => file,
-            Err(mut error) => {
-                error.included_from = chain;
-                return Err(error);
-            }
-        };
-        let path = file.path();
-        if self.open.iter().any(|open| open == path) {
-            let message = format!("'{}' includes itself through other files", path.display());
-            return Err(source.error(ErrorKind::Malformed, at, name, message));
-        }
-        if self.open.len() >= DEEPEST || self.opened >= MOST_FILES {
-            let message = format!("more than {DEEPEST} nested or {MOST_FILES} included files");
-            return Err(source.error(ErrorKind::TooLarge, at, name, message));
-        }
-        if self.places.again > MOST_AGAIN {
-            let most = MOST_AGAIN >> 20;
-            let message = format!(
-                "the same files are included again and again, with more than {most} MiB in all"
-            );
-            return Err(source.error(ErrorKind::TooLarge, at, name, message));
-        }
+        let (file, chain) = self.nesting.include(source, keyword, at, file)?;
         self.file(file, chain)
     }
 }
 
 /// The path that stands at the cursor, and where.
-fn named_file(
+pub(super) fn named_file(
     source: &Source,
     cursor: &mut Cursor,
     keyword: &Keyword,

@@ -1,7 +1,7 @@
 //! Text decks: the grid, its faults and its cell properties from GRDECL and DATA files.
 //!
 //! The reader follows INCLUDE, skips what does not describe the grid, and stops at the SUMMARY or
-//! SCHEDULE section. It works in two steps: a scan over all files that notes where each array
+//! SCHEDULE section, of which [`Schedule`] takes the wells. It works in two steps: a scan over all files that notes where each array
 //! lies and what is done to it, and, once the dimensions are known, the parallel conversion of the
 //! arrays and, in the deck's order, what is done to them in boxes (EQUALS, COPY, ...), regions (EQUALREG, ...) and by
 //! formulas (OPERATE).
@@ -18,17 +18,20 @@ mod header;
 mod include;
 mod lexer;
 mod numbers;
+mod refine;
 mod scan;
+mod schedule;
 mod skip;
 mod source;
 mod write;
 
 use std::path::{Path, PathBuf};
 
-use crate::egrid::PorosityModel;
+use crate::egrid::{LocalGrid, PorosityModel};
 use crate::error::{ParseError, Warnings};
 pub use crate::units::UnitSystem;
 pub use files::{DeckFiles, Folders, MemoryFiles};
+pub use schedule::Schedule;
 pub use write::{DeckWriter, GridText, Number};
 
 /// A corner-point grid as its deck gives it, without any geometry computed from it.
@@ -48,6 +51,9 @@ pub struct Grdecl {
     pub actnum: Option<Vec<i32>>,
     /// DUALPORO or DUALPERM of the RUNSPEC section.
     pub porosity_model: PorosityModel,
+    /// NODPPM: permeabilities of fractures are effective ones. Without it a simulator multiplies them by the porosity of
+    /// the fractures.
+    pub has_effective_fractures: bool,
     /// MAPAXES: x and y of a point on the map's y axis, of the origin, of a point on its x axis.
     pub map_axes: Option<[f64; 6]>,
     /// MAPUNITS: the length unit of MAPAXES, such as `METRES`.
@@ -64,10 +70,22 @@ pub struct Grdecl {
     pub min_pore_volume: Option<f64>,
     /// Keywords with one number per cell, in the order of their first appearance.
     pub properties: Vec<DeckProperty>,
+    /// Local grids (CARFIN), each behind the one that it refines.
+    pub local_grids: Vec<DeckLocalGrid>,
     /// Faces of named faults, in file order.
     pub faults: Vec<FaultFaces>,
     /// All files read, in the order they were opened, each once.
     pub files: Vec<PathBuf>,
+}
+
+/// A local grid of a deck: the cells that a simulator makes of CARFIN, and their values.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DeckLocalGrid {
+    /// Its cells, in the place of those that it refines.
+    pub grid: LocalGrid<f64>,
+    /// Those of the cells that it refines, changed by what the deck does between CARFIN or REFINE and ENDFIN; one value
+    /// for each of its cells.
+    pub properties: Vec<DeckProperty>,
 }
 
 /// What decks say of the cells of a grid that is read from elsewhere.
@@ -99,7 +117,8 @@ pub struct GridUnit {
 pub struct DeckProperty {
     /// The keyword in upper case, such as `PORO`.
     pub name: String,
-    /// One value for each of `ni*nj*nk` cells; NaN where the deck gives none.
+    /// One value for each of `ni*nj*nk` cells; NaN where the deck gives none. With dual porosity those of the matrix,
+    /// and behind them as many of the fractures where they have any.
     pub values: Vec<f64>,
     /// What of the deck was not applied to it, as part of a sentence; `None` where the values are as the deck says.
     pub doubt: Option<String>,
@@ -125,7 +144,7 @@ pub struct FaultFaces {
 impl Grdecl {
     /// Reads the grid of the deck at `path` and of all files it includes.
     ///
-    /// What the reader leaves out or cannot evaluate (an operation on what is not given, local refinements, ...) goes to `warnings`.
+    /// What the reader leaves out or cannot evaluate (an operation on what is not given, radial local grids, ...) goes to `warnings`.
     ///
     /// # Errors
     /// When a file is missing or ends inside a record, when the grid is missing, damaged or of the wrong

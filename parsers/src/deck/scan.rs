@@ -6,7 +6,9 @@ use std::rc::Rc;
 
 use super::edit::{CellBox, Edit, Place};
 use super::files::DeckFiles;
+use super::include::Nesting;
 use super::lexer::{Cursor, Item, Keyword, Mistake, keyword, line_end, record_end};
+use super::refine::{Refinement, Target, is_division};
 use super::skip::{Skipped, ends_records, is_operation, skip_records};
 use super::source::{Places, Source};
 use super::{FaultFaces, GridUnit, faults, header};
@@ -95,6 +97,8 @@ pub(super) struct Found {
     pub(super) zcorn: Option<Block>,
     /// What is done to arrays of cells, in order.
     pub(super) edits: Vec<Edit>,
+    /// Local grids, in order.
+    pub(super) refinements: Vec<Refinement>,
     /// Sizes by column, row and layer (DXV, DYV, DZV, DRV, DTHETAV), and radii (INRAD, OUTRAD).
     pub(super) vectors: Vec<Block>,
     /// A binary file with the geometry, where GDFILE names one, or why it cannot be opened.
@@ -120,6 +124,10 @@ pub(super) struct Found {
     /// True where COORD has radii and angles (`T` of SPECGRID).
     pub(super) radial_corners: bool,
     pub(super) porosity_model: PorosityModel,
+    /// DPGRID: fractures have what their matrix has unless they are given their own.
+    pub(super) shares_matrix: bool,
+    /// NODPPM: permeabilities of fractures are effective ones.
+    pub(super) has_effective_fractures: bool,
     pub(super) files: Vec<PathBuf>,
     /// Bytes of all files, each time they are included.
     pub(super) bytes: usize,
@@ -163,10 +171,9 @@ pub(super) struct Scan<'a> {
     pub(super) section: Option<Section>,
     /// The cells that arrays at hand belong to.
     pub(super) input_box: CellBox,
-    refinement: bool,
-    /// Paths of the files being read, outermost first.
-    pub(super) open: Vec<PathBuf>,
-    pub(super) opened: usize,
+    /// Whose cells keywords are for.
+    pub(super) target: Target,
+    pub(super) nesting: Nesting,
 }
 
 /// Reads decks up to their arrays, one after the other as if they were one.
@@ -183,9 +190,8 @@ pub(super) fn scan(
             found,
             section: None,
             input_box: CellBox::default(),
-            refinement: false,
-            open: Vec::new(),
-            opened: 0,
+            target: Target::Main,
+            nesting: Nesting::default(),
         };
         scan.file(files.open(path)?, Vec::new())?;
         found = scan.found;
@@ -210,14 +216,13 @@ impl Scan<'_> {
                 "this is a binary file, not a text deck",
             ));
         }
-        self.opened += 1;
         self.found.bytes = self.found.bytes.saturating_add(text.len());
         if !self.found.files.iter().any(|file| file == path) {
             self.found.files.push(path.to_owned());
         }
-        self.open.push(path.to_owned());
+        self.nesting.enter(path);
         let flow = self.keywords(&source);
-        self.open.pop();
+        self.nesting.leave();
         flow
     }
 
@@ -265,7 +270,7 @@ impl Scan<'_> {
             "INCLUDE" | "EXTERNAL_FILE" => return self.include(source, cursor, keyword),
             "GDFILE" | "IMPORT" => return self.array_file(source, cursor, keyword),
             "TITLE" => skip_title(cursor),
-            "SKIP" | "SKIP100" | "SKIP300" => self.skip_region(source, cursor, keyword)?,
+            "SKIP" | "SKIP100" | "SKIP300" => skip_region(source, cursor, keyword)?,
             "METRIC" => self.found.unit_system = Some(UnitSystem::Metric),
             "FIELD" => self.found.unit_system = Some(UnitSystem::Field),
             "LAB" => self.found.unit_system = Some(UnitSystem::Lab),
@@ -278,7 +283,7 @@ impl Scan<'_> {
                 self.refine(source, cursor, keyword)?;
             }
             "COORD" | "ZCORN" | "ACTNUM" => self.array(source, cursor, keyword)?,
-            "PATHS" => self.paths(source, cursor)?,
+            "PATHS" => self.places.add_aliases(source, cursor)?,
             "FAULTS" | "MULTFLT" | "ADDZCORN" => self.lists(source, cursor, keyword)?,
             "SPECGRID" | "DIMENS" | "MAPAXES" | "MAPUNITS" | "GRIDUNIT" | "GDORIENT" | "BOX"
             | "MINPV" | "MINPORV" | "GRIDOPTS" => {
@@ -300,7 +305,8 @@ impl Scan<'_> {
         items: &[Item],
     ) -> Result<(), ParseError> {
         let name = keyword.name.as_str();
-        if self.refinement {
+        // A local grid has boxes of its own, and nothing else of what a head says.
+        if self.target != Target::Main && name != "BOX" {
             return Ok(());
         }
         let placed = |mistake| source.mistake(name, mistake);
@@ -370,6 +376,12 @@ impl Scan<'_> {
         keyword: &Keyword,
     ) -> Result<(), ParseError> {
         let name = keyword.name.as_str();
+        if self.target != Target::Main {
+            let message = format!("{name} of local grids is not read");
+            self.warn(source, keyword.at, &message);
+            skip_records(cursor, name).map_err(|mistake| source.mistake(name, mistake))?;
+            return Ok(());
+        }
         let placed = |mistake| source.mistake(name, mistake);
         let place = |at| Place {
             source: Rc::clone(source),
@@ -440,9 +452,6 @@ impl Scan<'_> {
         })?;
         cursor.at = line_end(cursor.text, end);
         let block = self.block(source, keyword, end);
-        if self.refinement {
-            return Ok(());
-        }
         self.keep(block, self.input_box);
         Ok(())
     }
@@ -451,9 +460,14 @@ impl Scan<'_> {
     pub(super) fn keep(&mut self, block: Block, cells: CellBox) {
         let (source, at, name) = (Rc::clone(&block.source), block.at, block.name.clone());
         let place = match name.as_str() {
-            "COORD" => &mut self.found.coord,
-            "ZCORN" => &mut self.found.zcorn,
-            _ => return self.found.edits.push(Edit::Given(block, cells)),
+            "COORD" if self.target == Target::Main => &mut self.found.coord,
+            "ZCORN" if self.target == Target::Main => &mut self.found.zcorn,
+            _ => {
+                if let Some(edits) = self.edits() {
+                    edits.push(Edit::Given(block, cells));
+                }
+                return;
+            }
         };
         if place.replace(block).is_some() {
             let message = format!("{name} is given again; the last one is used");
@@ -474,30 +488,37 @@ impl Scan<'_> {
             Skipped::Unended(at) => {
                 self.warn(source, at, &format!("the text behind {name} has no closing / up to the end of the file; it is skipped"));
             }
-            Skipped::OneNumeric(_) if self.refinement => {}
             Skipped::OneNumeric(end) => {
                 let block = self.block(source, keyword, end);
+                let is_main = self.target == Target::Main;
                 match name {
-                    "DXV" | "DYV" | "DZV" | "DRV" | "DTHETAV" | "INRAD" | "OUTRAD" => {
+                    "DXV" | "DYV" | "DZV" | "DRV" | "DTHETAV" | "INRAD" | "OUTRAD" if is_main => {
                         self.found.vectors.push(block);
                     }
-                    _ => self.found.edits.push(Edit::Given(block, self.input_box)),
+                    _ if is_division(name) => self.division(block),
+                    _ => self.keep(block, self.input_box),
                 }
             }
         }
         if let Some(section) = Section::from_keyword(name) {
             self.section = Some(section);
             self.input_box = CellBox::default();
-            self.refinement = false;
+            self.target = Target::Main;
         }
         match name {
-            "RADIAL" | "DR" | "DRV" | "DTHETA" | "DTHETAV" | "INRAD" => self.found.radial = true,
+            "RADIAL" | "DR" | "DRV" | "DTHETA" | "DTHETAV" | "INRAD"
+                if self.target == Target::Main =>
+            {
+                self.found.radial = true;
+            }
             "DUALPORO" if self.section == Some(Section::Runspec) => {
                 self.found.porosity_model = PorosityModel::Dual;
             }
             "DUALPERM" if self.section == Some(Section::Runspec) => {
                 self.found.porosity_model = PorosityModel::DualPermeability;
             }
+            "DPGRID" => self.found.shares_matrix = true,
+            "NODPPM" => self.found.has_effective_fractures = true,
             "EQLZCORN" => self.warn(
                 source,
                 keyword.at,
@@ -506,29 +527,6 @@ impl Scan<'_> {
             _ => {}
         }
         Ok(())
-    }
-
-    fn refine(
-        &mut self,
-        source: &Rc<Source>,
-        cursor: &mut Cursor,
-        keyword: &Keyword,
-    ) -> Result<(), ParseError> {
-        let name = keyword.name.as_str();
-        skip_records(cursor, name).map_err(|mistake| source.mistake(name, mistake))?;
-        self.refinement = name != "ENDFIN";
-        if self.refinement {
-            let message = format!(
-                "{name}: local refinements are not read from text; run the simulator and open the EGRID to see them"
-            );
-            self.warn(source, keyword.at, &message);
-        }
-        Ok(())
-    }
-
-    /// True between the keyword of a local refinement and its end.
-    pub(super) fn in_refinement(&self) -> bool {
-        self.refinement
     }
 
     fn block(&self, source: &Rc<Source>, keyword: &Keyword, end: usize) -> Block {
@@ -541,27 +539,6 @@ impl Scan<'_> {
         }
     }
 
-    fn skip_region(
-        &mut self,
-        source: &Source,
-        cursor: &mut Cursor,
-        skip: &Keyword,
-    ) -> Result<(), ParseError> {
-        while cursor.skip_blank() {
-            let ends = keyword(cursor.text, cursor.at).is_some_and(|found| found.name == "ENDSKIP");
-            cursor.at = line_end(cursor.text, cursor.at);
-            if ends {
-                return Ok(());
-            }
-        }
-        Err(source.error(
-            ErrorKind::Truncated,
-            skip.at,
-            &skip.name,
-            "no ENDSKIP follows in this file",
-        ))
-    }
-
     pub(super) fn warn(&mut self, source: &Source, at: usize, message: &str) {
         self.warnings.push(source.path(), source.at(at), message);
     }
@@ -572,8 +549,29 @@ pub(super) fn product_text([ni, nj, nk]: [usize; 3]) -> String {
     format!("{ni} x {nj} x {nk}")
 }
 
+/// SKIP and its like: moves behind ENDSKIP.
+pub(super) fn skip_region(
+    source: &Source,
+    cursor: &mut Cursor,
+    skip: &Keyword,
+) -> Result<(), ParseError> {
+    while cursor.skip_blank() {
+        let ends = keyword(cursor.text, cursor.at).is_some_and(|found| found.name == "ENDSKIP");
+        cursor.at = line_end(cursor.text, cursor.at);
+        if ends {
+            return Ok(());
+        }
+    }
+    Err(source.error(
+        ErrorKind::Truncated,
+        skip.at,
+        &skip.name,
+        "no ENDSKIP follows in this file",
+    ))
+}
+
 /// The title is the next line with text.
-fn skip_title(cursor: &mut Cursor) {
+pub(super) fn skip_title(cursor: &mut Cursor) {
     if cursor.skip_blank() {
         cursor.at = line_end(cursor.text, cursor.at);
     }

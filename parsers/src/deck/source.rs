@@ -97,8 +97,6 @@ pub(super) struct Places<'f> {
     pub(super) aliases: HashMap<String, String>,
     /// Files that were opened: those included again are held once.
     opened: HashMap<PathBuf, FileBytes>,
-    /// Bytes of files that were opened again.
-    pub(super) again: usize,
 }
 
 impl<'f> Places<'f> {
@@ -109,14 +107,12 @@ impl<'f> Places<'f> {
             root,
             aliases: HashMap::new(),
             opened: HashMap::new(),
-            again: 0,
         }
     }
 
     /// Opens a file that was [found](Self::find).
     pub(super) fn open(&mut self, path: &Path) -> Result<FileBytes, ParseError> {
         if let Some(file) = self.opened.get(path) {
-            self.again = self.again.saturating_add(file.bytes().len());
             return Ok(file.clone());
         }
         let file = self.files.open(path)?;

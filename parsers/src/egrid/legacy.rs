@@ -2,13 +2,14 @@
 //!
 //! DIMENS, MAPUNITS, MAPAXES, GRIDUNIT, then for each cell COORDS (i, j, k from 1, cell number, and where written 1 for
 //! active, host cell, coarse group) and CORNERS (x, y, depth of eight corners, i first, then j, then k), as the
-//! open readers of the format have them (resdata's `rd_grid.cpp`).
+//! open readers of the format have them (resdata's `rd_grid.cpp`). Local grids follow in the same way, each behind LGR
+//! with its name and, where it refines another local grid, the name of that.
 //!
 //! Files may leave out cells. They are inactive here, and of no volume: their corners lie where the nearest cell of
 //! their column ends, or on the upper end of a pillar that no cell has, which is taken from the nearest one.
 
 use super::section::{Section, dimensions};
-use super::{Egrid, MapKeywords, PorosityModel};
+use super::{Egrid, LocalGrid, MapKeywords, PorosityModel, local};
 use crate::error::{At, ErrorKind, ParseError, Warnings};
 use crate::geometry::{Lengths, unaddressable, zeros};
 use crate::records::Entry;
@@ -24,45 +25,18 @@ const OF_VALUE: f32 = 1e-6;
 struct Cell {
     ijk: [usize; 3],
     is_active: bool,
+    /// Number of the cell that it lies in, from 1; 0 in the main grid.
+    host: i32,
     /// x, y and depth of each corner.
     corners: [[f32; 3]; 8],
 }
 
-/// Reads the global grid; local grids, which a section names LGR, are left out with a warning.
+/// Reads the grids of a file.
 pub(super) fn read(global: &Section<'_>, warnings: &mut Warnings) -> Result<Egrid, ParseError> {
-    let file = global.file;
-    let head = global.need_of_legacy("DIMENS")?;
-    let values = file.i32s(head)?;
-    let [ni, nj, nk, ..] = values[..] else {
-        let message = format!("has {} values and needs 3", values.len());
-        return Err(file.error(ErrorKind::WrongCount, head, message));
-    };
-    if let Some(radial) = global.find("RADIAL")
-        && global.string("RADIAL")?.is_some_and(|s| s.starts_with('T'))
-    {
-        let message = "the grid is radial; only Cartesian pillar grids are read from GRID files: have the simulator write an EGRID";
-        return Err(file.error(ErrorKind::Unsupported, radial, message));
-    }
-    let dims = dimensions(file, head, [ni, nj, nk])?;
     let map = MapKeywords::read(global, warnings)?;
-    let cells = cells(global, dims)?;
-    let pillars = Pillars::new(global, head, dims, &cells)?;
-    let local = file.entries().iter().filter(|e| e.name() == "LGR").count();
-    if local > 0 {
-        let message =
-            format!("{local} local grids were left out: they are read from EGRID files alone");
-        warnings.push(file.path(), At::File, message);
-    }
-    let total = pillars.zcorn.len() / 8;
-    if cells.len() < total {
-        let message = format!(
-            "{} of {total} cells are not in the file: they are inactive, without volume",
-            total - cells.len()
-        );
-        warnings.push(file.path(), At::File, message);
-    }
+    let (pillars, _) = grid(global, "", warnings)?;
     Ok(Egrid {
-        dims,
+        dims: pillars.dims,
         coord: pillars.coord,
         zcorn: pillars.zcorn,
         actnum: Some(pillars.actnum),
@@ -73,8 +47,86 @@ pub(super) fn read(global: &Section<'_>, warnings: &mut Warnings) -> Result<Egri
         porosity_model: PorosityModel::Single,
         nnc: Vec::new(),
         local_nnc: Vec::new(),
-        local_grids: Vec::new(),
+        reservoirs: Vec::new(),
+        local_grids: local::read(global.file, warnings, local_grid),
     })
+}
+
+/// A local grid; `number` is its place among those of the file, from 1.
+fn local_grid(
+    section: &Section<'_>,
+    number: i32,
+    warnings: &mut Warnings,
+) -> Result<LocalGrid, ParseError> {
+    let names = section.find("LGR").map(|e| section.file.strings(e));
+    let mut names = names.transpose()?.unwrap_or_default().into_iter();
+    let [name, parent] = [(); 2].map(|()| names.next().unwrap_or_default());
+    let (pillars, cells) = grid(section, &format!(" of local grid {name}"), warnings)?;
+    let mut host = vec![0; pillars.actnum.len()];
+    for cell in &cells {
+        host[pillars.cell(cell.ijk)] = cell.host;
+    }
+    if cells.iter().any(|cell| cell.host < 1) {
+        let head = section.need_of_legacy("COORDS")?;
+        let message = "names no host cell (its sixth value)";
+        return Err(section.file.error(ErrorKind::BadValue, head, message));
+    }
+    // Cells that the file leaves out are without volume: any host will do.
+    let mut last = cells.first().map_or(0, |cell| cell.host);
+    for host in &mut host {
+        match *host {
+            0 => *host = last,
+            known => last = known,
+        }
+    }
+    Ok(LocalGrid {
+        name,
+        parent: Some(parent)
+            .filter(|parent| parent != "GLOBAL")
+            .unwrap_or_default(),
+        number,
+        dims: pillars.dims,
+        coord: pillars.coord,
+        zcorn: pillars.zcorn,
+        actnum: Some(pillars.actnum),
+        host,
+        ..LocalGrid::default()
+    })
+}
+
+/// The pillars of a grid and the cells that its section has; `of` names it in warnings.
+fn grid(
+    section: &Section<'_>,
+    of: &str,
+    warnings: &mut Warnings,
+) -> Result<(Pillars, Vec<Cell>), ParseError> {
+    let file = section.file;
+    let head = section.need_of_legacy("DIMENS")?;
+    let values = file.i32s(head)?;
+    let [ni, nj, nk, ..] = values[..] else {
+        let message = format!("has {} values and needs 3", values.len());
+        return Err(file.error(ErrorKind::WrongCount, head, message));
+    };
+    if let Some(radial) = section.find("RADIAL")
+        && section
+            .string("RADIAL")?
+            .is_some_and(|s| s.starts_with('T'))
+    {
+        let message = "the grid is radial; only Cartesian pillar grids are read from GRID files: have the simulator write an EGRID";
+        return Err(file.error(ErrorKind::Unsupported, radial, message));
+    }
+    let dims = dimensions(file, head, [ni, nj, nk])?;
+    let cells = cells(section, dims)?;
+    let pillars = Pillars::new(section, head, dims, &cells)?;
+    let total = pillars.actnum.len();
+    if cells.len() < total {
+        let message = format!(
+            "{} of {total} cells{of} are not in the file: they are inactive, without volume",
+            total - cells.len()
+        );
+        warnings.push(file.path(), At::File, message);
+    }
+    Ok((pillars, cells))
 }
 
 impl<'a> Section<'a> {
@@ -120,6 +172,7 @@ fn cells(global: &Section<'_>, dims: [usize; 3]) -> Result<Vec<Cell>, ParseError
         cells.push(Cell {
             ijk: place.map(|n| n - 1),
             is_active: values.get(4).is_none_or(|active| *active != 0),
+            host: values.get(5).copied().unwrap_or(0),
             corners: std::array::from_fn(|c| std::array::from_fn(|n| corners[3 * c + n])),
         });
     }

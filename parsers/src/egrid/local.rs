@@ -4,9 +4,9 @@ use super::section::Section;
 use crate::error::{ParseError, Warnings};
 use crate::records::RecordFile;
 
-/// A local grid: sections from LGR to ENDLGR.
+/// A local grid: sections from LGR to ENDLGR, or what a deck makes of CARFIN with coordinates in f64.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct LocalGrid {
+pub struct LocalGrid<T = f32> {
     /// Name.
     pub name: String,
     /// Name of the grid it refines; empty for the global grid.
@@ -18,11 +18,11 @@ pub struct LocalGrid {
     /// **Shape**: 6 values per pillar: x, y, depth of the upper, then of the lower end. In a radial grid x is the
     /// radius, and y the angle in degrees; where it goes around, the first and the last angle are the same place.
     /// Several coordinate systems follow each other.
-    pub coord: Vec<f32>,
+    pub coord: Vec<T>,
     /// COORDSYS: six values for each coordinate system, of which the first two are its layers, from 1.
     pub coord_systems: Option<Vec<i32>>,
     /// **Shape**: 8 depths per cell, as [`super::Egrid::zcorn`].
-    pub zcorn: Vec<f32>,
+    pub zcorn: Vec<T>,
     /// One value per cell, as [`super::Egrid::actnum`].
     pub actnum: Option<Vec<i32>>,
     /// HOSTNUM: for each cell the number of the parent's cell that it lies in, from 1; empty where it is not written.
@@ -36,6 +36,25 @@ pub struct LocalGrid {
 }
 
 impl LocalGrid {
+    /// The same with coordinates in f64.
+    pub fn widened(self) -> LocalGrid<f64> {
+        let wide = |values: Vec<f32>| values.into_iter().map(f64::from).collect();
+        LocalGrid {
+            coord: wide(self.coord),
+            zcorn: wide(self.zcorn),
+            name: self.name,
+            parent: self.parent,
+            number: self.number,
+            dims: self.dims,
+            coord_systems: self.coord_systems,
+            actnum: self.actnum,
+            host: self.host,
+            host_box: self.host_box,
+            boxes: self.boxes,
+            is_radial: self.is_radial,
+        }
+    }
+
     /// Number of active cells.
     pub fn active(&self) -> usize {
         match &self.actnum {
@@ -45,11 +64,14 @@ impl LocalGrid {
     }
 }
 
+/// What makes a local grid of its section, and of its number in the file, from 1.
+pub(super) type Reader = fn(&Section<'_>, i32, &mut Warnings) -> Result<LocalGrid, ParseError>;
+
 /// The local grids of a file; one that is damaged is left out with a warning.
-pub(super) fn read(file: &RecordFile, warnings: &mut Warnings) -> Vec<LocalGrid> {
+pub(super) fn read(file: &RecordFile, warnings: &mut Warnings, reader: Reader) -> Vec<LocalGrid> {
     let mut grids: Vec<LocalGrid> = Vec::new();
-    for (n, section) in sections(file).enumerate() {
-        match grid(&section, n) {
+    for (section, number) in sections(file).zip(1..) {
+        match reader(&section, number, warnings) {
             Ok(grid) => grids.push(grid),
             Err(error) => {
                 let keyword = match error.keyword.as_str() {
@@ -78,14 +100,18 @@ fn sections(file: &RecordFile) -> impl Iterator<Item = Section<'_>> {
     })
 }
 
-fn grid(section: &Section<'_>, index: usize) -> Result<LocalGrid, ParseError> {
+/// A local grid of EGRID.
+pub(super) fn grid(
+    section: &Section<'_>,
+    counted: i32,
+    _warnings: &mut Warnings,
+) -> Result<LocalGrid, ParseError> {
     let head = section.head()?;
     let geometry = section.geometry(head.dims)?;
     let integers = |name: &str| {
         let entry = section.find(name);
         entry.map(|e| section.file.i32s(e)).transpose()
     };
-    let counted = i32::try_from(index + 1).unwrap_or(i32::MAX);
     let host = section.of_cells("HOSTNUM", geometry.zcorn.len() / 8)?;
     Ok(LocalGrid {
         name: section.string("LGR")?.unwrap_or_default(),

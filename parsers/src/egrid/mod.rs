@@ -1,6 +1,6 @@
 //! EGRID, and the legacy GRID: the geometry of a case, as written.
 //!
-//! Keywords: FILEHEAD, MAPUNITS, MAPAXES, GRIDUNIT, GRIDHEAD, COORD, ZCORN, ACTNUM, CORSNUM; sections of local grids
+//! Keywords: FILEHEAD, MAPUNITS, MAPAXES, GRIDUNIT, GRIDHEAD, COORD, COORDSYS, ZCORN, ACTNUM, CORSNUM; sections of local grids
 //! start at LGR and end at ENDLGR; then connections, NNCHEAD and NNCHEADA with what follows them. The README lists
 //! what is skipped.
 
@@ -10,13 +10,14 @@ mod local;
 mod section;
 mod write;
 
+use std::ops::Range;
 use std::path::Path;
 
 use crate::bytes::FileBytes;
-use crate::error::{At, ParseError, Warnings};
+use crate::error::{At, ErrorKind, ParseError, Warnings};
 use crate::radial;
 use crate::records::{Entry, RecordFile};
-use section::Section;
+use section::{Head, Section};
 
 pub use connections::GridConnections;
 pub use local::LocalGrid;
@@ -42,14 +43,24 @@ pub enum PorosityModel {
     DualPermeability,
 }
 
+/// Layers of the global grid on a further coordinate system.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Reservoir {
+    /// The layers, from 0.
+    pub layers: Range<usize>,
+    /// Their pillars, in the shape of [`Egrid::coord`].
+    pub coord: Vec<f32>,
+}
+
 /// The grids of an EGRID file: the global one, and the local ones within it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Egrid {
     /// Cells along i, j and k.
     pub dims: [usize; 3],
-    /// **Shape**: 6 values per pillar: x, y, depth of the upper, then of the lower end. Radii and angles of a radial
-    /// grid are made into x and y, around the origin. As the file has them: a damaged one may be no finite number, here
-    /// and in `zcorn`.
+    /// **Shape**: 6 values per pillar: x, y, depth of the upper, then of the lower end; for all layers but those of
+    /// [`Self::reservoirs`]. Radii and angles of a radial
+    /// grid are made into x and y, around the origin. As the file has
+    /// them: a damaged one may be no finite number, here and in `zcorn`.
     pub coord: Vec<f32>,
     /// **Shape**: 8 depths per cell, index `2i+di + 2ni(2j+dj) + 4ni*nj(2k+dk)`.
     pub zcorn: Vec<f32>,
@@ -67,6 +78,8 @@ pub struct Egrid {
     pub porosity_model: PorosityModel,
     /// Non-neighbor connections of the global grid: cell numbers from 1.
     pub nnc: Vec<[i32; 2]>,
+    /// Layers that have pillars of their own (NUMRES above 1).
+    pub reservoirs: Vec<Reservoir>,
     /// Connections within a local grid, to the global one, or from one local grid to another.
     pub local_nnc: Vec<GridConnections>,
     /// Local grids, nested ones too, in the order of the file.
@@ -111,12 +124,13 @@ impl Egrid {
         let head = global.head()?;
         let geometry = global.geometry(head.dims)?;
         let mut coord = geometry.coord;
+        let mut reservoirs = Vec::new();
         if coord.len() > geometry.pillars {
-            warnings.push(
-                file.path(),
-                At::File,
-                "COORD has several coordinate reservoirs; the first is used for all layers",
-            );
+            reservoirs = further_systems(&global, &head, &coord[geometry.pillars..])?;
+            if reservoirs.is_empty() {
+                let note = "COORD has several coordinate systems (NUMRES), and no COORDSYS of a Cartesian grid says which layers are theirs; the first is used for all layers";
+                warnings.push(file.path(), At::File, note);
+            }
             coord.truncate(geometry.pillars);
         }
         if head.is_radial {
@@ -133,7 +147,7 @@ impl Egrid {
             PorosityModel::Single => cells,
             _ => cells.saturating_mul(2),
         };
-        let local_grids = local::read(file, warnings);
+        let local_grids = local::read(file, warnings, local::grid);
         let sizes = local_grids.iter().map(|g| (g.number, g.zcorn.len() / 8));
         let sizes: Vec<_> = [(0, cells)].into_iter().chain(sizes).collect();
         let sizes: Vec<_> = sizes.into_iter().map(|(n, c)| (n, numbered(c))).collect();
@@ -149,10 +163,42 @@ impl Egrid {
             grid_unit: map.grid_unit,
             porosity_model,
             nnc,
+            reservoirs,
             local_nnc,
             local_grids,
         })
     }
+}
+
+/// The coordinate systems behind the first one, whose pillars `coord` has one set after the other; none where it is not
+/// said which layers they are for. COORDSYS has six numbers for each system, of which the first two are its layers.
+fn further_systems(
+    global: &Section<'_>,
+    head: &Head,
+    coord: &[f32],
+) -> Result<Vec<Reservoir>, ParseError> {
+    let Some(entry) = global.find("COORDSYS").filter(|_| !head.is_radial) else {
+        return Ok(Vec::new());
+    };
+    let [ni, nj, nk] = head.dims;
+    let systems = global.file.i32s(entry)?;
+    let systems = systems.as_chunks::<6>().0.iter().skip(1);
+    let pillars = coord.chunks_exact(6 * (ni + 1) * (nj + 1));
+    if systems.len() != pillars.len() {
+        return Ok(Vec::new());
+    }
+    let reservoir = |([first, last, ..], coord): (&[i32; 6], &[f32])| {
+        let [first, last] = [first, last].map(|layer| usize::try_from(*layer).unwrap_or(0));
+        (1 <= first && first <= last && last <= nk).then(|| Reservoir {
+            layers: first - 1..last,
+            coord: coord.to_vec(),
+        })
+    };
+    let all: Option<Vec<_>> = systems.zip(pillars).map(reservoir).collect();
+    all.ok_or_else(|| {
+        let message = format!("names layers outside of the grid, which has {nk}");
+        global.file.error(ErrorKind::BadValue, entry, message)
+    })
 }
 
 /// MAPUNITS, MAPAXES and GRIDUNIT.

@@ -1,6 +1,7 @@
 //! Writing an EGRID file.
 
 use std::io::{self, Write};
+use std::ops::Range;
 
 use super::{Egrid, PorosityModel};
 use crate::geometry;
@@ -55,10 +56,16 @@ impl Egrid {
         }
         let mut head = vec![0; HEAD_ITEMS];
         head[..4].copy_from_slice(&[1, ni, nj, nk]);
-        // One coordinate system of one segment.
-        head[24..26].fill(1);
+        // Coordinate systems, of one segment.
+        head[24] = 1 + self.reservoirs.len() as i32;
+        head[25] = 1;
         out.inte("GRIDHEAD", &head)?;
-        out.real("COORD", &self.coord)?;
+        let further = self.reservoirs.iter().flat_map(|r| &r.coord);
+        let coord: Vec<f32> = self.coord.iter().chain(further).copied().collect();
+        out.real("COORD", &coord)?;
+        if !self.reservoirs.is_empty() {
+            out.inte("COORDSYS", &self.coord_systems()?)?;
+        }
         out.real("ZCORN", &self.zcorn)?;
         if let Some(actnum) = actnum {
             out.inte("ACTNUM", actnum)?;
@@ -74,6 +81,28 @@ impl Egrid {
             out.inte("NNC2", &side(1))?;
         }
         Ok(())
+    }
+}
+
+impl Egrid {
+    /// COORDSYS: six numbers for each coordinate system, its layers from 1 first. The first one has the layers before
+    /// those of the others.
+    fn coord_systems(&self) -> io::Result<Vec<i32>> {
+        let nk = self.dims[2];
+        let first = self.reservoirs.iter().map(|r| r.layers.start).min();
+        let mut systems = vec![0; 6 * (1 + self.reservoirs.len())];
+        systems[..2].copy_from_slice(&[1, first.unwrap_or(nk) as i32]);
+        for (system, reservoir) in systems.chunks_mut(6).skip(1).zip(&self.reservoirs) {
+            let Range { start, end } = reservoir.layers;
+            let is_whole = reservoir.coord.len() == self.coord.len();
+            if start >= end || end > nk || !is_whole {
+                return Err(refused(
+                    "a reservoir has no layers, or other pillars".into(),
+                ));
+            }
+            system[..2].copy_from_slice(&[start as i32 + 1, end as i32]);
+        }
+        Ok(systems)
     }
 }
 

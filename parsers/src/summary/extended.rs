@@ -2,7 +2,7 @@
 //! key for each vector, UNITS, RSTEP (numbers of reports, 0 between them), TSTEP, then V0, V1 and so on.
 
 use super::vector::from_key;
-use super::{Summary, TimeStep, Values, start};
+use super::{Summary, TimeStep, Values, restart, start};
 use crate::error::{At, ErrorKind, ParseError, Warnings};
 use crate::records::{Entry, RecordFile};
 
@@ -51,6 +51,7 @@ pub(super) fn read(file: RecordFile, warnings: &mut Warnings) -> Result<Summary,
         start: start(&file, "START", |[minute, second]| 60.0 * minute + second)?,
         dims: [0; 3],
         units: None,
+        restart: restart(&file)?,
         values: Values::ByVector(file, entries),
     };
     let path = match &summary.values {

@@ -2,7 +2,7 @@
 //!
 //! SMSPEC says what the vectors are (KEYWORDS, WGNAMES or NAMES, NUMS, UNITS, and LGRS with NUMLX, NUMLY, NUMLZ for
 //! local grids), UNSMRY or one file per report (S0001, ...) has all of their values at a time step in each PARAMS.
-//! ESMRY, as OPM Flow writes it, has an array for each vector instead. Formatted twins are read alike. A vector is
+//! RESTART names the run that one goes on from, which is not opened here. ESMRY, as OPM Flow writes it, has an array for each vector instead. Formatted twins are read alike. A vector is
 //! decoded when asked for, without the others.
 //!
 //! ```
@@ -59,6 +59,8 @@ pub struct Summary {
     pub dims: [i32; 3],
     /// Unit system, where it is known.
     pub units: Option<UnitSystem>,
+    /// RESTART: the run that this one goes on from, as a path without an ending; `None` of one from the start.
+    pub restart: Option<String>,
     values: Values,
 }
 
@@ -168,6 +170,7 @@ impl Summary {
             })?,
             dims: names.dims,
             units: names.units_of_case,
+            restart: restart(&spec)?,
             values: Values::ByStep(files.into_iter().map(|(_, file)| file).collect(), params),
         };
         let days = summary.days(spec.path())?;
@@ -287,6 +290,17 @@ fn params(
             Ok((params, steps))
         }
     }
+}
+
+/// The run that another one goes on from; its path stands in strings of eight letters each.
+fn restart(file: &RecordFile) -> Result<Option<String>, ParseError> {
+    let Some(entry) = file.find("RESTART") else {
+        return Ok(None);
+    };
+    let parts = file.strings(entry)?;
+    // Blanks at the end of a part are in the path where another one follows.
+    let whole: String = parts.iter().map(|part| format!("{part:<8}")).collect();
+    Ok(Some(whole.trim().to_owned()).filter(|path| !path.is_empty()))
 }
 
 /// Days since 1970 of an array of day, month, year, hour, and what `seconds` makes seconds of: the next two items.

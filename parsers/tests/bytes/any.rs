@@ -11,13 +11,14 @@ use strataray_parsers::deck::{DeckWriter, Grdecl, GridText, MemoryFiles};
 use strataray_parsers::egrid::{Egrid, PorosityModel};
 use strataray_parsers::records::{RecordFile, RecordWriter};
 use strataray_parsers::restart::{self, RestartWriter};
+use strataray_parsers::wells::Well;
 use strataray_parsers::{Warnings, init};
 
 use super::fixtures::cell;
 use super::properties::{BINARY_HEAD, LEGACY_HEAD, READERS, TEXT_HEAD, behind, holds};
 
 /// Text that means something to a reader, so that bytes get beyond the first check.
-const WORDS: [&str; 48] = [
+const WORDS: [&str; 64] = [
     "SPECGRID\n",
     "DIMENS\n",
     "COORD\n",
@@ -35,6 +36,12 @@ const WORDS: [&str; 48] = [
     "EDIT\n",
     "RUNSPEC\n",
     "DUALPORO\n",
+    "DPGRID\n",
+    "CARFIN\n",
+    "L 6*1 2 2 2 /\n",
+    "NXFIN\n",
+    "REFINE\n",
+    "ENDFIN\n",
     "RADIAL\n",
     "INRAD\n",
     "DRV\n",
@@ -66,7 +73,79 @@ const WORDS: [&str; 48] = [
     " 'PORO    '           2 'REAL'\n",
     " 'INTEHEAD'           1 'INTE'\n",
     "\r",
+    "WELSPECS\n",
+    "COMPDAT\n",
+    "WELOPEN\n",
+    "DATES\n",
+    "TSTEP\n",
+    "WLIST\n",
+    "'P*' ",
+    "1 JAN 2020 ",
+    "WELLNAME: A\n",
+    "1 2 3\n4 5 6\n",
 ];
+
+/// Lines and pieces of the headers of volumes.
+const VOLUME_WORDS: [&str; 52] = [
+    "NRRD0005\n",
+    "type: uint8\n",
+    "type: float\n",
+    "endian: big\n",
+    "dimension: 3\n",
+    "dimension: 4\n",
+    "sizes: 2 1 2\n",
+    "sizes: 3 2 1 2\n",
+    "sizes: 99999999999 9999999999 1\n",
+    "sizes: 0 1 1\n",
+    "kinds: vector domain domain domain\n",
+    "space directions: (1,0,0) (0,1,0) (0,0,1)\n",
+    "space directions: none (0,1,0) (0,0,1) (1\n",
+    "space origin: (1,2,3)\n",
+    "axis mins: 1 2 nan\n",
+    "spacings: 1 nan 3\n",
+    "centerings: cell cell cell\n",
+    "encoding: raw\n",
+    "encoding: gzip\n",
+    "encoding: ascii\n",
+    "byte skip: -1\n",
+    "byte skip: 18446744073709551615\n",
+    "line skip: 1\n",
+    "line skip: 9223372036854775807\n",
+    "data file: LIST\n",
+    "data file: a%03d 1 9999999999 1\n",
+    "\n",
+    "1 2 3 4 ",
+    "NDims = 3\n",
+    "DimSize = 2 1 2\n",
+    "ElementType = MET_UCHAR\n",
+    "ElementNumberOfChannels = 2\n",
+    "ElementSpacing = 1 0 inf\n",
+    "TransformMatrix = 1 0 0 0 1 0 0 0 1\n",
+    "BinaryData = False\n",
+    "CompressedData = True\n",
+    "HeaderSize = -1\n",
+    "ElementDataFile = LOCAL\n",
+    "ElementDataFile = LIST\n",
+    "<VTKFile type=\"ImageData\" header_type=\"UInt64\">",
+    "<VTKFile type=\"ImageData\" compressor=\"vtkZLibDataCompressor\">",
+    "<ImageData WholeExtent=\"0 1 0 0 0 1\">",
+    "<ImageData WholeExtent=\"-1e300 1e300 0 1 0 1\">",
+    "<PointData><DataArray type=\"UInt8\" format=\"appended\" offset=\"0\"/></PointData>",
+    "<PointData><DataArray type=\"UInt8\" format=\"appended\" offset=\"18446744073709551615\"/>",
+    "<CellData><DataArray type=\"UInt8\" format=\"ascii\">",
+    "<CellData><DataArray type=\"UInt8\" format=\"binary\">",
+    "<AppendedData encoding=\"raw\">_",
+    "<AppendedData encoding=\"base64\">_",
+    "AQAAAAIAAAAAAAAACgAAAA==",
+    "<!-- ",
+    "{\"size\": [1, 1, 4], \"type\": \"u8\", \"file\": \"A\"}",
+];
+
+fn volume_words() -> impl Strategy<Value = Vec<u8>> {
+    let words = vec(select(&VOLUME_WORDS[..]), 0..16);
+    (words, vec(any::<u8>(), 0..100))
+        .prop_map(|(words, bytes)| [words.concat().into_bytes(), bytes].concat())
+}
 
 fn words() -> impl Strategy<Value = Vec<u8>> {
     vec(select(&WORDS[..]), 0..60).prop_map(|words| words.concat().into_bytes())
@@ -139,6 +218,23 @@ proptest! {
         // Behind a grid, what is done to it is reached.
         let grid = super::fixtures::rich_deck().into_bytes();
         holds(super::properties::deck, [grid, text].concat());
+    }
+
+    #[test]
+    fn no_headers_of_volumes_make_a_reader_panic(text in volume_words(), bytes in vec(any::<u8>(), 0..400)) {
+        holds(super::properties::volume, text.clone());
+        for (_, head) in super::fixtures::images([2, 1, 2]) {
+            // Beginning as an image does, and going on with anything.
+            let start = text.len() * 7 % head.len();
+            holds(super::properties::volume, [&head[..start], &text].concat());
+        }
+        // Words of the binary header and of the first trace.
+        let mut survey = super::fixtures::segy(4);
+        for pair in bytes.chunks_exact(2) {
+            let at = 3200 + usize::from(pair[0]) * 5 / 2;
+            survey[at] = pair[1];
+        }
+        holds(super::properties::segy, survey);
     }
 
     #[test]
@@ -263,7 +359,7 @@ proptest! {
         let mut out = RestartWriter::new(Vec::new());
         for (report, days) in &steps {
             let pressure = [("PRESSURE", values.clone())];
-            out.step(*report, *days, &head, &["P1"], pressure).unwrap();
+            out.step(*report, *days, &head, &[Well::named("P1")], pressure).unwrap();
         }
         let bytes = out.finish().unwrap();
         let read = restart::unified_from_bytes(("A.UNRST", bytes), &mut Warnings::default()).unwrap();

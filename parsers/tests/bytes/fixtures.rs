@@ -5,6 +5,10 @@ use strataray_parsers::egrid::{Egrid, GridUnit, PorosityModel};
 use strataray_parsers::init;
 use strataray_parsers::records::{Kind, RecordFile, RecordWriter};
 use strataray_parsers::restart::RestartWriter;
+use strataray_parsers::volume::{
+    ByteOrder, Contents, Lattice, SampleType, SegyLayout, SegyWriter, metaimage, nrrd, vti,
+};
+use strataray_parsers::wells::Well;
 
 /// A deck of one cell, with its corners at depths 0 and 1.
 pub const CELL: &str = "SPECGRID\n1 1 1 1 F /\nCOORD\n0 0 0 0 0 1  1 0 0 1 0 1  0 1 0 0 1 1  1 1 0 1 1 1 /\nZCORN\n4*0 4*1 /\n";
@@ -27,6 +31,7 @@ pub fn cell() -> Egrid {
         porosity_model: PorosityModel::Single,
         nnc: Vec::new(),
         local_nnc: Vec::new(),
+        reservoirs: Vec::new(),
         local_grids: Vec::new(),
     }
 }
@@ -258,7 +263,7 @@ pub fn restart(reports: [u32; 2]) -> Vec<u8> {
     for report in reports {
         let pressure = [("PRESSURE", vec![100.0 + report as f32])];
         let days = f64::from(report);
-        let wells = ["P1", "I2"];
+        let wells = ["P1", "I2"].map(Well::named);
         writer
             .step(report, days, &head(), &wells, pressure)
             .unwrap();
@@ -285,3 +290,133 @@ pub fn rich_deck() -> String {
 
 /// The file that [`rich_deck`] includes.
 pub const PORO: &str = "PORO\n 12*0.25 / of all cells\n";
+
+/// Wells of a cell grid, over two dates.
+pub const SCHEDULE: &str = "START
+ 1 JAN 2020 /
+SCHEDULE
+WELSPECS
+ 'P1' 'G' 1 1 1* OIL /
+ 'I1' 'G' 2 2 1* WATER /
+/
+COMPDAT
+ 'P1' 2* 1 2 OPEN 3* 0.3 3* X /
+ 'I1' 2 2 1 1 SHUT /
+/
+WCONPROD
+ 'P*' OPEN ORAT 100 /
+/
+DATES
+ 1 FEB 2020 /
+/
+WCONINJE
+ I1 WATER OPEN RATE 50 /
+/
+WELOPEN
+ P1 SHUT /
+ I1 OPEN 2 2 1 /
+/
+TSTEP
+ 28 31 /
+";
+
+/// Paths of two wells, with names and columns.
+pub const PATHS: &str = "# two wells
+X Y TVD MD
+WELLNAME: A-1
+6507.1 725 2542 2590
+6523.5 757 2549 2626.6
+-999
+'B 2'
+550.7, 1020.2, 2410, 2410
+551, 1004.1, 2422.2, 2430.2
+555.2, 993.9, 2425, 2441.6
+";
+
+/// A well of RMS with two logs.
+pub const RMS_WELL: &str = "1.0
+Undefined
+A 1 461499.9 5932000.1 25.5
+2
+MD UNK lin
+Facies DISC 0 Shale 1 Sand
+461499.9 5932000.1 1000 1025.5 0
+461500.9 5932001.1 1100 1127.5 1
+";
+
+/// A path as ResInsight writes it.
+pub const JSON_PATH: &str = r#"{"name": "A-1", "path": [
+ {"x": 1, "y": 2, "z": 3, "md": 4},
+ {"x": 1.5, "y": 2.5, "z": 30, "md": 34}
+]}"#;
+
+/// Images of `dims` samples: raw and compressed, in each format.
+pub fn images(dims: [usize; 3]) -> Vec<(&'static str, Vec<u8>)> {
+    let contents = Contents {
+        lattice: Lattice::straight(dims, [10.0, 20.0, 30.0], [1.0, 2.0, 4.0]),
+        sample: SampleType::I16,
+        byte_order: ByteOrder::Little,
+        name: "density".into(),
+    };
+    let count = contents.lattice.samples();
+    let values = || (0..count).map(|n| (n % 1000) as f64);
+    let text = |bytes: Vec<u8>| {
+        let head = String::from_utf8_lossy(&bytes).into_owned();
+        let head = head
+            .split("\n\n")
+            .next()
+            .unwrap()
+            .replace("encoding: raw", "encoding: ascii");
+        let numbers: String = values().map(|v| format!("{v} ")).collect();
+        format!("{head}\n\n{numbers}").into_bytes()
+    };
+    let plain = nrrd::write(Vec::new(), &contents, false, values()).unwrap();
+    vec![
+        ("text.nrrd", text(plain.clone())),
+        ("plain.nrrd", plain),
+        (
+            "packed.nrrd",
+            nrrd::write(Vec::new(), &contents, true, values()).unwrap(),
+        ),
+        (
+            "plain.mha",
+            metaimage::write(Vec::new(), &contents, false, values()).unwrap(),
+        ),
+        (
+            "packed.mha",
+            metaimage::write(Vec::new(), &contents, true, values()).unwrap(),
+        ),
+        (
+            "plain.vti",
+            vti::write(Vec::new(), &contents, values()).unwrap(),
+        ),
+        ("base64.vti", VTI.into()),
+    ]
+}
+
+/// An image of two samples, compressed and in base64.
+pub const VTI: &str = "<VTKFile type=\"ImageData\" byte_order=\"LittleEndian\" compressor=\"vtkZLibDataCompressor\">\n\
+     <ImageData WholeExtent=\"0 1 0 0 0 0\" Spacing=\"1 1 1\" Origin=\"0 0 0\"><Piece><PointData>\n\
+     <DataArray type=\"UInt8\" Name=\"a\" format=\"binary\">\n\
+     AQAAAAIAAAAAAAAACgAAAA==eJxjZAIAAAYABA==\n</DataArray></PointData></Piece></ImageData></VTKFile>\n";
+
+/// Traces of two inlines and three crosslines, without the last one.
+pub fn segy(samples: usize) -> Vec<u8> {
+    let layout = SegyLayout {
+        sample: SampleType::F32,
+        byte_order: ByteOrder::Big,
+        samples,
+        interval: 4.0,
+        delay: 0,
+        text: "a survey".into(),
+    };
+    let mut out = SegyWriter::new(Vec::new(), layout).unwrap();
+    for n in 0..5_u8 {
+        let (i, j) = (n / 3, n % 3);
+        let place = [1000.0 + 20.0 * f64::from(i), 2000.0 + 25.0 * f64::from(j)];
+        let trace: Vec<f32> = (0..samples).map(|k| k as f32 + f32::from(n)).collect();
+        out.trace(i32::from(i) + 10, i32::from(j) + 20, place, &trace)
+            .unwrap();
+    }
+    out.finish().unwrap()
+}

@@ -132,6 +132,31 @@ fn mutated_roff() {
 }
 
 #[test]
+fn mutated_schedules_and_paths() {
+    mutate(16, fixtures::SCHEDULE.as_bytes(), properties::schedule);
+    for (seed, text) in [
+        (17, fixtures::PATHS),
+        (18, fixtures::RMS_WELL),
+        (19, fixtures::JSON_PATH),
+    ] {
+        mutate(seed, text.as_bytes(), properties::paths);
+    }
+}
+
+#[test]
+fn mutated_volumes() {
+    for (n, (_, bytes)) in fixtures::images([3, 2, 2]).into_iter().enumerate() {
+        mutate(20 + n as u64, &bytes, properties::volume);
+    }
+    let bytes = fixtures::segy(4);
+    mutate(30, &bytes, properties::segy);
+    // Without the text header more of the changes are of what means something.
+    mutate(31, &bytes[3200..], |bytes| {
+        properties::segy([vec![0x40; 3200], bytes].concat())
+    });
+}
+
+#[test]
 fn mutated_records() {
     mutate(5, &fixtures::records(), properties::records);
 }

@@ -4,12 +4,15 @@
 
 use std::path::Path;
 
-use strataray_parsers::deck::{DeckCells, Grdecl, MemoryFiles};
-use strataray_parsers::egrid::Egrid;
+use strataray_parsers::deck::{DeckCells, Grdecl, MemoryFiles, Schedule};
+use strataray_parsers::egrid::{Egrid, PorosityModel};
 use strataray_parsers::records::{Kind, RecordFile};
 use strataray_parsers::roff::RoffFile;
 use strataray_parsers::summary::Summary;
-use strataray_parsers::{ErrorKind, ParseError, Warnings, init, restart, wells};
+use strataray_parsers::volume::{self, Options};
+use strataray_parsers::{
+    ErrorKind, ParseError, Warnings, init, paths as well_paths, restart, wells,
+};
 
 /// The name of the file in errors.
 const NAME: &str = "ANY.FILE";
@@ -18,7 +21,7 @@ const NAME: &str = "ANY.FILE";
 pub type Reader = fn(Vec<u8>) -> Result<(), ParseError>;
 
 /// All readers, by the names of their fuzz targets.
-pub const READERS: [(&str, Reader); 9] = [
+pub const READERS: [(&str, Reader); 13] = [
     ("records", records),
     ("egrid", egrid),
     ("init", init),
@@ -28,6 +31,10 @@ pub const READERS: [(&str, Reader); 9] = [
     ("esmry", esmry),
     ("roff", roff),
     ("deck", deck),
+    ("schedule", schedule),
+    ("paths", paths),
+    ("volume", volume),
+    ("segy", segy),
 ];
 
 /// What makes a file binary, formatted, or a legacy grid: bytes behind it reach the reader of that form.
@@ -201,10 +208,83 @@ pub fn deck(bytes: Vec<u8>) -> Result<(), ParseError> {
     let lengths = [grid.coord.len(), grid.zcorn.len()];
     check_grid(grid.dims, lengths, grid.actnum.as_deref());
     let cells: usize = grid.dims.iter().product();
-    assert!(grid.properties.iter().all(|p| p.values.len() == cells));
+    let lengths = match grid.porosity_model {
+        PorosityModel::Single => vec![cells],
+        _ => vec![cells, 2 * cells],
+    };
+    let mut properties = grid.properties.iter();
+    assert!(properties.all(|p| lengths.contains(&p.values.len())));
+    for local in &grid.local_grids {
+        let (properties, local) = (&local.properties, &local.grid);
+        let lengths = [local.coord.len(), local.zcorn.len()];
+        check_grid(local.dims, lengths, local.actnum.as_deref());
+        let cells: usize = local.dims.iter().product();
+        assert!(properties.iter().all(|p| p.values.len() == cells));
+        assert_eq!(local.host.len(), cells);
+    }
     for fault in &grid.faults {
         let mut ends = [fault.i, fault.j, fault.k].into_iter().zip(grid.dims);
         assert!(ends.all(|([first, last], n)| first <= last && last <= n));
+    }
+    Ok(())
+}
+
+/// The wells of a deck, which may include itself, at its end and before.
+pub fn schedule(bytes: Vec<u8>) -> Result<(), ParseError> {
+    Schedule::begins(&bytes);
+    let files = MemoryFiles::from_iter([(NAME, bytes)]);
+    let mut warnings = Warnings::default();
+    let schedule = Schedule::read_from(&files, &[Path::new(NAME)], None, &mut warnings)?;
+    check_warnings(&warnings);
+    let dims = [3, 2, 2];
+    let at_end = schedule.wells(None, dims);
+    assert!(at_end.len() <= schedule.names.len());
+    assert!(schedule.wells(Some(schedule.end), dims).len() <= at_end.len());
+    for completion in at_end.iter().flat_map(|well| &well.completions) {
+        let mut axes = completion.cell.iter().zip([3, 2, 2]);
+        assert!(axes.all(|(n, most)| (1..=most).contains(n)));
+    }
+    Ok(())
+}
+
+/// Paths of wells.
+pub fn paths(bytes: Vec<u8>) -> Result<(), ParseError> {
+    well_paths::begin(&bytes, true);
+    let mut warnings = Warnings::default();
+    let wells = well_paths::from_bytes((NAME, bytes), &mut warnings)?;
+    check_warnings(&warnings);
+    assert!(!wells.is_empty());
+    for well in wells {
+        assert!(well.points.len() > 1);
+        assert!(well.points.iter().flatten().all(|v| v.is_finite()));
+        assert!(well.measured.is_none_or(|m| m.len() == well.points.len()));
+    }
+    Ok(())
+}
+
+/// A volume by what is in it.
+pub fn volume(bytes: Vec<u8>) -> Result<(), ParseError> {
+    check_volume(NAME, bytes)
+}
+
+/// A volume that is SEG-Y by its name.
+pub fn segy(bytes: Vec<u8>) -> Result<(), ParseError> {
+    check_volume("ANY.FILE.sgy", bytes)
+}
+
+fn check_volume(name: &'static str, bytes: Vec<u8>) -> Result<(), ParseError> {
+    let volume = volume::from_bytes((name, bytes), &Options::default())?;
+    check_warnings(&volume.notes);
+    let lattice = &volume.lattice;
+    assert!(lattice.samples() > 0);
+    assert!(lattice.place([1.0; 3]).iter().all(|v| !v.is_nan()));
+    // A few bytes may be compressed from many, and have many places without a trace.
+    if lattice.samples() / lattice.dims[volume.slow_axis()] > 1 << 20 {
+        return Ok(());
+    }
+    let slabs = || volume.slabs(1 << 14);
+    for slab in slabs().take(3).chain(slabs().last()) {
+        assert_eq!(volume.f32s(slab)?.len(), slab.samples());
     }
     Ok(())
 }

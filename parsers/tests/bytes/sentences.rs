@@ -6,12 +6,13 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use strataray_parsers::deck::{DeckCells, Grdecl, MemoryFiles};
+use strataray_parsers::deck::{DeckCells, Grdecl, MemoryFiles, Schedule};
 use strataray_parsers::egrid::Egrid;
 use strataray_parsers::records::{Entry, RecordFile, RecordWriter};
 use strataray_parsers::roff::RoffFile;
 use strataray_parsers::summary::Summary;
-use strataray_parsers::{ParseError, Warnings, case, init, restart, wells};
+use strataray_parsers::volume::{self, Options};
+use strataray_parsers::{ParseError, Warnings, case, init, paths, restart, wells};
 
 use super::fixtures::{self, CELL};
 
@@ -74,6 +75,21 @@ impl Sentences {
             entries.try_for_each(|entry| use_of(&file, entry))
         });
         self.add(title, &Warnings::default(), used);
+    }
+
+    /// A volume, and the reading of its values.
+    fn volume(&mut self, title: &str, name: &'static str, bytes: Vec<u8>) {
+        match volume::from_bytes((name, bytes), &Options::default()) {
+            Err(error) => self.add::<()>(title, &Warnings::default(), Err(error)),
+            Ok(volume) => self.add(title, &volume.notes, volume.f32s(volume.lattice.region())),
+        }
+    }
+
+    /// An image of text with one part of it changed.
+    fn image(&mut self, title: &str, text: &str, from: &str, to: &str) {
+        let changed = text.replacen(from, to, 1);
+        assert_ne!(changed, text, "{title}");
+        self.volume(title, "CASE.FILE", changed.into());
     }
 
     fn egrid(&mut self, title: &str, write: impl FnOnce(&mut RecordWriter<Vec<u8>>)) {
@@ -209,7 +225,9 @@ const BEHIND_A_CELL: &[&str] = &[
     "PORO\n 0.5 /\nOPERATE\n PORO 6* CUBE PORO /\n/\n",
     "PORO\n 0 /\nOPERATE\n PORO 6* INV PORO /\n/\n",
     "EDIT\nADD\n PORV 1 /\n/\n",
-    "CARFIN\n 'L' 6*1 2 2 2 /\nENDFIN\n",
+    "CARFIN\n 'L' 1 2 4*1 2 2 2 /\nENDFIN\n",
+    "RADFIN\n 'L' 4*1 3 4 1 /\nENDFIN\n",
+    "REFINE\n 'L' /\nENDFIN\n",
     "INCLUDE\n 'gone.inc' /\n",
     "INCLUDE\n /\n",
     "INCLUDE\n 'CASE.DATA' /\n",
@@ -534,6 +552,130 @@ fn of_results(all: &mut Sentences) {
     all.add("no ESMRY", &warnings, read);
 }
 
+fn of_images(all: &mut Sentences) {
+    all.volume("volume: no format", "CASE.FILE", b"text".to_vec());
+    all.volume("volume: raw samples alone", "CASE.raw", vec![0; 8]);
+    let head =
+        "NRRD0005\ntype: short\ndimension: 3\nsizes: 2 1 2\nendian: little\nencoding: raw\n\n";
+    let nrrd = format!("{head}\0\0\0\0\0\0\0\0");
+    for (title, from, to) in [
+        ("no type", "type: short\n", ""),
+        ("an unknown type", "short", "block"),
+        ("another dimension", "dimension: 3", "dimension: 2"),
+        ("five axes", "3\nsizes: 2 1 2", "5\nsizes: 1 1 2 1 2"),
+        (
+            "samples beyond all memory",
+            "2 1 2",
+            "4294967296 4294967296 2",
+        ),
+        ("no number", "2 1 2", "2 one 2"),
+        ("more samples", "2 1 2", "2 2 2"),
+        ("no order of bytes", "endian: little\n", ""),
+        ("another encoding", "raw", "bzip2"),
+        ("compressed from too much", "raw", "gzip"),
+        ("no field", "endian: little", "little"),
+        ("no end", "\n\n", "\n#"),
+        (
+            "a vector of two numbers",
+            "endian",
+            "space directions: (1,0) (0,1) (1,1)\nendian",
+        ),
+        ("another file", "endian", "data file: A.raw\nendian"),
+        (
+            "components",
+            "2 1 2\n",
+            "2 1 2\nkinds: vector domain domain\n",
+        ),
+        ("numbers of text", "raw", "ascii"),
+        ("spacing without end", "endian", "spacings: inf 1 1\nendian"),
+    ] {
+        all.image(&format!("NRRD: {title}"), &nrrd, from, to);
+    }
+    let meta =
+        "NDims = 3\nDimSize = 2 1 2\nElementType = MET_UCHAR\nElementDataFile = LOCAL\n\0\0\0\0";
+    for (title, from, to) in [
+        ("no samples", "ElementDataFile", "Data"),
+        ("an unknown type", "UCHAR", "STRING"),
+        ("another number of axes", "NDims = 3", "NDims = 4"),
+        ("slices that are not there", "LOCAL", "LIST\n"),
+        ("slices without an end", "LOCAL", "a%d 1 99999999999 1"),
+        ("more samples", "2 1 2", "2 2 2"),
+    ] {
+        all.image(&format!("MetaImage: {title}"), meta, from, to);
+    }
+    for (title, from, to) in [
+        ("another kind of file", "\"ImageData\"", "\"PolyData\""),
+        ("another compression", "vtkZLib", "vtkLZ4"),
+        ("an extent of two numbers", "0 1 0 0 0 0", "0 1"),
+        ("no array", "DataArray", "Array"),
+        ("a damaged block", "eJxj", "eJAA"),
+        ("another length", "0 1 0 0 0 0", "0 2 0 0 0 0"),
+        ("no base64", "AQAA", "A*AA"),
+        (
+            "more blocks than bytes",
+            "AQAAAAIAAAAAAAAA",
+            "////fwIAAAAAAAAA",
+        ),
+        ("pieces", "<Piece>", "<Piece></Piece><Piece>"),
+    ] {
+        all.image(&format!("VTK: {title}"), fixtures::VTI, from, to);
+    }
+    let json = r#"{"size": [2, 1, 2], "type": "u8", "file": "A.raw"}"#;
+    for (title, from, to) in [
+        ("from memory", "A.raw", "B.raw"),
+        ("an unknown type", "\"u8\"", "\"byte\""),
+        ("an unknown key", "type", "kind"),
+        ("no size", "[2, 1, 2]", "[2, 1]"),
+        ("no JSON", "}", ""),
+    ] {
+        all.image(&format!("raw: {title}"), json, from, to);
+    }
+}
+
+fn of_surveys(all: &mut Sentences) {
+    let survey = fixtures::segy(4);
+    let length = 240 + 16;
+    let mut changed = |title: &str, changes: &[(usize, &[u8])]| {
+        let mut bytes = survey.clone();
+        for (number, value) in changes {
+            bytes[number - 1..number - 1 + value.len()].copy_from_slice(value);
+        }
+        all.volume(&format!("SEG-Y: {title}"), "CASE.sgy", bytes);
+    };
+    changed("a place without a trace", &[]);
+    changed("an unknown format code", &[(3225, &[0, 4])]);
+    changed("another number of samples", &[(3221, &[0, 9])]);
+    changed(
+        "another number of samples in all headers",
+        &[(3221, &[0, 9]), (3715, &[0, 9])],
+    );
+    changed("another interval", &[(3217, &[0, 9])]);
+    changed("another start", &[(3600 + 109, &[0, 9])]);
+    changed(
+        "a number far away",
+        &[(3600 + 189, &[0x7f, 0xff, 0xff, 0xff])],
+    );
+    changed("a repeated trace", &[(3600 + length + 193, &[0, 0, 0, 20])]);
+    changed("a dead trace", &[(3600 + 29, &[0, 2])]);
+    changed("a trace far away", &[(3600 + 181, &[0x7f, 0, 0, 0])]);
+    changed(
+        "a trace some bins away",
+        &[(3600 + 181, &102_000_i32.to_be_bytes())],
+    );
+    changed("degrees", &[(3600 + 89, &[0, 2])]);
+    changed("swapped bytes", &[(3297, &[2, 1, 4, 3])]);
+    changed(
+        "several headers of a trace",
+        &[(3501, &[2, 0]), (3507, &[0, 0, 0, 1])],
+    );
+    changed(
+        "more traces than bytes",
+        &[(3501, &[2, 0]), (3513, &[1; 8])],
+    );
+    changed("text headers without an end", &[(3505, &[0xff, 0xff])]);
+    all.volume("SEG-Y: no trace", "CASE.sgy", survey[..3700].to_vec());
+}
+
 fn of_roff(all: &mut Sentences) {
     all.roff("ROFF: another file", "roff-asc", "roff");
     all.roff("ROFF: no tag", "tag filedata", "filedata");
@@ -619,6 +761,56 @@ fn of_cases(all: &mut Sentences) {
     all.add("a folder as a file", &none, read.map_err(told));
 }
 
+fn of_wells(all: &mut Sentences) {
+    let paths = |all: &mut Sentences, title: &str, text: &str| {
+        let mut warnings = Warnings::default();
+        let read = paths::from_bytes(("A.dev", text.to_owned()), &mut warnings);
+        all.add(&format!("paths: {title}"), &warnings, read);
+    };
+    paths(all, "no rows", "WELLNAME: A\n");
+    paths(all, "a word in a row", "WELLNAME: A\n1 2 3\n1 2x 3 4\n");
+    paths(all, "a short row", "X Y TVD MD\n1 2 3 4\n1 2 3\n");
+    paths(all, "two columns", "A\n1 2\n");
+    paths(all, "one point", "A\n1 2 3\nB\n1 2 3\n4 5 6\n");
+    paths(all, "angles", "MD INCL AZIM\n0 0 0\n");
+    paths(all, "binary", "1 2 3\n\0");
+    paths(all, "cut JSON", "{\"name\": \"A\", \"path\": [");
+    paths(all, "JSON without a path", "{\"name\": \"A\"}");
+    paths(all, "JSON without z", "{\"path\": [{\"x\": 1, \"y\": 2}]}");
+    let rms = fixtures::RMS_WELL;
+    paths(
+        all,
+        "RMS with a word in a row",
+        &rms.replace("1100", "11oo"),
+    );
+    paths(
+        all,
+        "RMS with too few logs",
+        &rms[..rms.find("MD").unwrap()],
+    );
+    let schedule = |all: &mut Sentences, title: &str, from: &str, to: &str| {
+        let text = fixtures::SCHEDULE.replacen(from, to, 1);
+        assert_ne!(text, fixtures::SCHEDULE, "{title}");
+        let files = MemoryFiles::from_iter([("CASE.DATA", text)]);
+        let path = [Path::new("CASE.DATA")];
+        let mut warnings = Warnings::default();
+        let read = Schedule::read_from(&files, &path, None, &mut warnings);
+        all.add(&format!("schedule: {title}"), &warnings, read);
+    };
+    schedule(all, "a bad date", "1 FEB 2020", "1 FOO 2020");
+    schedule(all, "no layers", "2* 1 2 OPEN", "2* 2* OPEN");
+    schedule(all, "layers backward", "2* 1 2 OPEN", "2* 2 1 OPEN");
+    schedule(all, "a broken number", "2 2 1 1 SHUT", "2 2.5 1 1 SHUT");
+    schedule(all, "an unknown well", " P1 SHUT /", " P9 SHUT /");
+    schedule(
+        all,
+        "an include that is gone",
+        "TSTEP",
+        "INCLUDE\n 'GONE.SCH' /\nTSTEP",
+    );
+    schedule(all, "no end", "28 31 /", "28 31");
+}
+
 #[test]
 fn people_are_told_the_same_word_for_word() {
     let mut all = Sentences::default();
@@ -629,7 +821,10 @@ fn people_are_told_the_same_word_for_word() {
     of_legacy_grids(&mut all);
     of_results(&mut all);
     of_roff(&mut all);
+    of_images(&mut all);
+    of_surveys(&mut all);
     of_cases(&mut all);
+    of_wells(&mut all);
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/bytes/sentences.txt");
     if std::env::var_os("UPDATE_SENTENCES").is_some() {
         std::fs::write(&path, &all.0).unwrap();

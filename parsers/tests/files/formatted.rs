@@ -7,6 +7,7 @@ use strataray_parsers::cells::Head;
 use strataray_parsers::egrid::Egrid;
 use strataray_parsers::records::{Form, Kind, RecordFile, RecordWriter};
 use strataray_parsers::restart::{self, RestartWriter, Step};
+use strataray_parsers::wells::Well;
 use strataray_parsers::{ErrorKind, ParseError, Warnings, case, init};
 
 use super::data;
@@ -225,7 +226,9 @@ fn ok_binary_files_are_preferred_where_both_exist() {
     let step = |out: RecordWriter<Vec<u8>>| {
         let mut writer = RestartWriter::to(out);
         let arrays = [("PRESSURE", vec![250.1_f32])];
-        writer.step(4, 31.5, &head, &["P1"], arrays).unwrap();
+        writer
+            .step(4, 31.5, &head, &[Well::named("P1")], arrays)
+            .unwrap();
         writer.finish().unwrap()
     };
     let text_grid = write("A.FEGRID", Vec::new());

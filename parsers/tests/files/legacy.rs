@@ -1,6 +1,6 @@
 //! The legacy GRID gives the grid that its EGRID twin gives.
 
-use strataray_parsers::egrid::Egrid;
+use strataray_parsers::egrid::{Egrid, LocalGrid};
 use strataray_parsers::records::RecordWriter;
 use strataray_parsers::{ErrorKind, ParseError, Warnings, case};
 
@@ -31,13 +31,44 @@ fn write(
     mut out: RecordWriter<Vec<u8>>,
     is_there: impl Fn([usize; 3]) -> bool,
 ) -> Vec<u8> {
-    let [ni, nj, nk] = grid.dims;
     out.inte("DIMENS", &grid.dims.map(|n| n as i32)).unwrap();
     out.chars("MAPUNITS", &["METRES"]).unwrap();
     if let Some(axes) = grid.map_axes {
         out.real("MAPAXES", &axes.map(|v| v as f32)).unwrap();
     }
     out.chars("GRIDUNIT", &["METRES", ""]).unwrap();
+    write_cells(grid, &mut out, is_there, |_| 0);
+    for local in &grid.local_grids {
+        match local.parent.as_str() {
+            "" => out.chars("LGR", &[&local.name]).unwrap(),
+            parent => out.chars("LGR", &[&local.name, parent]).unwrap(),
+        }
+        out.inte("DIMENS", &local.dims.map(|n| n as i32)).unwrap();
+        write_cells(&alone(local), &mut out, |_| true, |n| local.host[n]);
+    }
+    out.finish().unwrap()
+}
+
+/// A local grid as a grid of its own.
+fn alone(local: &LocalGrid) -> Egrid {
+    Egrid {
+        dims: local.dims,
+        coord: local.coord.clone(),
+        zcorn: local.zcorn.clone(),
+        actnum: local.actnum.clone(),
+        map_axes: None,
+        local_grids: Vec::new(),
+        ..small()
+    }
+}
+
+fn write_cells(
+    grid: &Egrid,
+    out: &mut RecordWriter<Vec<u8>>,
+    is_there: impl Fn([usize; 3]) -> bool,
+    host: impl Fn(usize) -> i32,
+) {
+    let [ni, nj, nk] = grid.dims;
     for n in 0..ni * nj * nk {
         let ijk = [n % ni, n / ni % nj, n / ni / nj];
         if !is_there(ijk) {
@@ -45,12 +76,11 @@ fn write(
         }
         let [i, j, k] = ijk.map(|n| n as i32 + 1);
         let active = grid.actnum.as_ref().map_or(1, |a| a[n]);
-        let coords = [i, j, k, n as i32 + 1, active, 0, 0];
+        let coords = [i, j, k, n as i32 + 1, active, host(n), 0];
         out.inte("COORDS", &coords).unwrap();
         let corners: Vec<f32> = (0..8).flat_map(|c| corner(grid, ijk, c)).collect();
         out.real("CORNERS", &corners).unwrap();
     }
-    out.finish().unwrap()
 }
 
 /// Pillars that lean, and depths all different.
@@ -77,6 +107,7 @@ fn small() -> Egrid {
         porosity_model: strataray_parsers::egrid::PorosityModel::Single,
         nnc: Vec::new(),
         local_nnc: Vec::new(),
+        reservoirs: Vec::new(),
         local_grids: Vec::new(),
     }
 }
@@ -124,6 +155,86 @@ fn ok_a_real_field_equals_its_egrid_twin() {
     assert!(warnings.is_empty(), "{warnings:?}");
     // Map coordinates of millions of meters are half a meter apart in f32.
     assert_twins(&twin, &grid, 1.0);
+}
+
+#[test]
+fn ok_local_grids_equal_their_egrid_twins() {
+    for name in ["lgr_nnc/SIMPLE_SUMMARY2.EGRID", "lgr_nnc/LGR_TESTMOD.EGRID"] {
+        let Some(path) = data(name) else {
+            return;
+        };
+        let mut warnings = Warnings::default();
+        let mut grid = Egrid::read(&path, &mut warnings).unwrap();
+        grid.local_grids.retain(|local| !local.is_radial);
+        // One that refines a cell of the first.
+        let nested = LocalGrid {
+            name: "NESTED".into(),
+            parent: grid.local_grids[0].name.clone(),
+            host: vec![7; 24],
+            dims: small().dims,
+            coord: small().coord,
+            zcorn: small().zcorn,
+            actnum: small().actnum,
+            number: grid.local_grids.len() as i32 + 1,
+            ..LocalGrid::default()
+        };
+        grid.local_grids.push(nested);
+        let bytes = write(&grid, RecordWriter::new(Vec::new()), |_| true);
+        let twin = read(&bytes, &mut warnings).unwrap();
+        assert!(warnings.is_empty(), "{warnings:?}");
+        assert_eq!(twin.local_grids.len(), grid.local_grids.len());
+        for (local, expected) in twin.local_grids.iter().zip(&grid.local_grids) {
+            assert_eq!(
+                (&local.name, &local.parent),
+                (&expected.name, &expected.parent)
+            );
+            assert_eq!(
+                (&local.host, local.number),
+                (&expected.host, expected.number)
+            );
+            assert_twins(&alone(local), &alone(expected), 1e-3);
+        }
+    }
+}
+
+#[test]
+fn ok_damaged_local_grids_are_left_out() {
+    let local = |host: i32, off: f32| LocalGrid {
+        name: "L".into(),
+        host: vec![host; 24],
+        dims: small().dims,
+        coord: small().coord.iter().map(|v| v + off).collect(),
+        zcorn: small().zcorn,
+        actnum: small().actnum,
+        ..LocalGrid::default()
+    };
+    for (host, off, told) in [
+        (1, 0.0, None),
+        (
+            0,
+            0.0,
+            Some("local grid L was left out: COORDS: names no host cell"),
+        ),
+        (
+            1,
+            f32::NAN,
+            Some("local grid L was left out: CORNERS: is not 24 finite numbers"),
+        ),
+    ] {
+        let grid = Egrid {
+            local_grids: vec![local(host, off)],
+            ..small()
+        };
+        let bytes = write(&grid, RecordWriter::new(Vec::new()), |_| true);
+        let mut warnings = Warnings::default();
+        let twin = read(&bytes, &mut warnings).unwrap();
+        assert_eq!(twin.local_grids.len(), usize::from(told.is_none()));
+        let said: Vec<_> = warnings.iter().map(ToString::to_string).collect();
+        match told {
+            None => assert_eq!(said, [""; 0]),
+            Some(told) => assert!(said.len() == 1 && said[0].contains(told), "{said:?}"),
+        }
+    }
 }
 
 #[test]

@@ -1,8 +1,11 @@
 //! Local grids: geometry, connections, arrays by grid.
 
 use std::collections::{BTreeMap, HashSet};
+use std::fmt::Write as _;
+use std::path::Path;
 
 use serde_json::Value;
+use strataray_parsers::deck::{Grdecl, MemoryFiles};
 use strataray_parsers::egrid::{Egrid, GridConnections, LocalGrid};
 use strataray_parsers::records::RecordWriter;
 use strataray_parsers::{Warnings, init, restart};
@@ -25,21 +28,21 @@ fn number(fact: &Value) -> usize {
 }
 
 /// Corners of a cell in the order of the facts.
-fn corners(grid: &LocalGrid, ijk: [usize; 3]) -> Vec<[f64; 3]> {
+fn corners<T: Copy + Into<f64>>(grid: &LocalGrid<T>, ijk: [usize; 3]) -> Vec<[f64; 3]> {
     let [ni, nj, _] = grid.dims;
     let [i, j, k] = ijk;
     let corner = |c: usize| {
         let (di, dj, dk) = (c & 1, c >> 1 & 1, c >> 2);
-        let z = grid.zcorn[2 * i + di + 2 * ni * (2 * j + dj) + 4 * ni * nj * (2 * k + dk)];
+        let z = grid.zcorn[2 * i + di + 2 * ni * (2 * j + dj) + 4 * ni * nj * (2 * k + dk)].into();
         let pillar = (j + dj) * (ni + 1) + i + di;
         let ends: Vec<f64> = grid.coord[6 * pillar..6 * pillar + 6]
             .iter()
-            .map(|v| f64::from(*v))
+            .map(|v| (*v).into())
             .collect();
-        let along = (f64::from(z) - ends[2]) / (ends[5] - ends[2]);
+        let along = (z - ends[2]) / (ends[5] - ends[2]);
         let along = if along.is_finite() { along } else { 0.0 };
         let at = |n: usize| ends[n] + along * (ends[n + 3] - ends[n]);
-        [at(0), at(1), f64::from(z)]
+        [at(0), at(1), z]
     };
     (0..8).map(corner).collect()
 }
@@ -221,4 +224,76 @@ fn ok_nested_grids() {
             "3 of 4 connections name cells outside the grid, or of a grid that is not there: left out"
         ]
     );
+}
+
+/// The main grid of a file as a deck, with a CARFIN for each of its Cartesian local grids.
+fn deck_of(grid: &Egrid) -> String {
+    let [ni, nj, nk] = grid.dims;
+    let array = |values: &[f32]| {
+        let mut text = String::new();
+        values.iter().for_each(|v| writeln!(text, "{v}").unwrap());
+        text
+    };
+    let (coord, zcorn) = (array(&grid.coord), array(&grid.zcorn));
+    let mut deck = format!("SPECGRID\n{ni} {nj} {nk} 1 F /\nCOORD\n{coord}/\nZCORN\n{zcorn}/\n");
+    for local in grid.local_grids.iter().filter(|local| !local.is_radial) {
+        let [low, high] = local.host_box.unwrap();
+        let mut record = format!("CARFIN\n '{}'", local.name);
+        for axis in 0..3 {
+            write!(record, " {} {}", low[axis], high[axis]).unwrap();
+        }
+        let [ni, nj, nk] = local.dims;
+        writeln!(deck, "{record} {ni} {nj} {nk} /\nENDFIN").unwrap();
+    }
+    deck
+}
+
+fn read_deck(text: &str) -> Grdecl {
+    let files = MemoryFiles::from_iter([("A.DATA", text.as_bytes().to_vec())]);
+    let mut warnings = Warnings::default();
+    let grid = Grdecl::read_from(&files, Path::new("A.DATA"), &[], &mut warnings).unwrap();
+    assert!(warnings.is_empty(), "{warnings:?}");
+    grid
+}
+
+/// How far the corners of cells are apart at most.
+fn apart(a: &LocalGrid<f64>, b: &LocalGrid) -> f64 {
+    assert_eq!((&a.name, &a.parent, a.dims), (&b.name, &b.parent, b.dims));
+    assert_eq!((&a.host, a.number), (&b.host, b.number));
+    let [ni, nj, nk] = a.dims;
+    let mut most = 0.0_f64;
+    for cell in 0..ni * nj * nk {
+        let ijk = [cell % ni, cell / ni % nj, cell / (ni * nj)];
+        let pairs = corners(a, ijk).into_iter().zip(corners(b, ijk));
+        let off = pairs.flat_map(|(a, b)| [0, 1, 2].map(|n| (a[n] - b[n]).abs()));
+        most = off.fold(most, f64::max);
+    }
+    most
+}
+
+#[test]
+fn local_grids_of_a_deck_are_those_of_the_simulator() {
+    for (case, count) in CASES.iter().zip([1, 2]) {
+        let Some((file, _)) = facts(case) else {
+            return;
+        };
+        let text = deck_of(&file);
+        let deck = read_deck(&text);
+        assert_eq!(deck.local_grids.len(), count);
+        for (local, expected) in deck.local_grids.iter().zip(&file.local_grids) {
+            let off = apart(&local.grid, expected);
+            assert!(off < 2e-3, "{case} {}: {off} m", local.grid.name);
+        }
+        // One that divides its hosts unevenly is another one.
+        let first = &deck.local_grids[0].grid;
+        let mut sizes = vec!["1"; first.dims[0]];
+        sizes[0] = "2";
+        let uneven = text.replacen(
+            "ENDFIN",
+            &format!("HXFIN\n{} /\nENDFIN", sizes.join(" ")),
+            1,
+        );
+        let uneven = read_deck(&uneven);
+        assert!(apart(&uneven.local_grids[0].grid, &file.local_grids[0]) > 0.1);
+    }
 }

@@ -4,8 +4,10 @@ use std::path::Path;
 use std::time::Instant;
 
 use strataray_parsers::case::{CaseFiles, GridSource};
-use strataray_parsers::deck::{DeckCells, DeckProperty, FaultFaces as DeckFault, Grdecl};
-use strataray_parsers::egrid::{Egrid, GridConnections, LocalGrid, PorosityModel};
+use strataray_parsers::deck::{
+    DeckCells, DeckLocalGrid, DeckProperty, FaultFaces as DeckFault, Grdecl,
+};
+use strataray_parsers::egrid::{Egrid, GridConnections, LocalGrid, PorosityModel, Reservoir};
 use strataray_parsers::units::{LengthUnit, UnitSystem};
 use strataray_parsers::{At, ErrorKind, ParseError, Warnings};
 
@@ -36,7 +38,10 @@ pub struct Loaded {
     /// Arrays of decks and other text.
     pub texts: Vec<DeckProperty>,
     pub connections: Vec<[Ijk; 2]>,
-    pub local_grids: Vec<LocalGrid>,
+    /// With arrays of text, where they are of a deck.
+    pub local_grids: Vec<DeckLocalGrid>,
+    /// Layers with pillars of their own.
+    pub reservoirs: Vec<Reservoir>,
     pub local_connections: Vec<GridConnections>,
     pub fault_faces: FaultFaces,
     /// What a deck's RUNSPEC says.
@@ -140,7 +145,8 @@ fn read_egrid(
         flags: CellFlags::new(egrid.actnum, egrid.coarse, egrid.porosity_model),
         texts: Vec::new(),
         connections,
-        local_grids: egrid.local_grids,
+        local_grids: of_results(egrid.local_grids),
+        reservoirs: egrid.reservoirs,
         local_connections: egrid.local_nnc,
         fault_faces: FaultFaces::default(),
         units: None,
@@ -154,6 +160,15 @@ fn read_egrid(
             length: unit.map(|u| u.length),
         },
     })
+}
+
+/// Local grids whose arrays are in files of results.
+fn of_results(grids: Vec<LocalGrid>) -> Vec<DeckLocalGrid> {
+    let grid = |grid: LocalGrid| DeckLocalGrid {
+        grid: grid.widened(),
+        properties: Vec::new(),
+    };
+    grids.into_iter().map(grid).collect()
 }
 
 /// The grid of the arrays of a file; what building it takes is noted.
@@ -188,13 +203,10 @@ fn read_deck(path: &Path, deck: Grdecl, about: &mut About) -> Result<Loaded, Par
         map_axes: None,
     };
     let grid = built(path, &input, about)?;
+    about.notes.extend(fracture_permeabilities(&deck));
     about.files.extend(deck.files);
     about.map_axes = deck.map_axes;
     about.porosity_model = porosity_name(deck.porosity_model).into();
-    if deck.porosity_model != PorosityModel::Single {
-        let note = "the deck has matrix and fractures: the values of the matrix are shown, those of the fractures are not";
-        about.notes.push(note.into());
-    }
     about.named_faults = named_faults(&deck.faults);
     let fault_faces = fault_faces(&deck.faults, &about.named_faults);
     Ok(Loaded {
@@ -202,7 +214,8 @@ fn read_deck(path: &Path, deck: Grdecl, about: &mut About) -> Result<Loaded, Par
         flags: CellFlags::new(deck.actnum, None, deck.porosity_model),
         texts: deck.properties,
         connections: Vec::new(),
-        local_grids: Vec::new(),
+        local_grids: deck.local_grids,
+        reservoirs: Vec::new(),
         local_connections: Vec::new(),
         fault_faces,
         units: deck.unit_system,
@@ -216,6 +229,20 @@ fn read_deck(path: &Path, deck: Grdecl, about: &mut About) -> Result<Loaded, Par
             length: deck.grid_unit.map(|u| u.name),
         },
     })
+}
+
+/// What the permeabilities of fractures are, where a simulator takes others than the deck's.
+fn fracture_permeabilities(deck: &Grdecl) -> Option<String> {
+    let is_taken = deck.porosity_model == PorosityModel::Single || deck.has_effective_fractures;
+    let cells = deck.dims.iter().product::<usize>();
+    let is_given =
+        |p: &&DeckProperty| p.name.starts_with("PERM") && p.values.len() > cells && !is_taken;
+    let given = deck.properties.iter().find(is_given)?;
+    Some(format!(
+        "{}.FRACTURE and other permeabilities of fractures are those of the deck: without NODPPM a simulator multiplies \
+         them by the porosity of the fractures",
+        given.name
+    ))
 }
 
 fn read_roff(path: &Path, about: &mut About) -> Result<Loaded, ParseError> {
@@ -241,6 +268,7 @@ fn read_roff(path: &Path, about: &mut About) -> Result<Loaded, ParseError> {
         texts: properties,
         connections: Vec::new(),
         local_grids: Vec::new(),
+        reservoirs: Vec::new(),
         local_connections: Vec::new(),
         fault_faces: FaultFaces::default(),
         units: None,

@@ -1,13 +1,15 @@
-//! Local grids of an EGRID file: their cells beside those of the main grid, and their values from the same files.
+//! Local grids of a grid file or a deck: their cells beside those of the main grid, and their values from the same files.
 
 use std::collections::HashMap;
 
 use strataray_parsers::ParseError;
 use strataray_parsers::cells::CellArrays;
-use strataray_parsers::egrid::{GridConnections, LocalGrid as FileGrid};
-use strataray_parsers::records::Kind;
+use strataray_parsers::deck::{DeckLocalGrid, DeckProperty};
+use strataray_parsers::egrid::{GridConnections, LocalGrid as FileGrid, Reservoir};
+use strataray_parsers::records::{Entry, Kind};
 
 use super::outliers;
+use super::pore_volume::Least;
 use super::radial;
 use super::slots::{CellFlags, CellSlots, ResultCells};
 use crate::model::{CellIndex, Dims, Grid, GridInput, Ijk, LocalGrid};
@@ -15,24 +17,33 @@ use crate::model::{CellIndex, Dims, Grid, GridInput, Ijk, LocalGrid};
 /// A local grid, and where in files its values stand.
 pub struct Local {
     pub grid: LocalGrid,
-    /// Of its file's cells.
-    slots: CellSlots,
+    /// Of its file's cells; `None` of a reservoir, whose values are among those of the main grid.
+    slots: Option<CellSlots>,
+    /// Arrays of a deck.
+    texts: Vec<DeckProperty>,
     /// The number by which connections know it.
     number: i32,
 }
 
-/// The local grids of a file that can be shown beside `main`; why one cannot goes into the notes.
-///
-/// `init` has its arrays, of which PORV says which cells are active where the results are for fewer.
-pub fn read(
-    files: Vec<FileGrid>,
-    main: &Grid,
-    init: Option<&CellArrays>,
-    notes: &mut Vec<String>,
-) -> Vec<Local> {
-    let inits = init.and_then(|init| init.local_grids().ok());
+/// What local grids lie beside.
+pub struct Beside<'a> {
+    pub main: &'a Grid,
+    /// Arrays, of which PORV says which cells are active where the results are for fewer.
+    pub init: Option<&'a CellArrays>,
+    /// Which cells of a deck are too small.
+    pub least: Option<&'a Least>,
+}
+
+/// The local grids of a file that can be shown beside the main grid; why one cannot goes into the notes.
+pub fn read(files: Vec<DeckLocalGrid>, beside: &Beside<'_>, notes: &mut Vec<String>) -> Vec<Local> {
+    let main = beside.main;
+    let inits = beside.init.and_then(|init| init.local_grids().ok());
     let mut locals: Vec<Local> = Vec::new();
     for file in by_parents(files, notes) {
+        let DeckLocalGrid {
+            grid: file,
+            properties: texts,
+        } = file;
         let arrays = inits.iter().flatten().find(|a| a.name == file.name);
         let parent = match file.parent.is_empty() {
             true => 0,
@@ -55,7 +66,13 @@ pub fn read(
             _ if parent.checked_sub(1).is_some_and(is_split) => Err(
                 "it refines a radial grid, whose sectors are shown as several cells each".into(),
             ),
-            Some(of_parent) => local(file, of_parent, main, arrays.map(|a| &a.arrays), notes),
+            Some(of_parent) => {
+                let beside = Beside {
+                    init: arrays.map(|a| &a.arrays),
+                    ..*beside
+                };
+                local(file, texts, of_parent, &beside, notes)
+            }
             None => Err("the grid that it refines is not shown".to_owned()),
         };
         match made {
@@ -71,16 +88,80 @@ pub fn read(
     locals
 }
 
+/// Reservoirs with pillars of their own (NUMRES above 1) as grids beside the main one, of which their layers are left out.
+///
+/// # Errors
+/// When pillars are not finite.
+pub fn reservoirs(main: &Grid, files: &[Reservoir]) -> Result<(Grid, Vec<Local>), String> {
+    let mut rest = main.clone();
+    let layer_of = |cell: CellIndex| main.dims().ijk(cell).k;
+    rest.retain_active(|cell| !files.iter().any(|r| r.layers.contains(&layer_of(cell))));
+    let all: Result<Vec<Local>, String> = (2..)
+        .zip(files)
+        .map(|(number, file)| reservoir(main, file, number))
+        .collect();
+    Ok((rest, all?))
+}
+
+/// One sentence on what reservoirs there are and where they are shown.
+pub fn told(files: &[Reservoir]) -> String {
+    let one = |(number, file): (usize, &Reservoir)| {
+        let [first, last] = [file.layers.start + 1, file.layers.end];
+        format!("layers {first} to {last} are shown as grid RES{number}")
+    };
+    let all: Vec<String> = (2..).zip(files).map(one).collect();
+    format!(
+        "the grid has {} coordinate systems (NUMRES): {}",
+        1 + files.len(),
+        all.join(", ")
+    )
+}
+
+fn reservoir(main: &Grid, file: &Reservoir, number: i32) -> Result<Local, String> {
+    let dims = Dims {
+        nk: file.layers.len(),
+        ..main.dims()
+    };
+    let of_main = |k: usize| k * dims.ni * dims.nj;
+    let cells = of_main(file.layers.start)..of_main(file.layers.end);
+    let (_, zcorn) = main.main_corners(|depth| depth);
+    let hosts: Vec<CellIndex> = cells.clone().map(|cell| CellIndex(cell as u32)).collect();
+    let is_active = |cell: &CellIndex| i32::from(main.active_index(*cell).is_some());
+    let actnum: Vec<i32> = hosts.iter().map(is_active).collect();
+    let grid = Grid::new(&GridInput {
+        dims,
+        coord: &file.coord,
+        zcorn: &zcorn[8 * cells.start..8 * cells.end],
+        actnum: Some(&actnum),
+        map_axes: None,
+    });
+    Ok(Local {
+        grid: LocalGrid {
+            name: format!("RES{number}"),
+            parent: 0,
+            grid: grid.map_err(|e| e.to_string())?,
+            layers: Some(file.layers.clone()),
+            split: 1,
+            hosts,
+        },
+        slots: None,
+        texts: Vec::new(),
+        // No connection knows it by a number.
+        number: -number,
+    })
+}
+
 /// Each grid behind the one that it refines; those that refine no grid of the file become notes.
-fn by_parents(mut files: Vec<FileGrid>, notes: &mut Vec<String>) -> Vec<FileGrid> {
-    let mut sorted: Vec<FileGrid> = Vec::with_capacity(files.len());
+fn by_parents(mut files: Vec<DeckLocalGrid>, notes: &mut Vec<String>) -> Vec<DeckLocalGrid> {
+    let mut sorted: Vec<DeckLocalGrid> = Vec::with_capacity(files.len());
     loop {
-        let is_known = |file: &FileGrid| {
-            file.parent.is_empty() || sorted.iter().any(|known| known.name == file.parent)
+        let is_known = |DeckLocalGrid { grid: file, .. }: &DeckLocalGrid| {
+            let mut known = sorted.iter().map(|known| &known.grid.name);
+            file.parent.is_empty() || known.any(|name| *name == file.parent)
         };
         let (ready, rest): (Vec<_>, Vec<_>) = files.into_iter().partition(is_known);
         if ready.is_empty() {
-            notes.extend(rest.iter().map(|file| {
+            notes.extend(rest.iter().map(|DeckLocalGrid { grid: file, .. }| {
                 format!(
                     "local grid {} is not shown; its place shows the host cells: there is no grid {}, which it refines",
                     file.name, file.parent
@@ -94,10 +175,10 @@ fn by_parents(mut files: Vec<FileGrid>, notes: &mut Vec<String>) -> Vec<FileGrid
 }
 
 fn local(
-    mut file: FileGrid,
+    mut file: FileGrid<f64>,
+    texts: Vec<DeckProperty>,
     parent: &Grid,
-    main: &Grid,
-    init: Option<&CellArrays>,
+    &Beside { main, init, least }: &Beside<'_>,
     notes: &mut Vec<String>,
 ) -> Result<Local, String> {
     let dims = dims(file.dims);
@@ -121,6 +202,9 @@ fn local(
     };
     let mut found = Vec::new();
     let mut grid = outliers::built(&input, &mut found).map_err(|e| e.to_string())?;
+    if let Some(least) = least {
+        least.leave_small_of_local(&file.name, &mut grid, &texts, notes);
+    }
     let results = ResultCells {
         active: init
             .and_then(|init| init.head().ok())
@@ -135,6 +219,7 @@ fn local(
         name: file.name.clone(),
         parent: 0,
         grid,
+        layers: None,
         split: 1,
         hosts,
     };
@@ -148,13 +233,14 @@ fn local(
     }
     Ok(Local {
         grid,
-        slots,
+        slots: Some(slots),
+        texts,
         number: file.number,
     })
 }
 
 /// The parent's cell of each cell.
-fn hosts(file: &FileGrid, parent: Dims) -> Result<Vec<CellIndex>, String> {
+fn hosts(file: &FileGrid<f64>, parent: Dims) -> Result<Vec<CellIndex>, String> {
     let all = dims(file.dims);
     if !file.host.is_empty() {
         let hosts = file.host.iter().map(|&number| {
@@ -191,15 +277,24 @@ fn hosts(file: &FileGrid, parent: Dims) -> Result<Vec<CellIndex>, String> {
 }
 
 /// One sentence for each local grid that has arrays of cells which the main grid does not have: these are no properties.
-pub fn arrays_left_out(locals: &[Local], arrays: &[&CellArrays]) -> Vec<String> {
+///
+/// `main` has the main grid's arrays of text.
+pub fn arrays_left_out(
+    locals: &[Local],
+    main: &[DeckProperty],
+    arrays: &[&CellArrays],
+) -> Vec<String> {
     let of_local = |local: &Local| {
-        let mut names: Vec<String> = Vec::new();
+        let is_new = |text: &&DeckProperty| !main.iter().any(|p| p.name == text.name);
+        let new = local.texts.iter().filter(is_new);
+        let mut names: Vec<String> = new.map(|text| text.name.clone()).collect();
         for arrays in arrays {
             let grids = arrays.local_grids().unwrap_or_default();
             let own = grids.iter().find(|grid| grid.name == local.grid.name);
             for entry in own.iter().flat_map(|own| own.arrays.iter()) {
-                let is_of_cells =
-                    entry.kind == Kind::Real && local.slots.fits(entry.count as usize);
+                let slots = local.slots.as_ref();
+                let fits = slots.is_some_and(|slots| slots.fits(entry.count as usize));
+                let is_of_cells = entry.kind == Kind::Real && fits;
                 let is_new = !names.iter().any(|name| name == entry.name());
                 if is_of_cells && is_new && arrays.find(entry.name()).is_none() {
                     names.push(entry.name().to_owned());
@@ -219,9 +314,17 @@ pub fn arrays_left_out(locals: &[Local], arrays: &[&CellArrays]) -> Vec<String> 
 
 /// Where the values of a lattice's cells stand.
 pub struct Places {
-    locals: Vec<(String, CellSlots)>,
+    locals: Vec<LocalPlaces>,
     /// By active cell of the lattice the grid, and the rank of the cell among its active ones.
     of: Vec<(u32, u32)>,
+}
+
+/// Where the values of a local grid's cells stand.
+struct LocalPlaces {
+    name: String,
+    /// `None` of a reservoir, whose values are among those of the main grid.
+    slots: Option<CellSlots>,
+    texts: Vec<DeckProperty>,
 }
 
 /// The main grid and local grids in one lattice, the places of values, and the connections between the grids.
@@ -236,7 +339,7 @@ pub fn join(
 ) -> Result<(Grid, Places, Vec<[Ijk; 2]>), String> {
     let (grids, kept): (Vec<_>, Vec<_>) = locals
         .into_iter()
-        .map(|l| (l.grid, (l.slots, l.number)))
+        .map(|l| (l.grid, (l.slots, l.texts, l.number)))
         .unzip();
     let joined = main.clone().with_local_grids(&grids);
     let grid = joined.map_err(|e| e.to_string())?;
@@ -245,7 +348,7 @@ pub fn join(
         .chain(
             kept.iter()
                 .enumerate()
-                .map(|(n, (_, number))| (*number, n + 1)),
+                .map(|(n, (_, _, number))| (*number, n + 1)),
         )
         .collect();
     let cell = |number: i32, cell: i32| {
@@ -261,18 +364,24 @@ pub fn join(
     });
     let pairs = pairs.filter_map(|[a, b]| Some([cell(a.0, a.1)?, cell(b.0, b.1)?]));
     let pairs: Vec<[Ijk; 2]> = pairs.collect();
-    let locals: Vec<(String, CellSlots)> = grids
+    let locals: Vec<LocalPlaces> = grids
         .into_iter()
         .zip(kept)
-        .map(|(grid, (slots, _))| (grid.name, slots))
+        .map(|(grid, (slots, texts, _))| LocalPlaces {
+            name: grid.name,
+            slots,
+            texts,
+        })
         .collect();
     let of = grid.active_cells().iter().map(|&cell| {
-        let (patch, cell) = grid.file_cell(grid.dims().ijk(cell));
-        let slots = match patch {
-            0 => slots,
-            number => &locals[number - 1].1,
+        let at = grid.dims().ijk(cell);
+        let (patch, cell) = grid.file_cell(at);
+        let own = patch.checked_sub(1).and_then(|n| locals[n].slots.as_ref());
+        let (number, rank) = match own {
+            Some(slots) => (patch, slots.rank(cell)),
+            None => (0, slots.rank(grid.main_dims().cell(grid.main_cell(at)))),
         };
-        (patch as u32, slots.rank(cell).unwrap_or(u32::MAX))
+        (number as u32, rank.unwrap_or(u32::MAX))
     });
     let of = of.collect();
     Ok((grid, Places { locals, of }, pairs))
@@ -287,22 +396,47 @@ impl Places {
     pub fn values(
         &self,
         main: &[f32],
-        arrays: Option<&CellArrays>,
+        arrays: &CellArrays,
         name: &str,
     ) -> Result<Vec<f32>, ParseError> {
-        let grids = arrays.map(CellArrays::local_grids).transpose()?;
-        let grids = grids.unwrap_or_default();
-        let of_local = |(local, slots): &(String, CellSlots)| -> Result<Vec<f32>, ParseError> {
-            let arrays = grids.iter().find(|grid| grid.name == *local);
+        let grids = arrays.local_grids()?;
+        let of_local = |local: &LocalPlaces| -> Result<Vec<f32>, ParseError> {
+            let slots = &local.slots;
+            let arrays = grids.iter().find(|grid| grid.name == local.name);
             let arrays = arrays.map(|grid| &grid.arrays);
             let found = arrays.and_then(|arrays| Some((arrays, arrays.find(name)?)));
-            match found.filter(|(_, e)| e.is_numeric() && slots.fits(e.count as usize)) {
-                Some((arrays, entry)) => Ok(slots.pick(&arrays.values(entry)?)),
+            let fits = |e: &Entry| {
+                let slots = slots.as_ref()?;
+                (e.is_numeric() && slots.fits(e.count as usize)).then_some(slots)
+            };
+            match found.and_then(|(arrays, entry)| Some((arrays, entry, fits(entry)?))) {
+                Some((arrays, entry, slots)) => Ok(slots.pick(&arrays.values(entry)?)),
                 None => Ok(Vec::new()),
             }
         };
         let locals: Result<Vec<_>, _> = self.locals.iter().map(of_local).collect();
-        let locals = locals?;
+        Ok(self.of_all(main, &locals?))
+    }
+
+    /// As [`Self::values`], from arrays of text, which local grids have of the matrix alone.
+    pub fn values_of_texts(&self, main: &[f32], name: &str, is_matrix: bool) -> Vec<f32> {
+        let of_local = |local: &LocalPlaces| {
+            let text = local
+                .texts
+                .iter()
+                .find(|text| is_matrix && text.name == name);
+            let Some((text, slots)) = text.zip(local.slots.as_ref()) else {
+                return Vec::new();
+            };
+            let values: Vec<f32> = text.values.iter().map(|v| *v as f32).collect();
+            slots.pick_of_all(&values)
+        };
+        let locals: Vec<_> = self.locals.iter().map(of_local).collect();
+        self.of_all(main, &locals)
+    }
+
+    /// Values by active cell of the lattice, from those by active cell of each grid.
+    fn of_all(&self, main: &[f32], locals: &[Vec<f32>]) -> Vec<f32> {
         let value = |&(grid, rank): &(u32, u32)| {
             let values = match grid {
                 0 => main,
@@ -310,7 +444,7 @@ impl Places {
             };
             values.get(rank as usize).copied().unwrap_or(f32::NAN)
         };
-        Ok(self.of.iter().map(value).collect())
+        self.of.iter().map(value).collect()
     }
 }
 

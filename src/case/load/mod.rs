@@ -3,31 +3,39 @@
 mod grids;
 mod local;
 mod outliers;
+mod paths;
 mod pore_volume;
 mod properties;
 mod radial;
+mod restarts;
 mod roff;
 mod slots;
 mod source;
 mod summary;
 mod wells;
 
+use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use strataray_parsers::case::{CaseFiles, GridSource, RestartSource, find, find_with};
-use strataray_parsers::cells::CellArrays;
+use strataray_parsers::cells::{CellArrays, Head};
 use strataray_parsers::deck::{Grdecl, UnitSystem};
-use strataray_parsers::restart::{self, Step as FileStep};
-use strataray_parsers::{At, ParseError, Warnings, init};
+use strataray_parsers::restart::Step as FileStep;
+use strataray_parsers::{At, ErrorKind, ParseError, Warnings, init};
 
 use self::grids::Loaded;
-use self::local::Local;
+use self::local::{Beside, Local};
+use self::pore_volume::Least;
 use self::properties::Setting;
 use self::slots::{CellSlots, ResultCells};
 use self::source::FileSource;
 use self::summary::SummaryFiles;
-use crate::case::{About, Case, FieldCache, OverSteps, Simbox, Step, WellsOfSteps};
+use self::wells::WellFiles;
+use crate::case::{
+    About, Case, FieldCache, GridPool, OverSteps, Simbox, Step, WellsOfSteps, ensemble,
+};
+use crate::model::{Dims, Ijk};
 
 /// Opens the case that `path` names: any of its files, or its base name.
 ///
@@ -37,7 +45,8 @@ pub fn open(path: &Path) -> Result<Case, ParseError> {
     open_with(path, &[])
 }
 
-/// As [`open`], with files added to the case: text with properties or faults, an INIT or restart of another name.
+/// As [`open`], with files added to the case: text with properties, faults or wells, paths of wells, an INIT or restart
+/// of another name.
 ///
 /// # Errors
 /// As [`open`], and when an added file is not there or is damaged.
@@ -55,15 +64,68 @@ pub struct CasePaths {
     pub path: PathBuf,
     /// Files added to it.
     pub with: Vec<PathBuf>,
+    /// Cases on the same grid of which, with this one, statistics are taken.
+    pub others: Vec<CasePaths>,
+}
+
+impl CasePaths {
+    /// A case alone.
+    pub fn of(path: PathBuf) -> Self {
+        Self {
+            path,
+            with: Vec::new(),
+            others: Vec::new(),
+        }
+    }
+}
+
+/// Opens a case, or several as one with statistics over them ([`crate::case::ensemble`]); grids that are equal to one in the
+/// pool are held once. `progress` as in [`open_reporting`].
+///
+/// # Errors
+/// As [`open_with`], and when grids of several cases differ.
+pub fn open_paths(
+    paths: &CasePaths,
+    pool: &GridPool,
+    progress: &dyn Fn(&str) -> bool,
+) -> Result<Option<Case>, ParseError> {
+    let open = |paths: &CasePaths| -> Result<Option<Case>, ParseError> {
+        let mut case = open_reporting(&paths.path, &paths.with, progress)?;
+        if let Some(case) = &mut case {
+            pool.share(case);
+        }
+        Ok(case)
+    };
+    let Some(first) = open(paths)? else {
+        return Ok(None);
+    };
+    if paths.others.is_empty() {
+        return Ok(Some(first));
+    }
+    let mut cases = vec![Arc::new(first)];
+    for other in &paths.others {
+        match open(other)? {
+            Some(case) => cases.push(Arc::new(case)),
+            None => return Ok(None),
+        }
+    }
+    let wrong = |why: String| ParseError::of(ErrorKind::Mismatch, &paths.path, At::File, "", why);
+    let mut case = ensemble(&cases).map_err(wrong)?;
+    // What is odd about all of them is told once.
+    let known = &cases[0].about.notes;
+    let own = cases[1..].iter().flat_map(|case| {
+        let notes = case.about.notes.iter().filter(|note| !known.contains(note));
+        notes.map(|note| format!("{}: {note}", case.about.name))
+    });
+    let notes: Vec<String> = known.iter().cloned().chain(own).collect();
+    case.about.notes.splice(0..0, notes);
+    Ok(Some(case))
 }
 
 /// The cases that several paths name together: a file without a grid of its own is added to the case before it, or
 /// to the first one; further files of the same case are left out.
 pub fn group(paths: &[PathBuf]) -> Vec<CasePaths> {
-    let case = |path: &PathBuf| CasePaths {
-        path: path.clone(),
-        with: Vec::new(),
-    };
+    let case = |path: &PathBuf| CasePaths::of(path.clone());
     if let [only] = paths {
         return vec![case(only)];
     }
@@ -140,52 +202,91 @@ pub fn open_reporting(
     if !progress("time steps") {
         return Ok(None);
     }
-    let steps = open_restart(&files.restart, &mut about, &mut warnings);
+    let runs = restarts::open(&files.restart, &mut about.notes, &mut warnings);
+    if !progress("wells") {
+        return Ok(None);
+    }
+    let paths = files.paths.iter().map(PathBuf::as_path);
+    let paths = paths::read(paths, &mut about, &mut warnings)?;
     note_missing(&files, &mut about);
-    let summary = SummaryFiles::new(files.summary);
-    let case = build(loaded, init, steps, summary, about, &warnings);
-    Ok(Some(case))
+    let read = Read {
+        init,
+        runs,
+        summary: SummaryFiles::new(files.summary),
+        schedules: &files.schedules,
+        paths,
+    };
+    Ok(Some(build(loaded, read, about, &warnings)))
+}
+
+/// What was read of a case beside its grid.
+struct Read<'a> {
+    init: Option<CellArrays>,
+    runs: Vec<Vec<FileStep>>,
+    summary: SummaryFiles,
+    /// Decks that may have wells.
+    schedules: &'a [PathBuf],
+    paths: paths::Files<'a>,
+}
+
+/// What the heads of results say.
+struct Told {
+    units: Option<UnitSystem>,
+    phases: Option<i32>,
+    /// Number of active cells.
+    active: Option<usize>,
+}
+
+impl Told {
+    fn of(init: Option<&CellArrays>, first: Option<&CellArrays>) -> Self {
+        let all = [init, first].into_iter().flatten();
+        let heads: Vec<_> = all.filter_map(|arrays| arrays.head().ok()).collect();
+        let active = |head: &Head| usize::try_from(head.active).ok();
+        Self {
+            units: heads.iter().find_map(|head| head.units),
+            phases: heads.iter().map(|head| head.phases).find(|n| *n > 0),
+            active: heads.iter().filter_map(active).find(|n| *n > 0),
+        }
+    }
 }
 
 /// The case of what was read.
-fn build(
-    mut loaded: Loaded,
-    init: Option<CellArrays>,
-    steps: Vec<FileStep>,
-    summary: SummaryFiles,
-    mut about: About,
-    warnings: &Warnings,
-) -> Case {
-    let first = steps.first().map(|s| &s.arrays);
-    let heads: Vec<_> = init
-        .iter()
-        .chain(first)
-        .filter_map(|a| a.head().ok())
-        .collect();
-    let units = heads.iter().find_map(|head| head.units);
-    let length = loaded.settle_units(units, &mut about);
-    let units = units.or(loaded.units).unwrap_or(match length.short() {
+fn build(mut loaded: Loaded, read: Read<'_>, mut about: About, warnings: &Warnings) -> Case {
+    let Read {
+        init,
+        runs,
+        summary,
+        schedules,
+        paths,
+    } = read;
+    let first = runs.iter().flatten().next().map(|s| &s.arrays);
+    let told = Told::of(init.as_ref(), first);
+    let length = loaded.settle_units(told.units, &mut about);
+    let units = told.units.or(loaded.units).unwrap_or(match length.short() {
         "FT" => UnitSystem::Field,
         "CM" => UnitSystem::Lab,
         _ => UnitSystem::Metric,
     });
-    let phases = heads
-        .iter()
-        .map(|head| head.phases)
-        .find(|phases| *phases > 0);
-    pore_volume::leave_small(&mut loaded, units, length, &mut about.notes);
-    let active = heads
-        .iter()
-        .filter_map(|head| usize::try_from(head.active).ok());
+    let least = Least::of(&loaded, units, length);
+    if let Some(least) = &least {
+        least.leave_small(&mut loaded, &mut about.notes);
+    }
+    pore_volume::complete(&mut loaded, units, length);
     let results = ResultCells {
-        active: active.into_iter().find(|active| *active > 0),
+        active: told.active,
         init: init.as_ref(),
     };
+    let summary = summary.of_grid(loaded.grid.main_dims());
     let mut cells = CellSlots::new(&mut loaded.grid, &loaded.flags, &results, &mut about.notes);
     let left_out = outliers::leave_out(&mut loaded.grid, &mut cells);
     about.notes.extend(left_out);
     let local_grids = std::mem::take(&mut loaded.local_grids);
-    let locals = local::read(local_grids, &loaded.grid, init.as_ref(), &mut about.notes);
+    let beside = Beside {
+        main: &loaded.grid,
+        init: init.as_ref(),
+        least: least.as_ref(),
+    };
+    let locals = local::read(local_grids, &beside, &mut about.notes);
     let mut source = FileSource {
         cells,
         local: None,
@@ -193,16 +294,19 @@ fn build(
         steps: Vec::new(),
         texts: std::mem::take(&mut loaded.texts),
         summary,
+        wells: WellFiles::default(),
     };
-    source.take_fitting(init, steps, &mut about);
+    source.take_fitting(init, runs, &mut about);
     leave_unfinished(&mut source.steps, &mut about.notes);
     about.notes.extend(source.misfits());
-    read_wells(&source, &mut about);
+    read_wells(&mut source, schedules, loaded.grid.main_dims(), &mut about);
     add_local_grids(&mut loaded, &mut source, locals, &mut about);
+    let paths = paths::placed(paths, &loaded.grid, &mut about);
+    source.wells.add_paths(paths, &mut about);
     let setting = Setting {
         units,
         length,
-        phases: phases.unwrap_or(loaded.phases),
+        phases: told.phases.unwrap_or(loaded.phases),
         has_connections: !loaded.connections.is_empty(),
     };
     let properties = properties::of(&source, &setting, &mut about);
@@ -218,7 +322,8 @@ fn build(
         cache: Arc::new(FieldCache::default()),
         over_steps: Arc::new(OverSteps::default()),
         wells: Arc::new(WellsOfSteps::default()),
-        minus: None,
+        minus: Vec::new(),
+        ensemble: None,
         simbox: Simbox::default(),
     }
 }
@@ -227,19 +332,33 @@ fn build(
 fn add_local_grids(
     loaded: &mut Loaded,
     source: &mut FileSource,
-    locals: Vec<Local>,
+    mut locals: Vec<Local>,
     about: &mut About,
 ) {
+    let mut main = Cow::Borrowed(&loaded.grid);
+    match local::reservoirs(&loaded.grid, &loaded.reservoirs) {
+        _ if loaded.reservoirs.is_empty() => {}
+        Ok((rest, reservoirs)) => {
+            main = Cow::Owned(rest);
+            locals.extend(reservoirs);
+            about.notes.push(local::told(&loaded.reservoirs));
+        }
+        Err(why) => about.notes.push(format!(
+            "the first coordinate system is used for all layers: {why}"
+        )),
+    }
     if locals.is_empty() {
         return;
     }
     let last = source.steps.last().map(|step| &step.arrays);
     let arrays: Vec<_> = source.init.iter().chain(last).collect();
-    let left_out = local::arrays_left_out(&locals, &arrays);
+    let left_out = local::arrays_left_out(&locals, &source.texts, &arrays);
     about.notes.extend(left_out);
     let connections = &loaded.local_connections;
-    match local::join(&loaded.grid, &source.cells, locals, connections) {
+    match local::join(&main, &source.cells, locals, connections) {
         Ok((grid, places, connections)) => {
+            let in_lattice = |cell: &mut Ijk| *cell = grid.in_lattice(0, *cell).unwrap_or(*cell);
+            loaded.connections.iter_mut().flatten().for_each(in_lattice);
             loaded.grid = grid;
             loaded.connections.extend(connections);
             source.local = Some(places);
@@ -289,13 +408,19 @@ fn leave_unfinished(steps: &mut Vec<FileStep>, notes: &mut Vec<String>) {
     }
 }
 
-fn read_wells(source: &FileSource, about: &mut About) {
+/// The wells of the restart are the truth where it has some, else those of decks.
+fn read_wells(source: &mut FileSource, decks: &[PathBuf], dims: Dims, about: &mut About) {
     if let Some(last) = source.steps.last() {
         let (names, wells) = (last.wells(), wells::of(last));
         if let Some(error) = names.as_ref().err().or(wells.as_ref().err()) {
             about.notes.push(format!("wells were not loaded: {error}"));
         }
         about.wells = names.unwrap_or_default();
+    }
+    if about.wells.is_empty() && !decks.is_empty() {
+        let first = source.steps.first().map(step);
+        let start = first.and_then(|step| Some(step.moment()? - step.days));
+        source.wells.read_schedule(decks, dims, start, about);
     }
 }
 
@@ -313,22 +438,4 @@ fn note_missing(files: &CaseFiles, about: &mut About) {
             "there is no restart file, so time steps and dynamic properties are missing".into(),
         );
     }
-}
-
-fn open_restart(
-    restart: &RestartSource,
-    about: &mut About,
-    warnings: &mut Warnings,
-) -> Vec<FileStep> {
-    let steps = match restart {
-        RestartSource::None => Ok(Vec::new()),
-        RestartSource::Unified(path) => restart::open_unified(path, warnings),
-        RestartSource::Separate(files) => restart::open_separate(files, warnings),
-    };
-    steps.unwrap_or_else(|error| {
-        about
-            .notes
-            .push(format!("time steps were not loaded: {error}"));
-        Vec::new()
-    })
 }

@@ -1,5 +1,6 @@
 //! Which properties the files of a case have, and which follow from them.
 
+use strataray_parsers::arrays::is_state;
 use strataray_parsers::cells::CellArrays;
 use strataray_parsers::units::{LengthUnit, UnitSystem};
 
@@ -49,12 +50,19 @@ pub fn of(source: &FileSource, setting: &Setting, about: &mut About) -> Vec<Prop
     }
     let has = |list: &[Property], name: &str| list.iter().any(|p| p.name == name);
     let init = source.init.iter().flat_map(CellArrays::iter);
+    let (mut of_steps, mut of_texts) = (Vec::new(), Vec::new());
     for entry in init.filter(|e| source.is_property(e)) {
         let name = entry.name();
-        if !counts.iter().any(|c| c.0 == name) && !has(&list, name) {
+        if counts.iter().any(|c| c.0 == name) {
+            of_steps.push(name);
+        } else if source.texts.iter().any(|text| text.name == name) {
+            of_texts.push(name);
+        } else if !has(&list, name) {
             list.push(Property::new(name, Kind::Static, unit(name)));
         }
     }
+    note_hidden(&of_steps, "the restart has it for every step", about);
+    note_hidden(&of_texts, "the values of the text file are shown", about);
     for &(name, steps) in &counts {
         list.push(Property {
             steps,
@@ -81,7 +89,16 @@ pub fn of(source: &FileSource, setting: &Setting, about: &mut About) -> Vec<Prop
     list
 }
 
-/// Properties of fractures, and those that change with time of matrix and fractures together, where there are any.
+/// Says which arrays of INIT are not shown.
+fn note_hidden(names: &[&str], why: &str, about: &mut About) {
+    if !names.is_empty() {
+        let names = names.join(", ");
+        let note = format!("{names} of the INIT file is not shown: {why}");
+        about.notes.push(note);
+    }
+}
+
+/// Properties of fractures, and of matrix and fractures together those of the state, where there are any.
 fn of_fractures(source: &FileSource, list: &[Property]) -> Vec<Property> {
     let has = |name: &str| source.has_fractures(name);
     let has_volumes = has("PORV");
@@ -91,7 +108,8 @@ fn of_fractures(source: &FileSource, list: &[Property]) -> Vec<Property> {
             _ => property.rest_of.iter().all(|name| has(name)),
         };
         let fracture = is_there.then(|| Pores::Fracture.twin(property));
-        let is_total = is_there && has_volumes && property.steps > 0;
+        let is_state = property.steps > 0 || is_state(&property.name);
+        let is_total = is_there && has_volumes && is_state;
         fracture
             .into_iter()
             .chain(is_total.then(|| Pores::Total.twin(property)))

@@ -9,11 +9,11 @@ use strataray_parsers::egrid::LocalGrid as FileGrid;
 use crate::model::{CellIndex, Dims, Grid, GridInput, Ijk, LocalGrid, Pillar};
 
 /// Degrees that a cell spans at most: its faces are flat.
-const WIDEST_SECTOR: f32 = 30.0;
+const WIDEST_SECTOR: f64 = 30.0;
 
 /// A grid whose x and y are radii and angles with its cells in space; `main` says which way around they run.
 pub fn straightened(
-    file: &FileGrid,
+    file: &FileGrid<f64>,
     grid: LocalGrid,
     parent: &Grid,
     main: &Grid,
@@ -34,6 +34,7 @@ pub fn straightened(
     });
     Ok(LocalGrid {
         grid: shown.map_err(|e| e.to_string())?,
+        layers: None,
         split: sectors.split,
         hosts: cells().map(|cell| grid.hosts[cell.0 as usize]).collect(),
         ..grid
@@ -42,7 +43,7 @@ pub fn straightened(
 
 /// Sectors of a file's grid, each split into several.
 struct Sectors<'a> {
-    file: &'a FileGrid,
+    file: &'a FileGrid<f64>,
     /// Cells of the file, and all that these are split into.
     dims: Dims,
     whole: Dims,
@@ -50,10 +51,10 @@ struct Sectors<'a> {
 }
 
 impl<'a> Sectors<'a> {
-    fn of(file: &'a FileGrid, dims: Dims) -> Result<Self, String> {
+    fn of(file: &'a FileGrid<f64>, dims: Dims) -> Result<Self, String> {
         let angle = |row: usize| file.coord[6 * (dims.ni + 1) * row + 1];
         let widths = (0..dims.nj).map(|j| (angle(j + 1) - angle(j)).abs());
-        let split = (widths.fold(0.0, f32::max) / WIDEST_SECTOR).ceil();
+        let split = (widths.fold(0.0, f64::max) / WIDEST_SECTOR).ceil();
         if !(0.0..=360.0 / WIDEST_SECTOR).contains(&split) {
             return Err("angles of COORD are no sectors of a circle".into());
         }
@@ -76,8 +77,7 @@ impl<'a> Sectors<'a> {
 
     /// What COORD has at a place of the pillars of ring `i`, in a row of pillars between which those of the file are.
     fn value(&self, i: usize, row: usize, place: usize) -> f64 {
-        let of_file =
-            |row: usize| f64::from(self.file.coord[6 * (i + (self.dims.ni + 1) * row) + place]);
+        let of_file = |row: usize| self.file.coord[6 * (i + (self.dims.ni + 1) * row) + place];
         let (before, part) = (row / self.split, row % self.split);
         let near = of_file(before);
         match part {
@@ -111,7 +111,7 @@ impl<'a> Sectors<'a> {
     fn zcorn(&self) -> Vec<f64> {
         let Dims { ni, nj, nk } = self.dims;
         let depth = |plane: usize, row: usize, x: usize| {
-            f64::from(self.file.zcorn[x + 2 * ni * (row + 2 * nj * plane)])
+            self.file.zcorn[x + 2 * ni * (row + 2 * nj * plane)]
         };
         let mut zcorn = Vec::with_capacity(8 * self.whole.cells());
         for plane in 0..2 * nk {

@@ -4,12 +4,14 @@ use rayon::prelude::*;
 use strataray_parsers::cells::CellArrays;
 use strataray_parsers::egrid::PorosityModel;
 
-use crate::model::{CellIndex, Grid};
+use crate::model::{CellIndex, Dims, Grid};
 
 /// How cell arrays of a file map to the grid's active cells.
 pub struct CellSlots {
     /// Natural index of each active cell.
     cells: Vec<u32>,
+    /// Cells along i, j and k.
+    dims: Dims,
     /// All cells.
     total: usize,
     /// Where values stand, if not for one active cell after the other; with dual porosity those of the matrix.
@@ -100,6 +102,7 @@ impl CellSlots {
         }
         Self {
             cells: grid.active_cells().iter().map(|c| c.0).collect(),
+            dims: grid.dims(),
             total,
             places,
             fractures,
@@ -125,6 +128,17 @@ impl CellSlots {
     /// True where an INTEHEAD with this number of active cells belongs to the grid.
     pub fn are_as_many(&self, active: usize) -> bool {
         active == self.count() || active == self.cells.len()
+    }
+
+    /// In words the grid's dimensions and those of INTEHEAD, where these are others; of dual porosity they have twice the
+    /// layers.
+    pub fn other_dims(&self, head: [i32; 3]) -> Option<[String; 2]> {
+        let [ni, nj, nk] = head.map(|n| usize::try_from(n).unwrap_or(0));
+        let own = self.dims;
+        let fits = ni == own.ni && nj == own.nj && (nk == own.nk || nk == 2 * own.nk);
+        let words = |[i, j, k]: [usize; 3]| format!("{i} x {j} x {k}");
+        let is_told = ni > 0 && nj > 0 && nk > 0;
+        (is_told && !fits).then(|| [words([own.ni, own.nj, own.nk]), words([ni, nj, nk])])
     }
 
     /// True where an array of this length has a value for each active cell.
@@ -177,6 +191,12 @@ impl CellSlots {
         self.places = Some(places.of_kept(&kept));
         self.fractures = self.fractures.take().map(|places| places.of_kept(&kept));
         self.cells.retain(|cell| keeps(*cell));
+    }
+
+    /// True where an array of all cells has values of fractures behind those of the matrix.
+    pub fn has_all_fractures(&self, count: usize) -> bool {
+        let fractures = self.fractures.as_ref();
+        fractures.is_some_and(|places| count == places.whole)
     }
 
     /// The values of the active cells' fractures from an array that [has them](Self::has_fractures).

@@ -11,9 +11,10 @@ use strataray_parsers::restart::Step as FileStep;
 use strataray_parsers::{At, ErrorKind, ParseError};
 
 use super::local::Places;
+use super::restarts;
 use super::slots::CellSlots;
 use super::summary::SummaryFiles;
-use super::wells;
+use super::wells::{self, WellFiles};
 use crate::case::pores::{self, Pores};
 use crate::case::{About, CaseError, Source, Vectors, Well};
 
@@ -38,6 +39,8 @@ pub struct FileSource {
     pub texts: Vec<DeckProperty>,
     /// Curves over time.
     pub summary: SummaryFiles,
+    /// Wells that are not of the steps.
+    pub wells: WellFiles,
 }
 
 impl FileSource {
@@ -45,7 +48,7 @@ impl FileSource {
     pub fn take_fitting(
         &mut self,
         init: Option<CellArrays>,
-        steps: Vec<FileStep>,
+        runs: Vec<Vec<FileStep>>,
         about: &mut About,
     ) {
         if let Some(init) = init {
@@ -57,18 +60,22 @@ impl FileSource {
                 Err(error) => about.notes.push(format!("INIT was not loaded: {error}")),
             }
         }
-        let first = steps.first().map(|s| &s.arrays);
-        match first.map_or(Ok(()), |a| self.check(a, a.file().path())) {
-            Ok(()) => {
-                let read = steps.iter().map(|s| s.arrays.file().path().to_owned());
-                about.files.extend(read);
-                about.files.dedup();
-                self.steps = steps;
+        let mut fitting = Vec::new();
+        for run in runs {
+            let first = run.first().map(|s| &s.arrays);
+            match first.map_or(Ok(()), |a| self.check(a, a.file().path())) {
+                Ok(()) => {
+                    let read = run.iter().map(|s| s.arrays.file().path().to_owned());
+                    about.files.extend(read);
+                    about.files.dedup();
+                    fitting.push(run);
+                }
+                Err(error) => about
+                    .notes
+                    .push(format!("time steps were not loaded: {error}")),
             }
-            Err(error) => about
-                .notes
-                .push(format!("time steps were not loaded: {error}")),
         }
+        self.steps = restarts::merged(fitting, &mut about.notes);
     }
 
     /// The values of an array at a step, of which `pick` takes those of the main grid's active cells.
@@ -83,39 +90,70 @@ impl FileSource {
             return Ok(None);
         };
         let values = pick(&arrays.values(entry)?);
-        self.of_all_grids(values, Some(arrays), name)
+        Ok(Some(match &self.local {
+            Some(places) => places.values(&values, arrays, name)?,
+            None => values,
+        }))
     }
 
-    /// True where an array of INIT or of a step has values of fractures too.
+    /// Values of the matrix or of fractures, of text or else of arrays.
+    fn values_of(
+        &self,
+        name: &str,
+        pores: Pores,
+        step: usize,
+    ) -> Result<Option<Vec<f32>>, CaseError> {
+        let is_matrix = pores == Pores::Matrix;
+        let Some(text) = self.text(name) else {
+            return self.read(name, step, |values| match is_matrix {
+                true => self.cells.pick(values),
+                false => self.cells.pick_fractures(values),
+            });
+        };
+        let values: Vec<f32> = text.values.iter().map(|v| *v as f32).collect();
+        let picked = match is_matrix {
+            true => self.cells.pick_of_all(&values),
+            false if self.cells.has_all_fractures(values.len()) => {
+                self.cells.pick_fractures(&values)
+            }
+            false => return Ok(None),
+        };
+        Ok(Some(match &self.local {
+            Some(places) => places.values_of_texts(&picked, name, is_matrix),
+            None => picked,
+        }))
+    }
+
+    /// The array of text that is a property: one that changes with time is that of the steps.
+    fn text(&self, name: &str) -> Option<&DeckProperty> {
+        let text = self.texts.iter().find(|p| p.name == name)?;
+        (!self.changes(name)).then_some(text)
+    }
+
+    /// True where text, or an array of INIT or of a step, has values of fractures too.
     pub fn has_fractures(&self, name: &str) -> bool {
+        if let Some(text) = self.text(name) {
+            return self.cells.has_all_fractures(text.values.len());
+        }
         let arrays = self.steps.iter().map(|s| &s.arrays).chain(&self.init);
         let mut found = arrays.filter_map(|arrays| arrays.find(name));
         found.any(|entry| self.cells.has_fractures(entry.count as usize))
     }
 
-    /// Values of the main grid, with those of local grids from the same arrays.
-    fn of_all_grids(
-        &self,
-        main: Vec<f32>,
-        arrays: Option<&CellArrays>,
-        name: &str,
-    ) -> Result<Option<Vec<f32>>, CaseError> {
-        Ok(Some(match &self.local {
-            Some(places) => places.values(&main, arrays, name)?,
-            None => main,
-        }))
-    }
-
     /// Refuses results of another grid.
     fn check(&self, arrays: &CellArrays, path: &Path) -> Result<(), ParseError> {
-        let active = usize::try_from(arrays.head()?.active).unwrap_or(0);
-        if active == 0 || self.cells.are_as_many(active) {
+        let head = arrays.head()?;
+        let active = usize::try_from(head.active).unwrap_or(0);
+        let message = if active > 0 && !self.cells.are_as_many(active) {
+            format!(
+                "has {active} active cells and the grid {}; it belongs to another grid",
+                self.cells.count()
+            )
+        } else if let Some([own, other]) = self.cells.other_dims(head.dims) {
+            format!("has {other} cells and the grid {own}; it belongs to another grid")
+        } else {
             return Ok(());
-        }
-        let message = format!(
-            "has {active} active cells and the grid {}; it belongs to another grid",
-            self.cells.count()
-        );
+        };
         Err(ParseError::of(
             ErrorKind::Mismatch,
             path,
@@ -249,20 +287,16 @@ impl std::fmt::Display for Misfit<'_> {
 
 impl Source for FileSource {
     fn values(&self, name: &str, step: usize) -> Result<Option<Vec<f32>>, CaseError> {
-        let (array, pores) = Pores::of(name);
-        let text = self.texts.iter().find(|p| p.name == name);
-        if let Some(property) = text.filter(|_| !self.changes(name)) {
-            let values: Vec<f32> = property.values.iter().map(|v| *v as f32).collect();
-            return self.of_all_grids(self.cells.pick_of_all(&values), None, name);
-        }
+        let (array, pores) = match self.text(name) {
+            Some(_) => (name, Pores::Matrix),
+            None => Pores::of(name),
+        };
         match pores {
-            Pores::Matrix => self.read(array, step, |values| self.cells.pick(values)),
-            Pores::Fracture => self.read(array, step, |values| self.cells.pick_fractures(values)),
+            Pores::Matrix | Pores::Fracture => self.values_of(array, pores, step),
             Pores::Total => {
                 let both = |name: &str| {
-                    let matrix = self.read(name, step, |values| self.cells.pick(values))?;
-                    let of_fractures = |values: &[f32]| self.cells.pick_fractures(values);
-                    let fractures = self.read(name, step, of_fractures)?;
+                    let matrix = self.values_of(name, Pores::Matrix, step)?;
+                    let fractures = self.values_of(name, Pores::Fracture, step)?;
                     Ok::<_, CaseError>(matrix.zip(fractures))
                 };
                 let (Some(of), Some(volumes)) = (both(array)?, both(PORE_VOLUME)?) else {
@@ -275,7 +309,8 @@ impl Source for FileSource {
 
     fn wells(&self, step: usize) -> Result<Vec<Well>, CaseError> {
         let step = self.steps.get(step);
-        Ok(step.map(wells::of).transpose()?.unwrap_or_default())
+        let of_restart = step.map(wells::of).transpose()?.unwrap_or_default();
+        Ok(self.wells.at(step.map(super::step).as_ref(), of_restart))
     }
 
     fn vectors(&self) -> Result<Option<Arc<Vectors>>, CaseError> {

@@ -6,8 +6,10 @@
 use glam::DVec2;
 use rayon::prelude::*;
 
+use super::Well;
 use super::noise::{Noise, smooth_step};
 use super::structure::{Fault, Structure};
+use crate::model::CellIndex;
 
 /// Layers of a zone.
 const ZONE_LAYERS: usize = 5;
@@ -63,7 +65,7 @@ struct Reach {
 #[derive(Debug)]
 pub struct Flood {
     rocks: Vec<Rock>,
-    pub(super) wells: Vec<String>,
+    pub(super) wells: Vec<Well>,
     gas_oil: f64,
     oil_water: f64,
     relief: f64,
@@ -101,12 +103,41 @@ impl Flood {
         let depths = rocks.iter().map(|r| f64::from(r.depth));
         let (top, bottom) = depths.fold((f64::MAX, f64::MIN), |(a, b), z| (a.min(z), b.max(z)));
         let relief = (bottom - top).max(1.0);
-        let numbered = |letter: char| (1..=PAIRS).map(move |n| format!("{letter}{n}"));
+        let oil_water = top + 0.7 * relief;
+        let is_oil = |depth: f32| f64::from(depth) < oil_water;
+        let in_column = |column: usize| {
+            let cells = cells.iter().zip(&rocks);
+            let those = cells.filter(move |(cell, _)| *cell % columns == column);
+            those.map(|(cell, rock)| (*cell, rock.depth))
+        };
+        let ijk = |cell: usize| structure.dims.ijk(CellIndex(cell as u32));
+        let well = |letter: char, n: usize, column: usize| {
+            let is_injector = letter == 'I';
+            let oil = in_column(column).filter(|(_, depth)| is_oil(*depth));
+            let oil: Vec<usize> = oil.map(|(cell, _)| cell).collect();
+            // Producers avoid the water, where they can.
+            let open: Vec<usize> = match is_injector || oil.is_empty() {
+                true => in_column(column).map(|(cell, _)| cell).collect(),
+                false => oil,
+            };
+            Well {
+                name: format!("{letter}{}", n + 1),
+                is_injector,
+                cells: open.into_iter().map(ijk).collect(),
+            }
+        };
+        let of = |letter: char, columns: &[usize]| -> Vec<Well> {
+            let columns = columns.iter().enumerate();
+            columns
+                .map(|(n, column)| well(letter, n, *column))
+                .collect()
+        };
+        let placed = [of('I', &wells.injectors), of('P', &wells.producers)].concat();
         Self {
+            wells: placed,
             rocks,
-            wells: numbered('I').chain(numbered('P')).collect(),
             gas_oil: top + 0.1 * relief,
-            oil_water: top + 0.7 * relief,
+            oil_water,
             relief,
         }
     }

@@ -11,7 +11,7 @@ mod plain;
 mod structure;
 
 use super::grid::ModelError;
-use super::ids::Dims;
+use super::ids::{Dims, Ijk};
 
 /// What stands behind a name.
 #[derive(Debug, Clone, Copy)]
@@ -202,13 +202,24 @@ impl Fields {
         }
     }
 
-    /// Names of the wells.
-    pub fn wells(&self) -> &[String] {
+    /// The wells.
+    pub fn wells(&self) -> &[Well] {
         match self {
             Self::Linear(_) => &[],
             Self::Flood(flood) => &flood.wells,
         }
     }
+}
+
+/// A well, which is there from the first step on.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Well {
+    /// Its name.
+    pub name: String,
+    /// It injects water; else it produces.
+    pub is_injector: bool,
+    /// The cells that it is open to, downward.
+    pub cells: Vec<Ijk>,
 }
 
 /// Months that the report steps span where there are not more of them.

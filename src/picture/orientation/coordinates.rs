@@ -4,9 +4,10 @@ use glam::{DVec2, DVec3};
 
 use super::edges::{self, Edge};
 use super::{Area, Arrangement, overlap};
+use crate::case::Measure;
 use crate::model::Space;
 use crate::picture::ticks::plain_labels;
-use crate::picture::units::short_unit;
+use crate::picture::units::Lengths;
 use crate::view::View;
 use crate::view::camera::middle;
 
@@ -89,12 +90,12 @@ impl Coordinate {
 }
 
 impl Coordinate {
-    /// Its unit: that of the map where it is not the grid's.
-    fn unit(self, view: &View, length_unit: &str) -> String {
-        match (self, view.world.spaces.map_unit) {
-            (Self::Index(_), _) => String::new(),
-            (Self::Easting | Self::Northing, Some(unit)) => short_unit(unit.name),
-            _ => length_unit.to_owned(),
+    /// How its numbers are written.
+    fn measure(self, lengths: &Lengths) -> Measure {
+        match self {
+            Self::Index(_) => Measure::default(),
+            Self::Easting | Self::Northing => lengths.map.clone(),
+            Self::Depth => lengths.grid.clone(),
         }
     }
 }
@@ -111,7 +112,7 @@ struct Scale {
 
 /// Adds ticks, labels and names along one edge in each direction: the lowest horizontal ones and the
 /// leftmost vertical one that have room.
-pub fn add(layout: &mut Arrangement<'_>, view: &View, length_unit: &str) {
+pub fn add(layout: &mut Arrangement<'_>, view: &View, lengths: &Lengths) {
     let coordinates = Coordinate::along_axes(view);
     let outline: Vec<Edge> = edges::far(view)
         .into_iter()
@@ -127,10 +128,7 @@ pub fn add(layout: &mut Arrangement<'_>, view: &View, length_unit: &str) {
         };
         scales.sort_by(|a, b| rank(a).total_cmp(&rank(b)));
         for moves in [false, true] {
-            if scales
-                .iter()
-                .any(|s| s.add(layout, view, length_unit, moves))
-            {
+            if scales.iter().any(|s| s.add(layout, view, lengths, moves)) {
                 break;
             }
         }
@@ -167,10 +165,12 @@ impl Scale {
         &self,
         layout: &mut Arrangement<'_>,
         view: &View,
-        length_unit: &str,
+        lengths: &Lengths,
         moves: bool,
     ) -> bool {
-        let range = self.ends.map(|p| self.coordinate.of(view, p));
+        let measure = self.coordinate.measure(lengths);
+        let range = self.ends;
+        let range = range.map(|p| measure.show(self.coordinate.of(view, p)));
         for wanted in (LABELS[1]..2 * LABELS[0]).rev() {
             let labels = self.labels(layout, view, range, wanted);
             let apart = |n: usize| {
@@ -182,7 +182,7 @@ impl Scale {
             let free = free.filter(|l| layout.is_free(&l.area) && (moves || !l.is_moved));
             let free: Vec<Label> = free.collect();
             if few && free.len() >= LABELS[1] {
-                self.write(layout, &free, &self.coordinate.unit(view, length_unit));
+                self.write(layout, &free, &measure.unit);
                 return true;
             }
         }
@@ -248,14 +248,14 @@ impl Scale {
         length * outward.signum() * way
     }
 
-    fn write(&self, layout: &mut Arrangement<'_>, labels: &[Label], length_unit: &str) {
+    fn write(&self, layout: &mut Arrangement<'_>, labels: &[Label], unit: &str) {
         for label in labels {
             layout.write(&label.text, label.area);
             layout.made.strokes.push([label.at, label.at + label.tick]);
         }
-        let named = |name: &str| match length_unit.is_empty() {
+        let named = |name: &str| match unit.is_empty() {
             true => name.to_owned(),
-            false => format!("{name} ({length_unit})"),
+            false => format!("{name} ({unit})"),
         };
         let names = [self.coordinate.name(), self.coordinate.short_name()].map(named);
         let places = names.each_ref().map(|n| self.place(layout, labels, n));

@@ -13,6 +13,8 @@ pub use edges::on_screen;
 pub use wells::well_names;
 
 use super::ticks::shortened;
+use super::units::Lengths;
+use crate::case::Measure;
 use crate::model::Space;
 use crate::view::View;
 use crate::view::camera::middle;
@@ -71,8 +73,8 @@ pub struct Orientation {
 const ROOM: [f64; 2] = [20.0, 30.0];
 
 impl Orientation {
-    /// What a view needs, lengths being named by `length_unit`, which may be empty.
-    pub fn of(view: &View, length_unit: &str, paper: Paper<'_>) -> Self {
+    /// What a view needs.
+    pub fn of(view: &View, lengths: &Lengths, paper: Paper<'_>) -> Self {
         let mut layout = Arrangement {
             paper,
             made: Self::default(),
@@ -85,10 +87,10 @@ impl Orientation {
         let room = layout.paper.size.min_element() / layout.paper.unit;
         // Numbers of cells have no length.
         if room >= ROOM[0] && view.world.space.is_map() {
-            layout.scale_bar(view, length_unit);
+            layout.scale_bar(view, &lengths.grid);
         }
         if room >= ROOM[1] {
-            coordinates::add(&mut layout, view, length_unit);
+            coordinates::add(&mut layout, view, lengths);
         }
         layout.made
     }
@@ -161,17 +163,17 @@ impl Arrangement<'_> {
     }
 
     /// A round length at the distance of the box's middle, bottom right.
-    fn scale_bar(&mut self, view: &View, length_unit: &str) {
+    fn scale_bar(&mut self, view: &View, measure: &Measure) {
         let Paper { size, unit, .. } = self.paper;
         let depth = view.camera.depth(middle(&view.world.subject.outline));
         let height = 2.0 * view.camera.half_height(depth);
-        let Some(length) = round_length(0.2 * size.x * height / size.y).filter(|_| depth > 0.0)
-        else {
+        let most = measure.show(0.2 * size.x * height / size.y);
+        let Some(length) = round_length(most).filter(|_| depth > 0.0) else {
             return;
         };
         let right = size - DVec2::new(1.2 * unit, 1.2 * unit);
-        let left = right - DVec2::X * (length * size.y / height);
-        let text = format!("{length} {length_unit}");
+        let left = right - DVec2::X * (measure.read(length) * size.y / height);
+        let text = format!("{length} {}", measure.unit);
         let label = self.area(
             text.trim_end(),
             0.5 * (left + right) - DVec2::Y * 0.95 * unit,
@@ -249,7 +251,7 @@ mod tests {
             is_dark: false,
             taken: Vec::new(),
         };
-        Orientation::of(view, "m", paper)
+        Orientation::of(view, &Lengths::named("m"), paper)
     }
 
     fn area(text: &Text) -> Area {
@@ -384,7 +386,8 @@ mod tests {
                 is_dark: true,
                 taken: Vec::new(),
             };
-            Orientation::of(&seen(30.0, 40.0, 1.0, Projection::Parallel), "m", paper)
+            let view = seen(30.0, 40.0, 1.0, Projection::Parallel);
+            Orientation::of(&view, &Lengths::named("m"), paper)
         };
         let [small, middle, large] = [200.0, 300.0, 500.0].map(count);
         // The exaggeration alone.

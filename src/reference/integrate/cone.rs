@@ -17,7 +17,7 @@ const TURN: f64 = 0.618_033_988_749_895;
 
 impl Integrator<'_> {
     /// Transmittance of a cone from `apex` around the unit vector `axis`: the mean over its directions,
-    /// weighted by their cosines to the axis (equation 3-6).
+    /// weighted by their cosines to the axis (equation 3-6), or alike where the cone is all of the sphere.
     ///
     /// The rays are [`Lighting::rays`], uniform in solid angle, one at a random place in each of as many
     /// rings of equal solid angle. They start at [`Lighting::rays_gap`] and end at the cone's length or at `reach`,
@@ -34,6 +34,8 @@ impl Integrator<'_> {
         let lighting = &self.view.style.lighting;
         let sigma = lighting.sigma();
         let step = Lighting::REFERENCE_STEP * sigma;
+        let is_around = cone.is_around();
+        let reach = if is_around { f64::INFINITY } else { reach };
         let range = [lighting.rays_gap * sigma, cone.length.min(reach)];
         let (right, up) = axis.any_orthonormal_pair();
         let open = 1.0 - cone.half_angle.cos();
@@ -47,10 +49,15 @@ impl Integrator<'_> {
                 origin: apex,
                 direction: cosine * axis + across,
             };
-            sum += cosine * (-self.optical_depth(ray, range, step, random.f64())).exp();
-            weights += cosine;
+            let weight = if is_around { 1.0 } else { cosine };
+            sum += weight * (-self.optical_depth(ray, range, step, random.f64())).exp();
+            weights += weight;
         }
-        sum / weights
+        match is_around {
+            // Light comes to a point of an even surface from half of all directions.
+            true => (2.0 * sum / weights).min(1.0),
+            false => sum / weights,
+        }
     }
 
     /// Extinction along a range of a ray, as far as it matters, by samples in steps of at most `most`.

@@ -362,10 +362,10 @@ impl Integrator<'_> {
         color.map(|channel| channel * (1.0 - EDGE_DARKNESS * lines))
     }
 
-    /// Rays half a pixel to the left and right, and half a pixel above and below.
+    /// Rays half a pixel of the final image to the left and right, and half a pixel above and below.
     fn neighbors(&self, ray: Ray) -> [[Ray; 2]; 2] {
         let View { camera, size, .. } = self.view;
-        let height = f64::from(size[1]);
+        let height = f64::from(size[1] / self.view.sampling.supersample);
         let ahead = ray.direction / ray.direction.dot(camera.forward);
         let beside = |way: DVec3| match camera.parallel {
             None => Ray {

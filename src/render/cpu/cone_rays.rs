@@ -5,6 +5,7 @@ use std::f32::consts::TAU;
 
 use glam::Vec3A;
 
+use super::around::openness;
 use super::extinction::depth_of;
 use super::lamps::{Lamp, across};
 use super::random::{pcg, unit};
@@ -34,12 +35,15 @@ pub struct ConeRays<'a> {
 }
 
 impl ConeRays<'_> {
-    /// Mean of the transmittances of rays over a cone, weighted by the cosine of their angle to the axis. Their
+    /// Mean of the transmittances of rays over a cone, weighted by the cosine of their angle to the axis, or alike where
+    /// the cone is all of the sphere. Their
     /// directions are uniform in solid angle, one in each of as many rings; samples of a ray begin at a random part of
     /// a step.
     pub fn transmittance(&self, lamp: &Lamp, p: Vec3A) -> f32 {
         let (axis, reach) = lamp.toward(p);
         let side = across(axis);
+        let is_around = lamp.emitter.is_around();
+        let reach = if is_around { f32::MAX } else { reach };
         let range = [self.gap, lamp.emitter.length.min(reach)];
         let [x, y, z] = p.to_array().map(f32::to_bits);
         let seed = pcg(x ^ pcg(y ^ pcg(z ^ pcg(self.seed))));
@@ -53,10 +57,14 @@ impl ConeRays<'_> {
             // Golden angles spread the rings' directions; one random turn for all of them.
             let (up, aside) = (GOLDEN_ANGLE * n as f32 + first_turn).sin_cos();
             let direction = cosine * axis + sine * (aside * side[0] + up * side[1]);
-            sum += cosine * passed(self.depth(p, direction, range, chance[2]));
-            weights += cosine;
+            let weight = if is_around { 1.0 } else { cosine };
+            sum += weight * passed(self.depth(p, direction, range, chance[2]));
+            weights += weight;
         }
-        sum / weights
+        match is_around {
+            true => openness(sum / weights),
+            false => sum / weights,
+        }
     }
 
     /// Optical depth of a ray within a range of distances, up to where it leaves the box.

@@ -94,16 +94,18 @@ impl Frame {
         }
     }
 
-    /// How a point of a ray moves from a pixel to the next one to the right, and to the one below: grid space.
+    /// How a point of a ray moves from a pixel of the final image to the next one to the right, and to the one below:
+    /// grid space.
     pub fn pixel_steps(&self, direction: Vec3A, distance: f32) -> [Vec3A; 2] {
         let numbers = &self.numbers;
         let depth = distance * Vec3A::from(numbers.view_z).dot(direction);
         let across = |origin: [f32; 3], axis: [f32; 3]| {
             Vec3A::from(origin) + self.to_grid * (depth * Vec3A::from(axis))
         };
+        let pixel = |rays: u32| 2.0 * numbers.rays_across / rays as f32;
         [
-            2.0 / numbers.width as f32 * across(numbers.origin_right, numbers.right),
-            -2.0 / numbers.height as f32 * across(numbers.origin_up, numbers.up),
+            pixel(numbers.width) * across(numbers.origin_right, numbers.right),
+            -pixel(numbers.height) * across(numbers.origin_up, numbers.up),
         ]
     }
 

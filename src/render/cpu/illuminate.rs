@@ -3,25 +3,24 @@
 
 use glam::{IVec3, Vec3A, Vec4};
 
-use super::cones::Cones;
-use super::lamps::Lamp;
 use super::resample::FieldVoxel;
 use super::volume::Voxels;
 use crate::render::job::Progress;
 use crate::render::plan::layout::LightingInfo;
 
-/// Transmittances of the cones from the middles of voxels to one emitter; 1 where no cell is so near that it matters.
+/// Transmittances at the middles of voxels over a box of a size in lighting space; 1 where no cell is so near that it
+/// matters.
 pub async fn light_volume(
-    cones: &Cones<'_>,
-    lamp: &Lamp,
+    box_size: Vec3A,
+    transmittance: &(dyn Fn(Vec3A) -> f32 + Sync),
     near: &Voxels<bool>,
     progress: &Progress,
 ) -> Voxels<f32> {
     let size = near.size.map(|n| n as u32);
-    let spacing = cones.size / voxels(size);
+    let spacing = box_size / voxels(size);
     Voxels::by_rows(size, progress, |y, z| {
         let found = |(x, is_near): (usize, &bool)| match is_near {
-            true => cones.transmittance(lamp, middle([x, y, z]) * spacing),
+            true => transmittance(middle([x, y, z]) * spacing),
             false => 1.0,
         };
         near.row(y, z).iter().enumerate().map(found).collect()

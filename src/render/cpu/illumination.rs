@@ -6,6 +6,7 @@ use std::time::Instant;
 
 use glam::{Vec3A, Vec4};
 
+use super::around::{Means, Surround};
 use super::cone_rays::ConeRays;
 use super::cones::Cones;
 use super::extinction::{Pyramid, opacities};
@@ -19,19 +20,21 @@ use super::transfer::Tables;
 use super::volume::Voxels;
 use crate::render::LightTimes;
 use crate::render::job::Progress;
+use crate::render::plan::around::shells;
 use crate::render::plan::extinction::Blur;
 use crate::render::plan::layout::{Emitter, LightingInfo};
 use crate::render::plan::light::{Emitters, Shading};
 use crate::render::revisions::Revisions;
 use crate::scene::Interpolation;
+use crate::scene::lighting::OcclusionMethod;
 use crate::view::View;
 
 /// Makes light and keeps it up to date.
 #[derive(Default)]
 pub struct Illumination {
     field: Kept<Field>,
-    /// Opacities of a unit of length without any blur, for rays over cones.
-    opacities: Kept<Voxels<f32>>,
+    /// Opacities of a unit of length without any blur, for rays over cones, and their means where they are asked for.
+    opacities: Kept<Means>,
     pyramid: Kept<Pyramid>,
     /// One for each emitter whose light is found before the rays.
     volumes: Vec<LightVolume>,
@@ -66,6 +69,34 @@ struct Lit {
     size: [u32; 3],
     emitter: Emitter,
     sections: Vec<[f32; 4]>,
+    method: OcclusionMethod,
+    per_shell: bool,
+}
+
+/// What light at a point is found from.
+struct Finder<'a> {
+    cones: Option<&'a Cones<'a>>,
+    means: Option<&'a Means>,
+    info: &'a LightingInfo,
+}
+
+impl<'a> Finder<'a> {
+    /// The part of the light toward a lamp, or from all sides, that comes to a point of lighting space.
+    fn of(self, lit: &Lit, lamp: &'a Lamp) -> Box<dyn Fn(Vec3A) -> f32 + Sync + 'a> {
+        let Self { cones, means, info } = self;
+        let per_shell = lit.per_shell;
+        match (lit.method, cones, means) {
+            (OcclusionMethod::Cones, Some(cones), _) => Box::new(|p| cones.transmittance(lamp, p)),
+            (OcclusionMethod::Surround, Some(cones), _) => {
+                let surround = Surround::new(cones, lamp);
+                Box::new(move |p| surround.openness(p))
+            }
+            (OcclusionMethod::SpaoMipmap, _, Some(means)) => {
+                Box::new(move |p| means.openness(info, per_shell, p))
+            }
+            _ => Box::new(|_| 1.0),
+        }
+    }
 }
 
 /// What light is made of.
@@ -121,7 +152,8 @@ impl Illumination {
     ) {
         let lighting = &source.view.style.lighting;
         let (size, light_size) = (lighting.size(), lighting.light_size());
-        let is_used = slopes || shading.casts_rays() || shading.traces_cones();
+        let is_used =
+            slopes || shading.casts_rays() || shading.traces_cones() || shading.averages();
         let fits = |f: &Field| {
             let sizes = [f.voxels.size, f.near.size];
             sizes == [size, light_size].map(|size| size.map(|n| n as usize))
@@ -150,13 +182,19 @@ impl Illumination {
     /// Makes the pyramid where the values, the transfer function or the clip planes have changed.
     async fn blur(&mut self, source: &Source<'_>, shading: Shading, progress: &Progress) {
         let revision = source.revisions.extinction;
-        if !shading.casts_rays() {
+        let shells = match shading.averages() {
+            true => shells(&source.view.style.lighting),
+            false => 0,
+        };
+        let has_shells = |means: &Means| means.shells() == shells;
+        let uses_opacities = shading.casts_rays() || shading.averages();
+        if !uses_opacities || !self.opacities.get().is_some_and(has_shells) {
             self.opacities.forget();
         }
         if !shading.traces_cones() {
             self.pyramid.forget();
         }
-        let wants_rays = shading.casts_rays() && !self.opacities.is_of(revision);
+        let wants_rays = uses_opacities && !self.opacities.is_of(revision);
         let wants_cones = shading.traces_cones() && !self.pyramid.is_of(revision);
         let Some(field) = self.field.get().filter(|_| wants_rays || wants_cones) else {
             return;
@@ -169,7 +207,8 @@ impl Illumination {
             self.pyramid.keep(revision, pyramid);
         }
         if wants_rays {
-            self.opacities.keep(revision, made);
+            let means = Means::new(made, shells, progress).await;
+            self.opacities.keep(revision, means);
         }
     }
 
@@ -182,23 +221,37 @@ impl Illumination {
         progress: &Progress,
     ) {
         self.volumes.truncate(emitters.volumes.len());
-        let (Some(pyramid), Some(field)) = (self.pyramid.get(), self.field.get()) else {
+        let Some(field) = self.field.get() else {
             self.volumes.clear();
             return;
         };
         let size = info.light_size;
-        let cones = Cones::new(pyramid, info);
+        let shading = Shading::of(&source.view.style.lighting);
+        let cones = self.pyramid.get().map(|p| Cones::new(p, info));
         for (n, &at) in emitters.volumes.iter().enumerate() {
             let lit = Lit {
                 extinction: source.revisions.extinction,
                 size,
                 emitter: emitters.emitters[at].for_cones(),
                 sections: emitters.of(at).to_vec(),
+                // The viewer's.
+                method: match at {
+                    0 => shading.method,
+                    _ => OcclusionMethod::Cones,
+                },
+                per_shell: shading.per_shell,
             };
             if self.volumes.get(n).is_some_and(|v| v.lit == lit) {
                 continue;
             }
-            let voxels = light_volume(&cones, &self.lamps[at], &field.near, progress).await;
+            let finder = Finder {
+                cones: cones.as_ref(),
+                means: self.opacities.get(),
+                info,
+            };
+            let found = finder.of(&lit, &self.lamps[at]);
+            let box_size = Vec3A::from(info.size);
+            let voxels = light_volume(box_size, &*found, &field.near, progress).await;
             let made = LightVolume { lit, voxels };
             match self.volumes.get_mut(n) {
                 Some(volume) => *volume = made,
@@ -241,7 +294,7 @@ impl Illumination {
         Some(Light {
             shading,
             cones: self.pyramid.get().map(|p| Cones::new(p, &info)),
-            rays: self.opacities.get().map(rays),
+            rays: self.opacities.get().and_then(Means::finest).map(rays),
             info,
             lamps: &self.lamps,
             volumes: self.volumes.iter().map(|v| &v.voxels).collect(),
@@ -254,7 +307,7 @@ impl Illumination {
         self.field
             .get()
             .map_or(0, |f| f.voxels.bytes() + f.near.bytes())
-            + self.opacities.get().map_or(0, Voxels::bytes)
+            + self.opacities.get().map_or(0, Means::bytes)
             + self.pyramid.get().map_or(0, Pyramid::bytes)
             + self.volumes.iter().map(|v| v.voxels.bytes()).sum::<u64>()
             + self.gradients.get().map_or(0, Voxels::bytes)

@@ -3,7 +3,7 @@
 use glam::Vec3A;
 
 use crate::render::plan::layout::{EMITTER_DIRECTIONAL, EMITTER_SPOT, Emitter};
-use crate::render::plan::light::Emitters;
+use crate::render::plan::light::{Emitters, FAR};
 
 /// A section of a cone.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -63,6 +63,19 @@ impl Lamp {
         let away = self.at - p;
         let distance = away.length().max(1e-6);
         (away / distance, distance)
+    }
+
+    /// One with the same sections far away in a direction.
+    pub fn far_toward(&self, direction: Vec3A) -> Self {
+        Self {
+            emitter: Emitter {
+                kind: EMITTER_DIRECTIONAL,
+                ..self.emitter
+            },
+            at: direction,
+            axis: FAR * direction,
+            sections: self.sections.clone(),
+        }
     }
 
     /// The sections of its cone of one part, of three and of seven.

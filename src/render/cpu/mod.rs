@@ -2,6 +2,7 @@
 //! have the names of those that they are the twins of.
 
 mod along;
+mod around;
 mod boundary;
 mod bricks;
 mod cell;

@@ -18,7 +18,7 @@ use super::srg::Srg;
 use super::surfaces::SurfaceFaces;
 use super::transfer::{Tables, Transfer};
 use crate::model::{Grid as Model, Ijk};
-use crate::render::job::{Job, Progress};
+use crate::render::job::{Progress, Work};
 use crate::render::line_of_sight::SurfaceTree;
 use crate::render::plan::faces::face_numbers;
 use crate::render::plan::frame::{frame_uniform, ghost};
@@ -199,8 +199,8 @@ impl Renderer for CpuRenderer {
         Ok(())
     }
 
-    fn start<'a>(&'a mut self, view: &'a View) -> Job<'a, Frame> {
-        Job::new(|progress| Box::pin(self.frame(view, progress)))
+    fn cast<'a>(&'a mut self, rays: &'a View, progress: Progress) -> Work<'a, Frame> {
+        Box::pin(self.frame(rays, progress))
     }
 
     fn locate(

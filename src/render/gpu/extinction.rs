@@ -65,17 +65,18 @@ impl Pyramid {
                 // lost to those above.
                 let means = Volume::new(slabs.gpu, Shape::single(shape.at(level - 1), 1));
                 let filter = BlurFilter::Mean;
-                filtered(slabs, source, group, filter, &below, (&means, 0)).await?;
+                filtered(slabs, source, group, filter, (&below, 0), (&means, 0)).await?;
                 below = means;
             }
             let filter = BlurFilter::Gaussian(level);
             let target = (&made.volume, level);
-            filtered(slabs, source, group, filter, &below, target).await?;
+            filtered(slabs, source, group, filter, (&below, 0), target).await?;
         }
         Ok(made)
     }
 
-    /// Makes the opacities of a unit of length alone, without any blur; otherwise as [`Self::make`].
+    /// Makes the opacities of a unit of length, without any blur, and so many levels of their means above; otherwise as
+    /// [`Self::make`].
     ///
     /// # Errors
     /// When the device reports an error.
@@ -83,11 +84,24 @@ impl Pyramid {
         slabs: &mut Slabs<'_>,
         source: &PyramidSource,
         group: &wgpu::BindGroup,
+        means: u32,
         before: Option<Self>,
     ) -> Result<Self, RenderError> {
-        let shape = Shape::single(source.blur.size, 1);
+        let shape = Shape::single(source.blur.size, 1 + means);
         let made = Self::new(slabs.gpu, shape, source, before);
         opacities(slabs, source, group, &made.volume).await?;
+        for level in 1..shape.levels {
+            let target = (&made.volume, level);
+            filtered(
+                slabs,
+                source,
+                group,
+                BlurFilter::Mean,
+                (&made.volume, level - 1),
+                target,
+            )
+            .await?;
+        }
         Ok(made)
     }
 
@@ -166,16 +180,16 @@ async fn filtered(
     source: &PyramidSource,
     group: &wgpu::BindGroup,
     filter: BlurFilter,
-    below: &Volume,
+    (below, level_below): (&Volume, u32),
     (target, level): (&Volume, u32),
 ) -> Result<(), RenderError> {
-    let before = below.shape.size;
+    let before = below.shape.at(level_below);
     let after = target.shape.at(level);
     let partly = |axes: usize| std::array::from_fn(|a| if a < axes { after[a] } else { before[a] });
     let between = [1, 2].map(|axes| Volume::new(slabs.gpu, Shape::single(partly(axes), 1)));
     for axis in 0..3 {
         let read = match axis {
-            0 => below.level(0),
+            0 => below.level(level_below),
             _ => between[axis - 1].level(0),
         };
         let (work, deviation) = match filter {

@@ -17,10 +17,14 @@ use super::transfer_tables::TransferTables;
 use super::volume::Volume;
 use crate::render::RenderError;
 use crate::render::job::Progress;
+use crate::render::plan::around::shells;
 use crate::render::plan::extinction::Blur;
-use crate::render::plan::layout::{Emitter, LightingInfo, Slab};
+use crate::render::plan::layout::{
+    Emitter, LightingInfo, METHOD_CONES, METHOD_SPAO_MIPMAP, METHOD_SURROUND, Slab,
+};
 use crate::render::plan::light::{Emitters, Shading};
 use crate::render::stats::LightTimes;
+use crate::scene::lighting::OcclusionMethod;
 use crate::view::View;
 use crate::view::voxels::{Shape, Voxel};
 
@@ -32,6 +36,8 @@ pub struct Made {
     pub fields: u64,
     /// Extinction pyramids.
     pub pyramids: u64,
+    /// Opacities, and their means.
+    pub means: u64,
     /// Light volumes, each emitter's counted by itself.
     pub light_volumes: u64,
 }
@@ -48,7 +54,7 @@ pub struct Illumination {
     work: u32,
     field: Option<Field>,
     pyramid: Option<Pyramid>,
-    /// Opacities without any blur, for rays over cones.
+    /// Opacities without any blur, for rays over cones, and their means where they are asked for.
     opacities: Option<Pyramid>,
     lights: Option<LightVolumes>,
     gradients: Option<Gradients>,
@@ -76,6 +82,9 @@ struct LightVolumes {
 
 #[derive(Clone, PartialEq)]
 struct Lit {
+    method: OcclusionMethod,
+    per_shell: bool,
+    /// Which pyramid, or which mean opacities.
     pyramid: u64,
     emitter: Emitter,
     sections: Vec<[f32; 4]>,
@@ -89,6 +98,8 @@ struct Gradients {
 /// Loop iterations of the rays over a cone, at most, on an adapter in software: llvmpipe ends a shader with
 /// 65,535 without a word, and eight rays side by side may all do theirs one after the other.
 const MOST_RAY_WORK: f64 = 7_500.0;
+/// Loop iterations that a voxel of light from shells costs, about.
+const SHELLS_WORK: u64 = 12;
 /// Loop iterations that a voxel of the gradient costs, about.
 const GRADIENT_WORK: u64 = 60;
 
@@ -212,12 +223,20 @@ impl Illumination {
             |made: &Option<Pyramid>| made.as_ref().is_none_or(|p| p.revision != source.revision);
         let group = self.bind(gpu, tables);
         let mut slabs = Slabs::new(gpu, &mut self.pace, progress);
-        if !shading.casts_rays() {
+        let means = match shading.averages() {
+            true => shells(&view.style.lighting),
+            false => 0,
+        };
+        let levels = Shape::single(source.blur.size, 1 + means).levels;
+        let has_other_levels =
+            |o: &Option<Pyramid>| o.as_ref().is_none_or(|o| o.levels() != levels);
+        if !shading.casts_rays() && !shading.averages() {
             self.opacities = None;
-        } else if is_stale(&self.opacities) {
+        } else if is_stale(&self.opacities) || has_other_levels(&self.opacities) {
             let before = self.opacities.take();
-            let made = Pyramid::make_sharp(&mut slabs, &source, &group, before);
+            let made = Pyramid::make_sharp(&mut slabs, &source, &group, means, before);
             self.opacities = Some(made.await?);
+            self.made.means += 1;
         }
         if !shading.traces_cones() {
             self.pyramid = None;
@@ -274,10 +293,20 @@ impl Illumination {
             },
         };
         let group = self.bind(gpu, tables);
+        let shading = Shading::of(&view.style.lighting);
         for (n, &at) in emitters.volumes.iter().enumerate() {
             let emitter = emitters.emitters[at];
+            let method = match at {
+                0 => shading.method,
+                _ => OcclusionMethod::Cones,
+            };
             let lit = Lit {
-                pyramid: self.made.pyramids,
+                method,
+                per_shell: shading.per_shell,
+                pyramid: match method {
+                    OcclusionMethod::SpaoMipmap => self.made.means,
+                    _ => self.made.pyramids,
+                },
                 emitter: emitter.for_cones(),
                 sections: emitters.of(at).to_vec(),
             };
@@ -288,9 +317,13 @@ impl Illumination {
             let from = n as u32 * size[2];
             let which = gpu.uniform("emitter", &[at as u32, from, 0, 0]);
             let mut slabs = Slabs::new(gpu, &mut self.pace, progress);
-            let work = u64::from(emitter.cone_work());
+            let work = u64::from(emitter.cone_work()).max(SHELLS_WORK);
             let range = [from, from + size[2]];
-            let illuminate = Pipeline::variant(gpu, "illuminate", "main", &[])?;
+            let constants = [
+                ("METHOD", f64::from(number(method))),
+                ("PER_SHELL", flag(shading.per_shell)),
+            ];
+            let illuminate = Pipeline::variant(gpu, "illuminate", "main", &constants)?;
             let dispatch = |encoder: &mut _, slab: &Slab, voxels: &wgpu::Buffer| {
                 run(gpu, &illuminate, encoder, slab, &which, voxels, &group, 2);
             };
@@ -412,6 +445,15 @@ impl Illumination {
     /// The light volumes, one above the other, where there are some.
     pub fn light_volumes(&self) -> Option<&Volume> {
         self.lights.as_ref().map(|l| &l.volume)
+    }
+}
+
+/// A method's number in the shader.
+fn number(method: OcclusionMethod) -> u32 {
+    match method {
+        OcclusionMethod::Cones => METHOD_CONES,
+        OcclusionMethod::Surround => METHOD_SURROUND,
+        OcclusionMethod::SpaoMipmap => METHOD_SPAO_MIPMAP,
     }
 }
 

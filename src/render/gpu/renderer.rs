@@ -14,7 +14,7 @@ use crate::render::gpu::strategy::{Preparation, RenderStrategy};
 use crate::render::gpu::surfaces::SurfacePainter;
 use crate::render::gpu::transfer_tables::TransferTables;
 use crate::render::gpu::{Drawing, FrameRenderer, Gpu, GpuGrid, strategies};
-use crate::render::job::{Job, Progress};
+use crate::render::job::{Progress, Work};
 use crate::render::line_of_sight::SurfaceTree;
 use crate::render::revisions::RevisionCounter;
 use crate::render::{DeviceBytes, Frame, Located, RenderError, Renderer, SetupTimes};
@@ -188,8 +188,8 @@ impl Renderer for GpuRenderer {
         Ok(())
     }
 
-    fn start<'a>(&'a mut self, view: &'a View) -> Job<'a, Frame> {
-        Job::new(|progress| Box::pin(self.frame(view, progress)))
+    fn cast<'a>(&'a mut self, rays: &'a View, progress: Progress) -> Work<'a, Frame> {
+        Box::pin(self.frame(rays, progress))
     }
 
     fn locate(

@@ -37,6 +37,8 @@ sources! {
         "edges"
         "light"
         "cones"
+        "around"
+        "openness"
         "cone_rays"
         "shading"
         "random"

@@ -57,7 +57,7 @@ pub fn frame_uniform(grid: &GridFacts, view: &View) -> Frame {
         origin_right: f32s(linear * (is_parallel * half_right)),
         is_parallel: is_parallel as f32,
         origin_up: f32s(linear * (is_parallel * half_up)),
-        reserved: 0.0,
+        rays_across: view.sampling.supersample as f32,
         headlight: f32s(linear * aside),
         headlight_scale: (1.0 + aside.length_squared()).sqrt().recip() as f32,
         ghost: ghost(view),

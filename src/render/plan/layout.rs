@@ -36,7 +36,7 @@ pub struct Frame {
     pub origin_right: [f32; 3],
     pub is_parallel: f32,
     pub origin_up: [f32; 3],
-    pub reserved: f32,
+    pub rays_across: f32,
     pub headlight: [f32; 3],
     pub headlight_scale: f32,
     pub ghost: [f32; 4],
@@ -163,8 +163,8 @@ pub struct LightingInfo {
     pub gradient_scale: f32,
     pub work: u32,
     pub rays_gap: f32,
-    pub reserved0: u32,
-    pub reserved1: u32,
+    pub around: u32,
+    pub around_attenuation: f32,
 }
 
 /// The viewer, or a light.
@@ -278,6 +278,12 @@ pub const LIGHT_IMAGE: u32 = 1;
 pub const LIGHT_VOLUME: u32 = 2;
 /// Light found at every sample by rays over the cone.
 pub const LIGHT_RAYS: u32 = 3;
+/// Light along a cone toward an emitter.
+pub const METHOD_CONES: u32 = 0;
+/// Light along cones to all sides.
+pub const METHOD_SURROUND: u32 = 1;
+/// Light from all sides by shells.
+pub const METHOD_SPAO_MIPMAP: u32 = 2;
 /// Bits below the coverage of a packed voxel.
 pub const PACKED_SHIFT: u32 = 11;
 /// Coverage of a packed voxel that cells fill.

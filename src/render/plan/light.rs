@@ -2,10 +2,11 @@
 
 use glam::{DVec3, Vec3};
 
+use super::around;
 use super::compact_grid::GridFacts;
 use super::cones::ConeTable;
 use super::layout::{self, Emitter, LightingInfo};
-use crate::scene::lighting::LightMode;
+use crate::scene::lighting::{LightMode, OcclusionMethod};
 use crate::view::View;
 use crate::view::lighting::{Cone, LightSource, Lighting, SPOT_EDGE};
 
@@ -22,6 +23,10 @@ pub struct Shading {
     pub blinn_phong: bool,
     /// Only inactive cells are shaded.
     pub exact_colors: bool,
+    /// How occlusion is found.
+    pub method: OcclusionMethod,
+    /// Of shells: each counts as one voxel.
+    pub per_shell: bool,
 }
 
 impl Shading {
@@ -40,6 +45,10 @@ impl Shading {
             lights,
             blinn_phong: lighting.blinn_phong,
             exact_colors: lighting.exact_colors,
+            method: lighting
+                .occlusion
+                .map_or_else(Default::default, |o| o.method),
+            per_shell: lighting.occlusion.is_some_and(|o| o.per_shell),
         }
     }
 
@@ -55,8 +64,17 @@ impl Shading {
 
     /// True where cones are traced through the pyramid, at samples or before.
     pub fn traces_cones(self) -> bool {
-        let modes = [self.occlusion, self.shadows];
+        let occlusion = match self.averages() {
+            true => layout::LIGHT_OFF,
+            false => self.occlusion,
+        };
+        let modes = [occlusion, self.shadows];
         modes.contains(&layout::LIGHT_IMAGE) || modes.contains(&layout::LIGHT_VOLUME)
+    }
+
+    /// True where occlusion is found from mean opacities.
+    pub fn averages(self) -> bool {
+        self.method == OcclusionMethod::SpaoMipmap && self.occlusion == layout::LIGHT_VOLUME
     }
 }
 
@@ -122,6 +140,21 @@ pub struct Emitters {
     pub ray_steps: f64,
 }
 
+/// Parts of the cones to all sides, at most: with seven pictures are lighter than the truth, and take twice as long.
+const SURROUND_SPLITS: u32 = 3;
+
+/// A cone as it is traced: one that is all of the sphere by narrower ones, alike.
+fn traced(cone: Cone) -> Cone {
+    match cone.is_around() {
+        true => Cone {
+            half_angle: around::half_angle(),
+            splits: cone.splits.min(SURROUND_SPLITS),
+            ..cone
+        },
+        false => cone,
+    }
+}
+
 /// Reach of the rays of a cone, and of a section of seven parts, in loop iterations.
 const SECTION_WORK: [u32; 3] = [1, 2, 4];
 
@@ -157,7 +190,7 @@ impl Emitters {
         space: &LightSpace<'_>,
     ) {
         if let Some(cone) = cone.filter(|_| mode != LightMode::Off) {
-            let table = ConeTable::of(&cone, space.sigma);
+            let table = ConeTable::of(&traced(cone), space.sigma);
             emitter.first = self.sections.len() as u32;
             [emitter.ones, emitter.threes, emitter.sevens] = table.by_parts();
             emitter.tangent = cone.half_angle.tan() as f32;
@@ -228,14 +261,19 @@ impl Emitters {
             gradient_scale: (view.style.transfer.reference_length / space.sigma) as f32,
             work: self.work,
             rays_gap: lighting.rays_gap as f32,
-            reserved0: 0,
-            reserved1: 0,
+            around: match around::shells(lighting) {
+                0 => around::DIRECTIONS,
+                shells => shells,
+            },
+            around_attenuation: lighting
+                .occlusion
+                .map_or(0.0, |o| o.cone.attenuation as f32),
         }
     }
 }
 
 /// Distance from which directional light comes, in the units of its space.
-const FAR: f32 = 1e30;
+pub const FAR: f32 = 1e30;
 
 impl Emitter {
     /// The viewer: the eye, or what sees along the axis of a parallel camera. Nothing behind the plane of
@@ -260,12 +298,30 @@ impl Emitter {
     /// Loop iterations of its cone, about.
     pub fn cone_work(&self) -> u32 {
         let counts = [self.ones, self.threes, self.sevens];
-        counts.iter().zip(SECTION_WORK).map(|(n, w)| n * w).sum()
+        let one: u32 = counts.iter().zip(SECTION_WORK).map(|(n, w)| n * w).sum();
+        match self.is_around() {
+            true => around::DIRECTIONS * one,
+            false => one,
+        }
+    }
+
+    /// True of a cone that is all of the sphere, wherever the emitter is.
+    pub fn is_around(&self) -> bool {
+        self.cosine < 0.0
     }
 
     /// What cones to it depend on: color and a spot's own cone are applied to samples.
     pub fn for_cones(self) -> Self {
         let is_directional = self.kind == layout::EMITTER_DIRECTIONAL;
+        if self.is_around() {
+            return Self {
+                at: [0.0; 3],
+                axis: [0.0; 3],
+                kind: 0,
+                first: 0,
+                ..self
+            };
+        }
         Self {
             first: 0,
             color: [0.0; 3],

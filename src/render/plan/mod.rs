@@ -2,6 +2,7 @@
 //! transfer tables, lists of faces, and what light and volumes are made of.
 
 mod accel;
+pub mod around;
 pub mod bricks;
 mod cells;
 pub mod columns;

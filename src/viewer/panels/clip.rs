@@ -5,6 +5,7 @@ use eframe::egui::{self, Ui};
 use glam::DVec3;
 
 use super::PanelContext;
+use crate::case::Measure;
 use crate::scene::{ClipSpec, CutFace};
 use crate::view::View;
 use crate::view::clip::MAX_CLIP_PLANES;
@@ -13,6 +14,7 @@ use crate::viewer::action::Action;
 pub fn show(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action>) {
     let Some(picture) = about.picture else { return };
     let view = &picture.view;
+    let length = about.world_length();
     let mut planes = about.scene.clip.clone();
     let mut removed = None;
     for (n, plane) in planes.iter_mut().enumerate() {
@@ -36,7 +38,7 @@ pub fn show(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action>) {
                     removed = Some(n);
                 }
             });
-            lean(ui, view, plane);
+            lean(ui, view, &length, plane);
         });
     }
     if let Some(n) = removed {
@@ -58,14 +60,15 @@ pub fn show(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action>) {
 }
 
 /// Direction and place of a plane.
-fn lean(ui: &mut Ui, view: &View, plane: &mut ClipSpec) {
+fn lean(ui: &mut Ui, view: &View, length: &Measure, plane: &mut ClipSpec) {
     let normal = DVec3::from_array(plane.normal).normalize_or(DVec3::X);
     let mut azimuth = normal.x.atan2(normal.y).to_degrees().rem_euclid(360.0);
     // Without a negative zero.
     let mut dip = normal.z.clamp(-1.0, 1.0).asin().to_degrees() + 0.0;
     let middle = middle(view);
     let reach = 0.5 * view.world.bounds[0].distance(view.world.bounds[1]);
-    let mut offset = (DVec3::from_array(plane.point) - middle).dot(normal);
+    let reach = length.show(reach);
+    let mut offset = length.show((DVec3::from_array(plane.point) - middle).dot(normal));
     ui.horizontal(|ui| {
         let before = (azimuth, dip, offset);
         for (value, range, suffix, what) in [
@@ -89,14 +92,16 @@ fn lean(ui: &mut Ui, view: &View, plane: &mut ClipSpec) {
             .speed(0.002 * reach)
             .range(-reach..=reach)
             .max_decimals(2);
-        ui.add(drag)
-            .on_hover_text("Distance from the model's middle, in the grid's length unit");
+        ui.add(drag).on_hover_text(
+            format!("Distance from the model's middle, {}", length.unit)
+                .trim_end_matches([',', ' ']),
+        );
         if before != (azimuth, dip, offset) {
             let (sin_a, cos_a) = azimuth.to_radians().sin_cos();
             let (sin_d, cos_d) = dip.to_radians().sin_cos();
             let normal = DVec3::new(sin_a * cos_d, cos_a * cos_d, sin_d);
             plane.normal = normal.to_array();
-            plane.point = (middle + offset * normal).to_array();
+            plane.point = (middle + length.read(offset) * normal).to_array();
         }
     });
 }

@@ -49,6 +49,11 @@ pub fn show(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action>) {
     if let Some(why) = &about.refusal {
         ui.colored_label(ui.visuals().warn_fg_color, why);
     }
+    if !about.case.minus.is_empty() {
+        for note in &about.case.about.notes {
+            ui.weak(note);
+        }
+    }
     if let Some(shown) = about.difference {
         let figures = shown.difference.figures;
         ui.label(format!(
@@ -119,7 +124,7 @@ fn values(ui: &mut Ui, about: &PanelContext<'_>, comparison: &mut Comparison) {
     let what = "Property of the second image";
     choice(ui, "Property", what, &mut comparison.property, &properties);
     if !about.others.is_empty() || comparison.case.is_some() {
-        let what = "Another case that is open; its step is the one with the nearest date";
+        let what = "Another case that is open; its image is of the step with the nearest date, a difference of the same date alone";
         choice(ui, "Case", what, &mut comparison.case, about.others);
     }
 }

@@ -7,6 +7,7 @@ use eframe::egui::{
 };
 
 use super::controls::significant;
+use crate::case::Measure;
 use crate::model::CellField;
 use crate::view::View;
 use crate::viewer::overlay;
@@ -23,7 +24,7 @@ const ENDS: egui::Vec2 = vec2(5.0, 0.0);
 const HELP: &str = "Drag points, double-click to add one, right-click to remove one. With the keyboard: arrows choose a point, Shift and arrows move it, Insert adds one, Delete removes it";
 
 /// Draws the curve and lets it be changed; true where it was.
-pub fn show(ui: &mut Ui, view: &View, unit: &str, points: &mut Vec<[f64; 2]>) -> bool {
+pub fn show(ui: &mut Ui, view: &View, measure: &Measure, points: &mut Vec<[f64; 2]>) -> bool {
     let [curve, strip] = HEIGHTS.map(|height| vec2(ui.available_width(), height));
     let (whole, response) = ui.allocate_exact_size(curve, Sense::click_and_drag());
     response.widget_info(|| {
@@ -47,7 +48,7 @@ pub fn show(ui: &mut Ui, view: &View, unit: &str, points: &mut Vec<[f64; 2]>) ->
     draw(ui, rect, points, response.has_focus().then_some(chosen));
     let tells = response.dragged() || response.has_focus();
     match points.get(chosen).filter(|_| tells) {
-        Some(point) => tip(ui, rect, view, unit, *point),
+        Some(point) => tip(ui, rect, view, measure, *point),
         None => {
             response.on_hover_text(HELP);
         }
@@ -85,10 +86,10 @@ fn draw(ui: &Ui, rect: Rect, points: &[[f64; 2]], chosen: Option<usize>) {
 }
 
 /// Tells the value and the opacity of a point.
-fn tip(ui: &Ui, rect: Rect, view: &View, unit: &str, point: [f64; 2]) {
+fn tip(ui: &Ui, rect: Rect, view: &View, measure: &Measure, point: [f64; 2]) {
     let [low, high] = view.style.transfer.range;
-    let value = view.true_value(low + (high - low) * point[0]);
-    let text = format!("{} {unit}", significant(value));
+    let value = measure.show(view.true_value(low + (high - low) * point[0]));
+    let text = format!("{} {}", significant(value), measure.unit);
     let text = format!("{}: opacity {:.2}", text.trim_end(), point[1]);
     let at = place(rect, point);
     // Above the point, on the side where there is room.

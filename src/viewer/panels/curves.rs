@@ -7,6 +7,7 @@ use super::PanelContext;
 use super::controls::significant;
 use super::over_time::{TimeAxis, keep_pointed, nearest_step, pointed_before, touched};
 use super::{vector_list, vector_plots};
+use crate::case::Measure;
 use crate::viewer::action::Action;
 use crate::viewer::keys::Command;
 use crate::viewer::marks;
@@ -93,7 +94,7 @@ fn save(ui: &mut Ui, about: &PanelContext<'_>) -> Option<Command> {
         .button("Copy")
         .on_hover_text("Copies the summary vectors shown as CSV: a row for each time");
     if copy.clicked()
-        && let Ok(text) = vectors.csv()
+        && let Ok(text) = vectors.csv(about.units())
     {
         ui.ctx().copy_text(text);
     }
@@ -163,15 +164,14 @@ fn curve(
     let pointed = pointed_before(ui).and_then(|days| nearest_step(case, days));
     let ink = ui.visuals().weak_text_color();
     let days = |step: usize| case.steps.get(step).map_or(0.0, |s| s.days);
+    let measure = about.measure(&curve.property);
+    let place = |(step, value): &(usize, f32)| [days(*step), measure.show(f64::from(*value))];
     let shown = about.picture.map(|p| p.view.shown.step);
     let count = curves.of.cells.len();
-    let plot = axis.plot(&curve.property, case.unit(&curve.property), height);
+    let plot = axis.plot(&curve.property, &measure.unit, height);
     let response = plot.show(ui, |plot| {
         for (n, points) in curve.points.iter().enumerate() {
-            let points: Vec<_> = points
-                .iter()
-                .map(|(s, v)| [days(*s), f64::from(*v)])
-                .collect();
+            let points: Vec<_> = points.iter().map(place).collect();
             let name = curves
                 .of
                 .cells
@@ -185,7 +185,7 @@ fn curve(
         let Some(pointed) = pointed else { return };
         for (n, points) in curve.points.iter().enumerate() {
             let at = points.iter().find(|(step, _)| *step == pointed);
-            let at: Vec<_> = at.iter().map(|(s, v)| [days(*s), f64::from(*v)]).collect();
+            let at: Vec<_> = at.into_iter().map(place).collect();
             plot.points(
                 Points::new("", at)
                     .radius(3.5)
@@ -193,17 +193,19 @@ fn curve(
             );
         }
     });
-    values(ui, curves, curve, pointed.or(shown));
+    values(ui, curves, curve, &measure, pointed.or(shown));
     touched(case, &response, actions)
 }
 
 /// The values of the cells at a step, each in the color of its curve.
-fn values(ui: &mut Ui, curves: &Curves, curve: &TimeCurve, step: Option<usize>) {
+fn values(ui: &mut Ui, curves: &Curves, curve: &TimeCurve, measure: &Measure, step: Option<usize>) {
     let count = curves.of.cells.len();
     ui.horizontal_wrapped(|ui| {
         for (n, (cell, points)) in curves.of.cells.iter().zip(&curve.points).enumerate() {
             let value = points.iter().find(|(at, _)| Some(*at) == step);
-            let value = value.map_or("-".into(), |(_, v)| significant(f64::from(*v)));
+            let value = value.map_or("-".into(), |(_, v)| {
+                significant(measure.show(f64::from(*v)))
+            });
             let name = curves.of.case.grid.name_of(*cell);
             ui.colored_label(marks::color(n, count), format!("{name}: {value}"));
         }

@@ -3,8 +3,8 @@
 use eframe::egui::{self, Ui};
 
 use super::PanelContext;
-use super::controls::one_of;
-use crate::scene::{CutFace, Hull, Inactive, Mode, Show, ShownFaults, ShownWells};
+use super::controls::{list, one_of};
+use crate::scene::{CutFace, Hull, Inactive, Mode, Show, ShownFaults, ShownWells, Units};
 use crate::transfer::presets::parse_color;
 use crate::view::Surfaces;
 use crate::viewer::action::Action;
@@ -45,7 +45,7 @@ pub fn show(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action>) {
         let mut wells = show.wells.are_shown();
         let switch = egui::Checkbox::new(&mut wells, "Wells");
         let switch = ui.add_enabled(has_wells, switch)
-            .on_hover_text("Tubes through the cells that wells are connected to: green for producers, blue for water injectors, orange for gas injectors, gray where nothing flows")
+            .on_hover_text("Tubes along the paths of wells, or through the cells that they are connected to: green for producers, blue for water injectors, orange for gas injectors, purple where only the path is known, gray where nothing flows")
             .on_disabled_hover_text("The files name no wells");
         if switch.changed() {
             show.wells = ShownWells::All(wells);
@@ -54,9 +54,26 @@ pub fn show(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action>) {
         background(ui, about, actions);
         ui.end_row();
     });
+    units(ui, about, actions);
     if show != about.scene.show {
         actions.push(Action::Show(show));
     }
+}
+
+/// The units of all numbers that are shown and typed.
+fn units(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action>) {
+    let current = about.scene.units;
+    let what = "Units of all numbers shown and typed; colors, filters and cameras stay as they are";
+    list(ui, "Units", what, current.describe(), |ui| {
+        for units in Units::ALL {
+            if ui
+                .selectable_label(units == current, units.describe())
+                .clicked()
+            {
+                actions.push(Action::Units(units));
+            }
+        }
+    });
 }
 
 /// The outer faces of what is drawn; of opaque cells they are the image.

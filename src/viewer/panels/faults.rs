@@ -4,7 +4,6 @@ use eframe::egui::{self, Color32, Ui, vec2};
 
 use super::PanelContext;
 use super::controls::significant;
-use crate::picture::short_unit;
 use crate::scene::ShownFaults;
 use crate::view::surfaces::fault_color;
 use crate::viewer::action::Action;
@@ -43,7 +42,7 @@ pub fn show(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action>) {
 }
 
 fn list(ui: &mut Ui, about: &PanelContext<'_>, shown: &mut ShownFaults) {
-    let unit = short_unit(&about.case.about.length_unit);
+    let length = about.lengths().grid;
     let named = &about.case.about.named_faults;
     let throws = about.case.largest_throws();
     egui::Grid::new("faults")
@@ -65,7 +64,10 @@ fn list(ui: &mut Ui, about: &PanelContext<'_>, shown: &mut ShownFaults) {
                     }
                 });
                 ui.label(match throws.get(n).copied().flatten() {
-                    Some(throw) => format!("{} {unit}", significant(rounded(throw))),
+                    Some(throw) => {
+                        let throw = significant(rounded(length.show(throw)));
+                        format!("{throw} {}", length.unit)
+                    }
                     None => "no faces".to_owned(),
                 });
                 ui.end_row();

@@ -115,8 +115,9 @@ fn bounds(
     (range, log): ([f64; 2], bool),
     bars: &[u32],
 ) {
+    let measure = about.measure(&row.name);
     let [low, high] = range;
-    let mut ends = [row.min.unwrap_or(low), row.max.unwrap_or(high)];
+    let ends = [row.min.unwrap_or(low), row.max.unwrap_or(high)];
     let mut parts = match low < high {
         true => ends.map(|end| part(range, log, end)),
         false => [0.0, 1.0],
@@ -131,7 +132,7 @@ fn bounds(
             format!("Smallest {}", row.name),
             format!("Largest {}", row.name),
         ],
-        values: ends,
+        values: ends.map(|end| measure.show(end)),
         bars: &heights,
         inverted: row.invert,
         height: HISTOGRAM,
@@ -139,7 +140,9 @@ fn bounds(
         nudge: None,
     };
     if slider.show(ui, &mut parts) {
-        let bound = |part: f64| six_digits(value(range, log, part));
+        // Rounded as it is read.
+        let shown = |part: f64| six_digits(measure.show(value(range, log, part)));
+        let bound = |part: f64| measure.read(shown(part));
         if parts[0] != before[0] {
             row.min = (parts[0] > 0.0).then(|| bound(parts[0]));
         }
@@ -147,22 +150,25 @@ fn bounds(
             row.max = (parts[1] < 1.0).then(|| bound(parts[1]));
         }
     }
+    let [low, high] = range.map(|end| measure.show(end));
     let speed = 0.002 * (high - low).abs().max(1e-9);
     ui.horizontal(|ui| {
-        let [min, max] = &mut ends;
+        let [min, max] = &mut ends.map(|end| measure.show(end));
         let what = "Smallest value drawn; open at the smallest of all steps";
         if number(ui, min, speed, "Smallest value drawn", what) {
-            row.min = (*min > low).then_some(*min);
+            let kept = measure.read(*min);
+            row.min = (*min > low).then_some(kept);
             // The end that is moved pushes the other one.
-            row.max = row.max.map(|max| max.max(*min));
+            row.max = row.max.map(|max| max.max(kept));
         }
         ui.label("to");
         let what = "Largest value drawn; open at the largest of all steps";
         if number(ui, max, speed, "Largest value drawn", what) {
-            row.max = (*max < high).then_some(*max);
-            row.min = row.min.map(|min| min.min(*max));
+            let kept = measure.read(*max);
+            row.max = (*max < high).then_some(kept);
+            row.min = row.min.map(|min| min.min(kept));
         }
-        ui.weak(about.case.unit(&row.name));
+        ui.weak(&measure.unit);
         let open = ui.add_enabled(row.limits(), egui::Button::new("All"));
         if open.on_hover_text("Opens both ends").clicked() {
             (row.min, row.max, row.values) = (None, None, None);

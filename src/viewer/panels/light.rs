@@ -5,7 +5,7 @@ use glam::DVec3;
 
 use super::PanelContext;
 use super::controls::{one_of, slider};
-use crate::scene::lighting::{LightSpec, OcclusionSpec, PRESETS};
+use crate::scene::lighting::{LightSpec, OcclusionMethod, OcclusionSpec, PRESETS};
 use crate::scene::{LightMode, LightingSpec};
 use crate::viewer::action::Action;
 
@@ -33,7 +33,9 @@ pub fn show(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action>) {
         egui::CollapsingHeader::new("Occlusion settings")
             .show(ui, |ui| cone(ui, occlusion))
             .header_response
-            .on_hover_text("How occlusion is found: cones from each point toward the viewer");
+            .on_hover_text(
+                "How occlusion is found: cones from each point toward the viewer, or to all sides",
+            );
     }
     if lighting != *current {
         actions.push(Action::Lighting(lighting));
@@ -109,6 +111,35 @@ fn direction_of([azimuth, elevation]: [f64; 2]) -> [f64; 3] {
 
 /// How occlusion is found.
 fn cone(ui: &mut Ui, occlusion: &mut OcclusionSpec) {
+    method(ui, occlusion);
+    let what = "Factor on the extinction that occludes";
+    let attenuation = egui::Slider::new(&mut occlusion.attenuation, 0.0..=2.0);
+    slider(ui, "Attenuation", what, attenuation);
+    let what = "How far it looks, as a part of the model's diagonal";
+    let length = egui::Slider::new(&mut occlusion.length, 0.01..=1.0);
+    slider(ui, "Reach", what, length.logarithmic(true));
+    if !occlusion.method.is_around() {
+        toward_viewer(ui, occlusion);
+    }
+}
+
+/// Which way it looks.
+fn method(ui: &mut Ui, occlusion: &mut OcclusionSpec) {
+    let titles = ["To the viewer", "To all sides", "All sides, quick"];
+    let methods: Vec<_> = OcclusionMethod::ALL
+        .into_iter()
+        .zip(titles)
+        .map(|(method, title)| (method, title, method.describe()))
+        .collect();
+    if let Some(method) = one_of(ui, "Looks", occlusion.method, &methods) {
+        occlusion.method = method;
+        if method.is_around() {
+            occlusion.mode = LightMode::Preilluminated;
+        }
+    }
+}
+
+fn toward_viewer(ui: &mut Ui, occlusion: &mut OcclusionSpec) {
     let modes = [
         (
             LightMode::Preilluminated,
@@ -127,9 +158,6 @@ fn cone(ui: &mut Ui, occlusion: &mut OcclusionSpec) {
     let what = "Wider cones look at more of the surroundings";
     let angle = egui::Slider::new(&mut occlusion.half_angle_degrees, 1.0..=45.0);
     slider(ui, "Cone half angle", what, angle.suffix("°"));
-    let what = "Factor on the extinction that occludes";
-    let attenuation = egui::Slider::new(&mut occlusion.attenuation, 0.0..=2.0);
-    slider(ui, "Attenuation", what, attenuation);
     let splits = [
         (1, "1", "Fastest"),
         (3, "3", "Between"),

@@ -38,9 +38,10 @@ use super::reader::{Curves, Table};
 use super::spread::Spread;
 use super::state::State;
 use super::vectors::VectorCurves;
-use crate::case::{Case, Property, Well};
+use crate::case::{Case, Measure, Property, Units, Well};
 use crate::picking::Pick;
-use crate::scene::Scene;
+use crate::picture::Lengths;
+use crate::scene::{Scene, Space};
 
 pub use controls::{Choice, list, one_of};
 pub use curves::show as curves;
@@ -79,11 +80,34 @@ pub struct PanelContext<'a> {
 }
 
 impl PanelContext<'_> {
-    /// The properties of the case in front; one that is a difference to another case is none of these.
+    /// The properties of the case in front; differences to another case and statistics over several are none of these.
     pub fn properties(&self) -> impl Iterator<Item = &Property> {
-        let minus = self.case.minus.as_ref();
+        let is_minus = |name: &str| self.case.minus.iter().any(|m| m.name == name);
         let all = self.case.properties.iter();
-        all.filter(move |p| minus.is_none_or(|m| m.name != p.name))
+        all.filter(move |p| !is_minus(&p.name) && self.case.statistic(&p.name).is_none())
+    }
+
+    /// The units in which numbers are shown and typed.
+    pub fn units(&self) -> Units {
+        self.scene.units.into()
+    }
+
+    /// How the values of a property are shown and typed.
+    pub fn measure(&self, property: &str) -> Measure {
+        self.case.measure(property, self.units())
+    }
+
+    /// How lengths are shown, with short units.
+    pub fn lengths(&self) -> Lengths {
+        Lengths::of(self.case, self.units())
+    }
+
+    /// How distances in the picture are shown: those between numbers of cells as they are.
+    pub fn world_length(&self) -> Measure {
+        match self.scene.space {
+            Space::Map => self.lengths().grid,
+            Space::Ijk => Measure::of_file("cells"),
+        }
     }
 
     /// The property shown.

@@ -4,7 +4,7 @@ use eframe::egui::{self, Ui};
 
 use super::PanelContext;
 use super::controls::{list, number, one_of, show_chosen};
-use crate::case::{Kind, Property};
+use crate::case::{Kind, Property, Statistic};
 use crate::scene::{Coloring, Interpolation, Mode, OwnRange, RangeSpec, ScaleSpec};
 use crate::viewer::action::Action;
 
@@ -19,6 +19,7 @@ pub fn show(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action>) {
     let shown = about.picture.map(|p| p.view.shown.property.as_str());
     let current = about.scene.property.as_deref().or(shown).unwrap_or("");
     properties(ui, about, current, actions);
+    statistics(ui, about, current, actions);
     differences(ui, about, current, actions);
     let are_categories = about.scene.transfer.coloring == Coloring::Categories;
     ui.add_enabled_ui(!are_categories, |ui| {
@@ -40,6 +41,14 @@ fn properties(ui: &mut Ui, about: &PanelContext<'_>, current: &str, actions: &mu
         .on_hover_text(what);
     ui.data_mut(|d| d.insert_temp(id, search.clone()));
     let now = about.case.now_of(current);
+    let statistic = about.case.statistic(now);
+    let now = statistic.map_or(now, |(of, _)| of);
+    // Another property is shown by the same statistic.
+    let chosen = |name: &str| {
+        let same = statistic.map(|(_, statistic)| statistic.name(name));
+        let same = same.filter(|name| about.case.property(name).is_ok());
+        same.unwrap_or_else(|| name.to_owned())
+    };
     let search = search.to_lowercase();
     // As high with few names as with many, so that what is below stays in its place.
     egui::ScrollArea::vertical()
@@ -63,17 +72,46 @@ fn properties(ui: &mut Ui, about: &PanelContext<'_>, current: &str, actions: &mu
                 }
                 ui.weak(group);
                 for property in found {
-                    let unit = match property.unit.as_str() {
+                    let measure = about.measure(&property.name);
+                    let unit = match measure.unit.as_str() {
                         "" => "No unit",
                         unit => unit,
                     };
                     let label = ui.selectable_label(now == property.name, &property.name);
                     if label.on_hover_text(unit).clicked() {
-                        actions.push(Action::Property(property.name.clone()));
+                        actions.push(Action::Property(chosen(&property.name)));
                     }
                 }
             }
         });
+}
+
+/// Turns a property into a statistic over several cases, and back into its values in the first.
+fn statistics(ui: &mut Ui, about: &PanelContext<'_>, current: &str, actions: &mut Vec<Action>) {
+    let Some(ensemble) = &about.case.ensemble else {
+        return;
+    };
+    let (of, now) = match about.case.statistic(current) {
+        Some((of, statistic)) => (of, Some(statistic)),
+        None => (current, None),
+    };
+    if about.case.property(&Statistic::Mean.name(of)).is_err() {
+        return;
+    }
+    let own = format!("none: {}", ensemble.members[0]);
+    let what = format!("Over {}", ensemble.members.join(", "));
+    let text = now.map_or_else(|| own.clone(), |statistic| statistic.words().to_owned());
+    list(ui, "Statistic", &what, &text, |ui| {
+        if ui.selectable_label(now.is_none(), &own).clicked() {
+            actions.push(Action::Property(of.to_owned()));
+        }
+        for (statistic, _, words) in Statistic::ALL {
+            let entry = ui.selectable_label(now == Some(statistic), words);
+            if entry.clicked() {
+                actions.push(Action::Property(statistic.name(of)));
+            }
+        }
+    });
 }
 
 /// Turns a property that changes with time into its difference to a step, and back.
@@ -169,8 +207,10 @@ fn range(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action>) {
         Some(Of::Fixed) if low < high => actions.push(Action::Range(RangeSpec::Fixed([low, high]))),
         _ => {}
     }
-    let unit = about.case.unit(&picture.view.shown.property);
+    let measure = about.measure(&picture.view.shown.property);
+    let unit = measure.unit.as_str();
     let is_log = about.scene.transfer.scale == ScaleSpec::Log;
+    [low, high] = [low, high].map(|end| measure.show(end));
     let span = (high - low).abs().max(1e-9);
     ui.horizontal(|ui| {
         let mut changed = false;
@@ -184,6 +224,7 @@ fn range(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action>) {
             changed |= number(ui, value, speed, name, what.trim_end_matches([',', ' ']));
         }
         ui.weak(unit);
+        let [low, high] = [low, high].map(|end| measure.read(end));
         if changed && low < high && (low > 0.0 || !is_log) {
             actions.push(Action::Range(RangeSpec::Fixed([low, high])));
         }

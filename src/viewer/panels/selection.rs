@@ -5,10 +5,10 @@ use eframe::egui::{self, Ui};
 use super::cells::clear;
 use super::controls::significant;
 use super::{PanelContext, table, values};
-use crate::case::Case;
+use crate::case::{Case, Units};
 use crate::model::Ijk;
 use crate::picking::{Fault, Hit, Part, Pick};
-use crate::picture::short_unit;
+use crate::picture::Lengths;
 use crate::scene::{Filter, PropertyFilter, ScaleSpec};
 use crate::view::wells::Head;
 use crate::viewer::action::{Action, Beside};
@@ -34,8 +34,8 @@ pub fn show(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action>) {
         let is_shown =
             view.is_some_and(|v| v.shown.step == pick.step && v.shown.property == pick.property);
         if let Some(hit) = hit.filter(|h| is_shown && h.ijk.one_based() == *last) {
-            ui.label(place(hit));
-            ui.label(seen(pick, hit, about.case));
+            ui.label(about.lengths().place(hit.map.to_array()));
+            ui.label(seen(pick, hit, about.case, about.units()));
         }
         if let Some(cell) = about.case.grid.dims().one_based(*last) {
             along_ray(ui, pick, cell, actions);
@@ -43,66 +43,64 @@ pub fn show(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action>) {
     }
     go_to(ui, about, actions);
     if let Some(table) = about.table {
-        values::show(ui, table, about.property());
+        values::show(ui, table, about.property(), about.units());
         buttons(ui, about, table, actions);
     }
 }
 
-fn place(hit: &Hit) -> String {
-    let [east, north, depth] = hit.map.to_array();
-    format!("E {east:.1}  N {north:.1}  depth {depth:.2}")
-}
-
 /// What of the cell is seen: the value at the place where it differs from the cell's own, and how much of the
 /// pixel it is.
-fn seen(pick: &Pick, hit: &Hit, case: &Case) -> String {
+fn seen(pick: &Pick, hit: &Hit, case: &Case, units: Units) -> String {
     let mut lines = Vec::new();
     match &hit.part {
         Part::Inside => {}
         Part::Section => lines.push("On a clip plane".into()),
         Part::Face(_) => lines.push("Outer face".into()),
-        Part::Fault(fault) => lines.push(of_fault(fault, case)),
+        Part::Fault(fault) => lines.push(of_fault(fault, case, units)),
     }
-    lines.extend(between_cells(pick, hit, case));
+    lines.extend(between_cells(pick, hit, case, units));
     let share = 100.0 * hit.contribution;
     lines.push(format!("{share:.0} % of this pixel"));
     lines.join("\n")
 }
 
 /// The value at the place, where it is another one than the cell's: interpolated between cells.
-fn between_cells(pick: &Pick, hit: &Hit, case: &Case) -> Option<String> {
-    let shown = value(&pick.property, hit.shown, case);
+fn between_cells(pick: &Pick, hit: &Hit, case: &Case, units: Units) -> Option<String> {
+    let shown = value(&pick.property, hit.shown, case, units);
     let is_between = hit.is_between;
     is_between.then(|| format!("{shown} at this point (interpolated)"))
 }
 
 /// A value with its property's name and unit.
-fn value(property: &str, value: f64, case: &Case) -> String {
-    let text = format!("{property} {} {}", significant(value), case.unit(property));
+fn value(property: &str, value: f64, case: &Case, units: Units) -> String {
+    let measure = case.measure(property, units);
+    let value = significant(measure.show(value));
+    let text = format!("{property} {value} {}", measure.unit);
     text.trim_end().to_owned()
 }
 
 /// A fault with its throw, and the cells on its near and far side.
-fn of_fault(fault: &Fault, case: &Case) -> String {
-    let unit = short_unit(&case.about.length_unit);
+fn of_fault(fault: &Fault, case: &Case, units: Units) -> String {
+    let length = Lengths::of(case, units).grid;
     let [near, far] = [fault.near, fault.far].map(|cell| case.grid.cell_name(cell));
     format!(
         "{}\nBetween {near} and, beyond it, {far}",
-        fault.in_words(&unit)
+        fault.in_words(&length)
     )
 }
 
 /// What is seen where the pointer rests, in words; `None` where nothing is.
-pub fn hover_text(pick: &Pick, case: &Case) -> Option<String> {
+pub fn hover_text(pick: &Pick, case: &Case, units: Units) -> Option<String> {
     let mut lines = Vec::new();
     lines.extend(pick.well.as_ref().map(Head::in_words));
     if let Some(hit) = &pick.hit {
         let cell = case.grid.cell_name(hit.ijk);
-        let value = value(&pick.property, hit.value, case);
+        let value = value(&pick.property, hit.value, case, units);
         lines.push(format!("{cell}   {value}"));
-        lines.extend(between_cells(pick, hit, case));
+        lines.extend(between_cells(pick, hit, case, units));
     }
-    lines.extend(pick.fault.as_ref().map(|fault| of_fault(fault, case)));
+    let fault = pick.fault.as_ref();
+    lines.extend(fault.map(|fault| of_fault(fault, case, units)));
     (!lines.is_empty()).then(|| lines.join("\n"))
 }
 
@@ -159,7 +157,9 @@ fn go_to(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action>) {
             .button("Select")
             .on_hover_text("Adds this cell to the selection");
         if select.clicked() {
-            actions.push(Action::Select(cell, Beside::Others));
+            let place = dims.one_based(cell).and_then(|c| grid.in_lattice(0, c));
+            let place = place.map_or(cell, |place| place.one_based());
+            actions.push(Action::Select(place, Beside::Others));
         }
     });
     ui.data_mut(|d| d.insert_temp(id, (start, cell)));
@@ -178,7 +178,7 @@ fn buttons(ui: &mut Ui, about: &PanelContext<'_>, table: &Table, actions: &mut V
         }
         let copy = ui.button("Copy").on_hover_text("Copies a table with one row per cell, step and property as CSV; Ctrl + Shift + S saves it");
         if copy.clicked()
-            && let Ok(text) = table::csv(table, about.curves)
+            && let Ok(text) = table::csv(table, about.curves, about.units())
         {
             ui.ctx().copy_text(text);
         }
@@ -187,8 +187,8 @@ fn buttons(ui: &mut Ui, about: &PanelContext<'_>, table: &Table, actions: &mut V
             actions.push(Action::Deselect);
         }
         // A difference of two cases is a property of neither, so that neither can be filtered by it.
-        let minus = about.case.minus.as_ref();
-        let can = minus.is_none_or(|m| Some(m.name.as_str()) != about.property());
+        let mut minus = about.case.minus.iter();
+        let can = minus.all(|m| Some(m.name.as_str()) != about.property());
         let alike = ui.add_enabled(can, egui::Button::new("Filter to similar values"));
         let what = "Draws only cells whose value of the property shown is close to that of the last selected cell";
         let refusal = "Not for a difference of two cases; filter by a property of one of them";

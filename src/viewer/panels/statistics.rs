@@ -66,11 +66,12 @@ fn values(ui: &mut Ui, about: &PanelContext<'_>, picture: &Picture) {
         ui.weak("No cell with a value is drawn.");
         return;
     };
+    let measure = about.measure(&view.shown.property);
     ui.label(format!(
         "{} of {} drawn cells, {}",
         view.shown.property,
         summary.count,
-        match about.case.unit(&view.shown.property) {
+        match measure.unit.as_str() {
             "" => "no unit",
             unit => unit,
         }
@@ -89,7 +90,7 @@ fn values(ui: &mut Ui, about: &PanelContext<'_>, picture: &Picture) {
     egui::Grid::new("values").striped(true).show(ui, |ui| {
         for (name, value) in rows {
             ui.label(name);
-            ui.label(significant(value));
+            ui.label(significant(measure.show(value)));
             ui.end_row();
         }
     });

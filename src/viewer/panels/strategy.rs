@@ -27,6 +27,7 @@ pub fn show(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action>) {
                 StrategyKind::Plts => plts(ui, about, actions),
             }
             sampling_step(ui, about, actions);
+            supersample(ui, about, actions);
             storage(ui, about, actions);
         })
         .header_response
@@ -35,7 +36,8 @@ pub fn show(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action>) {
 
 fn sampling_step(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action>) {
     if let Some(picture) = about.picture {
-        let mut step = picture.view.sampling.step;
+        let length = about.world_length();
+        let mut step = length.show(picture.view.sampling.step);
         let speed = 0.01 * step;
         ui.horizontal(|ui| {
             ui.label("Sampling step");
@@ -44,16 +46,33 @@ fn sampling_step(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action
                 .range(0.001..=1e6);
             if ui
                 .add(drag)
-                .on_hover_text("Distance between samples along a ray, in the grid's length unit")
+                .on_hover_text(format!(
+                    "Distance between samples along a ray, {}",
+                    length.unit
+                ))
                 .changed()
             {
-                actions.push(Action::SamplingStep(Some(step)));
+                actions.push(Action::SamplingStep(Some(length.read(step))));
             }
             if ui.button("Default").clicked() {
                 actions.push(Action::SamplingStep(None));
             }
         });
     }
+}
+
+fn supersample(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action>) {
+    ui.horizontal(|ui| {
+        ui.label("Rays per pixel")
+            .on_hover_text("More rays make edges of cells, faults and wells smooth; images of 4 rays take four times as long");
+        for across in 1..=4_u32 {
+            let is_on = about.scene.supersample == across;
+            let label = ui.selectable_label(is_on, (across * across).to_string());
+            if label.clicked() {
+                actions.push(Action::Supersample(across));
+            }
+        }
+    });
 }
 
 fn storage(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action>) {

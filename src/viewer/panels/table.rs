@@ -2,22 +2,22 @@
 
 use std::io;
 
-use crate::case::Case;
+use crate::case::{Case, Units};
 use crate::export::table::{CsvTable, Row};
 use crate::viewer::reader::{Curves, Table};
 
-/// Values of the step, then those of the curves at all other steps, as comma-separated text.
+/// Values of the step, then those of the curves at all other steps, as comma-separated text in some units.
 ///
 /// # Errors
 /// When it cannot be written; the sentence is for people.
-pub fn csv(table: &Table, curves: Option<&Curves>) -> Result<String, String> {
-    let bytes = written(table, curves);
+pub fn csv(table: &Table, curves: Option<&Curves>, units: Units) -> Result<String, String> {
+    let bytes = written(table, curves, units);
     let text = bytes.and_then(|bytes| String::from_utf8(bytes).map_err(io::Error::other));
     text.map_err(|e| format!("the table cannot be written: {e}"))
 }
 
-fn written(table: &Table, curves: Option<&Curves>) -> io::Result<Vec<u8>> {
-    let mut out = CsvTable::new(&table.of.case, Vec::new())?;
+fn written(table: &Table, curves: Option<&Curves>, units: Units) -> io::Result<Vec<u8>> {
+    let mut out = CsvTable::new(&table.of.case, units, Vec::new())?;
     for (cell, values) in by_cell(table, curves) {
         for (property, step, value) in values {
             out.row(&Row {

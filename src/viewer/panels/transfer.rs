@@ -24,8 +24,8 @@ pub fn show(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action>) {
             shown.map(|p| [p.0, p.1]).collect()
         }
     };
-    let unit = about.case.unit(&picture.view.shown.property);
-    if curve::show(ui, &picture.view, unit, &mut points) {
+    let measure = about.measure(&picture.view.shown.property);
+    if curve::show(ui, &picture.view, &measure, &mut points) {
         spec.opacity = Some(OpacitySpec::Points(points));
         // Points that were found refer to the length that was found with them.
         let length = picture.view.style.transfer.reference_length;

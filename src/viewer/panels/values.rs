@@ -3,6 +3,7 @@
 use eframe::egui::{Align2, FontId, Label, Rect, RichText, ScrollArea, TextStyle, Ui, pos2, vec2};
 
 use super::controls::significant;
+use crate::case::Units;
 use crate::viewer::marks;
 use crate::viewer::reader::Table;
 
@@ -14,7 +15,7 @@ const CELL: f32 = 76.0;
 const MOST: f32 = 240.0;
 
 /// Draws the table, the property shown first.
-pub fn show(ui: &mut Ui, table: &Table, shown: Option<&str>) {
+pub fn show(ui: &mut Ui, table: &Table, shown: Option<&str>, units: Units) {
     let mut rows: Vec<_> = table.rows.iter().collect();
     rows.sort_by_key(|row| Some(row.0.as_str()) != shown);
     let cells = &table.of.cells;
@@ -44,9 +45,10 @@ pub fn show(ui: &mut Ui, table: &Table, shown: Option<&str>) {
                 .len()
                 .min(first + 2 + (viewport.height() / ROW) as usize);
         for n in lines.clone() {
+            let measure = table.of.case.measure(&rows[n].0, units);
             for column in columns.clone() {
                 let value = rows[n].2.get(column).copied().flatten();
-                let text = value.map_or("-".into(), |v| significant(f64::from(v)));
+                let text = value.map_or("-".into(), |v| significant(measure.show(f64::from(v))));
                 ui.put(place(column, 1 + n), Label::new(text).truncate());
             }
         }
@@ -54,7 +56,8 @@ pub fn show(ui: &mut Ui, table: &Table, shown: Option<&str>) {
         let names = seen.with_max_x(seen.left() + NAMES);
         ui.painter().rect_filled(names, 0.0, ground);
         for n in lines {
-            let (name, unit, _) = rows[n];
+            let name = &rows[n].0;
+            let unit = table.of.case.measure(name, units).unit;
             let at =
                 Rect::from_min_size(pos2(names.left(), place(0, 1 + n).top()), vec2(NAMES, ROW));
             let text = format!("{name} {unit}");

@@ -4,7 +4,7 @@ use eframe::egui::containers::menu::{MenuButton, MenuConfig};
 use eframe::egui::{self, PopupCloseBehavior, ScrollArea, Ui};
 
 use super::PanelContext;
-use crate::case::{Vector, VectorKind, Vectors};
+use crate::case::{Units, Vector, VectorKind, Vectors};
 use crate::scene::names;
 use crate::viewer::action::Action;
 use crate::viewer::state::CurvePlots;
@@ -89,7 +89,7 @@ fn list(ui: &mut Ui, about: &PanelContext<'_>, vectors: &Vectors, actions: &mut 
         .auto_shrink([false, true])
         .show_rows(ui, row, found.len(), |ui, rows| {
             for vector in &found[rows] {
-                entry(ui, vector, &mut now);
+                entry(ui, vector, about.units(), &mut now);
             }
         });
     for note in &vectors.notes {
@@ -105,7 +105,7 @@ fn list(ui: &mut Ui, about: &PanelContext<'_>, vectors: &Vectors, actions: &mut 
 }
 
 /// A vector that is shown or not.
-fn entry(ui: &mut Ui, vector: &Vector, chosen: &mut Vec<String>) {
+fn entry(ui: &mut Ui, vector: &Vector, units: Units, chosen: &mut Vec<String>) {
     ui.horizontal(|ui| {
         let name = &vector.name;
         let mut is_on = chosen.contains(name);
@@ -113,7 +113,7 @@ fn entry(ui: &mut Ui, vector: &Vector, chosen: &mut Vec<String>) {
             chosen.retain(|n| n != name);
             chosen.extend(is_on.then(|| name.clone()));
         }
-        ui.weak(&vector.unit);
+        ui.weak(units.of_vector(vector).unit);
     });
 }
 

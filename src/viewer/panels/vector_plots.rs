@@ -6,7 +6,7 @@ use egui_plot::{Line, Points, VLine};
 use super::PanelContext;
 use super::controls::significant;
 use super::over_time::{TimeAxis, nearest, pointed_before, touched};
-use crate::case::Vectors;
+use crate::case::{Measure, Vectors};
 use crate::viewer::action::Action;
 use crate::viewer::marks;
 use crate::viewer::vectors::VectorCurve;
@@ -18,18 +18,21 @@ const PHASES: [(u8, Color32); 3] = [
     (b'G', Color32::from_rgb(213, 94, 0)),
 ];
 
+/// A vector, its color, and how its values are shown.
+type PlottedCurve<'a> = (&'a VectorCurve, Color32, Measure);
+
 /// Vectors that share an axis, each in its color.
 pub struct UnitPlot<'a> {
-    unit: &'a str,
+    unit: String,
     vectors: &'a Vectors,
-    curves: Vec<(&'a VectorCurve, Color32)>,
+    curves: Vec<PlottedCurve<'a>>,
 }
 
 impl UnitPlot<'_> {
     /// The keywords of its vectors, each once.
     fn title(&self) -> String {
         let mut keywords: Vec<&str> = Vec::new();
-        for (curve, _) in &self.curves {
+        for (curve, ..) in &self.curves {
             let keyword = curve.vector.keyword.as_str();
             if !keywords.contains(&keyword) {
                 keywords.push(keyword);
@@ -45,11 +48,12 @@ pub fn grouped<'a>(about: &PanelContext<'a>) -> Vec<UnitPlot<'a>> {
     let Some((of_case, Ok(vectors))) = about.vectors.map(|v| (v, &v.vectors)) else {
         return Vec::new();
     };
+    let units = about.units();
     let key = |c: &'a VectorCurve| {
         let is_gas = phase(c) == Some(b'G') && !c.vector.unit.is_empty();
-        (c.vector.unit.as_str(), is_gas)
+        (units.of_vector(&c.vector).unit, is_gas)
     };
-    let mut groups: Vec<((&str, bool), Vec<&VectorCurve>)> = Vec::new();
+    let mut groups: Vec<((String, bool), Vec<&VectorCurve>)> = Vec::new();
     for curve in &of_case.curves {
         match groups.iter_mut().find(|(known, _)| *known == key(curve)) {
             Some((_, curves)) => curves.push(curve),
@@ -59,7 +63,10 @@ pub fn grouped<'a>(about: &PanelContext<'a>) -> Vec<UnitPlot<'a>> {
     let plot = |((unit, _), curves)| UnitPlot {
         unit,
         vectors,
-        curves: colored(curves),
+        curves: colored(curves)
+            .into_iter()
+            .map(|(curve, color)| (curve, color, units.of_vector(&curve.vector)))
+            .collect(),
     };
     groups.into_iter().map(plot).collect()
 }
@@ -119,11 +126,14 @@ pub fn show(
     let told = pointed.or(step.and_then(|days| nearest(times(), days)));
     let ink = ui.visuals().weak_text_color();
     ui.strong(plot.title());
-    let first = plot.curves.first().map_or("", |(c, _)| &c.vector.name);
-    let response = axis.plot(first, plot.unit, height).show(ui, |ui| {
-        for (curve, color) in &plot.curves {
+    let first = plot.curves.first().map_or("", |(c, ..)| &c.vector.name);
+    let response = axis.plot(first, &plot.unit, height).show(ui, |ui| {
+        for (curve, color, measure) in &plot.curves {
             let values = at.iter().zip(&curve.values);
-            let points: Vec<_> = values.map(|(at, v)| [*at, f64::from(*v)]).collect();
+            let values = values.filter(|(_, v)| !v.is_nan());
+            let points: Vec<_> = values
+                .map(|(at, v)| [*at, measure.show(f64::from(*v))])
+                .collect();
             let name = &curve.vector.name;
             match curve.vector.is_history {
                 true => ui.points(Points::new(name, points).radius(2.0).color(*color)),
@@ -135,17 +145,19 @@ pub fn show(
             ui.vline(VLine::new("", time).color(ink));
         }
         let Some(n) = pointed else { return };
-        for (curve, color) in &plot.curves {
-            let value = curve.values.get(n).map(|v| [at[n], f64::from(*v)]);
+        for (curve, color, measure) in &plot.curves {
+            let value = curve.values.get(n).filter(|v| !v.is_nan());
+            let value = value.map(|v| [at[n], measure.show(f64::from(*v))]);
             let value: Vec<_> = value.into_iter().collect();
             ui.points(Points::new("", value).radius(3.5).color(*color));
         }
     });
     ui.horizontal_wrapped(|ui| {
         ui.weak(told.map_or_else(String::new, |n| plot.vectors.date(n)));
-        for (curve, color) in &plot.curves {
+        for (curve, color, measure) in &plot.curves {
             let value = told.and_then(|n| curve.values.get(n));
-            let value = value.map_or("-".into(), |v| significant(f64::from(*v)));
+            let value = value.filter(|v| !v.is_nan());
+            let value = value.map_or("-".into(), |v| significant(measure.show(f64::from(*v))));
             ui.colored_label(*color, format!("{}: {value}", curve.vector.name));
         }
     });

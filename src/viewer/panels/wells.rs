@@ -15,12 +15,13 @@ use crate::viewer::orbit;
 /// Height of the list, in points.
 const LIST: f32 = 220.0;
 /// Kinds in the order of the list.
-const KINDS: [WellKind; 5] = [
+const KINDS: [WellKind; 6] = [
     WellKind::Producer,
     WellKind::WaterInjector,
     WellKind::GasInjector,
     WellKind::OilInjector,
     WellKind::Unknown,
+    WellKind::Path,
 ];
 
 /// Which wells the user looks for.
@@ -46,7 +47,7 @@ impl Sought {
 
 pub fn show(ui: &mut Ui, about: &PanelContext<'_>, actions: &mut Vec<Action>) {
     if about.case.about.wells.is_empty() {
-        ui.weak("The files name no wells.");
+        ui.weak("The files name no wells. Files with paths (.dev) and decks can be dropped on the window.");
         return;
     }
     let Some(wells) = about.wells else {
@@ -135,7 +136,7 @@ fn buttons(
         let filter = &about.scene.filter;
         let is_on = !filter.wells.is_empty();
         let button = ui.selectable_label(is_on, "Only connected cells");
-        let what = "Draws only the cells that the selected well is connected to, or else all wells listed; click again for all cells";
+        let what = "Draws only the cells that the selected well is connected to, or else all wells listed; of a well without connections those on its path; click again for all cells";
         if button.on_hover_text(what).clicked() {
             actions.push(Action::Filter(Filter {
                 wells: match is_on {
@@ -200,15 +201,9 @@ fn row(
         }
         let is_selected = about.state.well.as_ref() == Some(&well.name);
         let name = ui.selectable_label(is_selected, &well.name).on_hover_text(
-            "Selects the well: its cells and its curves; double click moves the camera to it",
+            "Selects the well: the cells that it is connected to, or that its path goes through, and its curves; double click moves the camera to it",
         );
-        let open = well.connections.iter().filter(|c| c.is_open).count();
-        let state = if well.is_open { "open" } else { "shut" };
-        ui.weak(format!("{}, {state}", well.kind.name()))
-            .on_hover_text(format!(
-                "{open} of {} connections open",
-                well.connections.len()
-            ));
+        ui.weak(well.in_words()).on_hover_text(details(well));
         if name.clicked() {
             actions.push(select(about, well));
         }
@@ -216,6 +211,25 @@ fn row(
             actions.extend(camera_on(about, well));
         }
     });
+}
+
+/// Connections and the path of a well.
+fn details(well: &Well) -> String {
+    let open = well.connections.iter().filter(|c| c.is_open).count();
+    let connections = format!("{open} of {} connections open", well.connections.len());
+    let Some(path) = &well.path else {
+        return connections;
+    };
+    let file = path.file.file_name().unwrap_or_default().to_string_lossy();
+    let path = format!(
+        "path of {} points through {} cells, from {file}",
+        path.points.len(),
+        path.crossings.len()
+    );
+    match well.connections.is_empty() {
+        true => path,
+        false => format!("{connections}; {path}"),
+    }
 }
 
 fn cells<'a>(about: &PanelContext<'a>, well: &'a Well) -> impl Iterator<Item = Ijk> + use<'a> {

@@ -24,6 +24,7 @@ const MENUS: [(&str, &[Command]); 5] = [
             Command::SaveVectors,
             Command::ExportCells,
             Command::CopyLine,
+            Command::Ensemble,
             Command::Close,
             Command::Reopen,
         ],
@@ -42,6 +43,8 @@ const MENUS: [(&str, &[Command]); 5] = [
             Command::Camera(CameraMove::From(6)),
             Command::Camera(CameraMove::From(5)),
             Command::Camera(CameraMove::Projection),
+            Command::Case(1),
+            Command::Case(-1),
             Command::Mouse,
             Command::Panels,
             Command::Theme,
@@ -170,18 +173,18 @@ fn hint(ctx: &Context, command: Command) -> String {
 fn tabs(window: &mut Window, ui: &mut Ui) {
     let (mut closes, mut chosen) = (None, None);
     ui.horizontal_wrapped(|ui| {
-        for (n, document) in window.documents.iter().enumerate() {
+        for (n, (document, title)) in window.documents.iter().zip(window.titles()).enumerate() {
             let is_current = n == window.current;
-            let tab = ui.selectable_label(is_current, document.title());
+            let tab = ui.selectable_label(is_current, &title);
             if tab
-                .on_hover_text(document.path.display().to_string())
+                .on_hover_text(document.key().display().to_string())
                 .clicked()
             {
                 chosen = Some(n);
             }
             let close = ui.small_button("×").on_hover_text("Close this case");
             close.widget_info(|| {
-                let name = format!("Close {}", document.title());
+                let name = format!("Close {title}");
                 egui::WidgetInfo::labeled(egui::Role::Button, true, name)
             });
             if close.clicked() {

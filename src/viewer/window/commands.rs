@@ -58,6 +58,8 @@ impl Window {
             Command::Help => self.sheets.keys = !self.sheets.keys,
             Command::Notes => self.sheets.notes = !self.sheets.notes,
             Command::Deselect if self.sheets.are_open() => self.sheets = Sheets::default(),
+            Command::Case(by) => self.step_case(by),
+            Command::Ensemble => self.open_ensemble(ctx),
             Command::Compare => {
                 let told = self
                     .document_mut()
@@ -100,7 +102,7 @@ impl Window {
             self.tell("no case was closed");
             return;
         };
-        let is_open = self.documents.iter().any(|d| d.path == paths.path);
+        let is_open = self.documents.iter().any(|d| d.is_of(&paths));
         self.show_case(ctx, paths);
         if let Some(document) = self.document_mut().filter(|_| !is_open) {
             document.state = state;

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::Window;
-use crate::case::{Case, minus, nearest};
+use crate::case::{self, Case, Minus, nearest};
 use crate::scene::{Scene, StepSpec};
 use crate::viewer::document::Document;
 use crate::viewer::export::Compared;
@@ -102,7 +102,12 @@ impl Window {
                         .property
                         .as_deref()
                         .unwrap_or(now);
-                    Some(minus(&of.0[0], &of.0[1], [now, base], of.2, &of.1).map(Arc::new))
+                    let minus = Minus {
+                        name: of.1.clone(),
+                        now: now.to_owned(),
+                        base: base.to_owned(),
+                    };
+                    Some(case::minus(&of.0[0], &of.0[1], &[minus], of.2).map(Arc::new))
                 })
                 .unwrap_or_else(|| Err("Choose a property first.".into()));
             CaseDifference { of, made }

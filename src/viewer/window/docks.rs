@@ -114,9 +114,9 @@ impl Window {
 
     /// Path and name of the other cases that are open.
     fn other_cases(&self) -> Vec<(PathBuf, String)> {
-        let path = self.document().map(|d| &d.path);
-        let others = self.documents.iter().filter(|d| Some(&d.path) != path);
-        others.map(|d| (d.path.clone(), d.title())).collect()
+        let others = self.documents.iter().zip(self.titles()).enumerate();
+        let others = others.filter(|(n, _)| *n != self.current);
+        others.map(|(_, (d, title))| (d.key(), title)).collect()
     }
 
     /// What panels know.

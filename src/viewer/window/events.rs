@@ -1,5 +1,7 @@
 //! What happened since the last frame: answers of threads, files that changed, what was dropped.
 
+use std::path::PathBuf;
+
 use eframe::egui::Context;
 
 use super::{Window, begin_loading};
@@ -66,7 +68,7 @@ impl Window {
             (Some(document), Read::Table(table)) => document.table = Some(table),
             (Some(document), Read::Curves(curves)) => document.curves = Some(curves),
             (Some(document), Read::Vectors(vectors)) => document.vectors = Some(vectors),
-            (Some(document), Read::Wells(wells)) => document.wells = Some(wells),
+            (Some(document), Read::Wells(wells)) => document.take_wells(wells),
             (Some(document), Read::Spread(spread)) => document.spreads.push(spread),
             (Some(document), Read::Look(_, property, look)) => {
                 document
@@ -91,6 +93,7 @@ impl Window {
     fn listen_to_files(&mut self, ctx: &Context) {
         let (mut opened, mut replaced) = (Vec::new(), Vec::new());
         let mut gone = None;
+        let mut has_grown = false;
         for document in &mut self.documents {
             let before = document.case.clone();
             if document.listen() {
@@ -99,18 +102,28 @@ impl Window {
                 if self.watches
                     && let Some(case) = &document.case
                 {
-                    let waker = ctx.clone();
-                    let files = case.about.files.clone();
-                    document.watch = Some(Watch::begin(files, move || waker.request_repaint()));
+                    let watch = |files: &[PathBuf]| {
+                        let waker = ctx.clone();
+                        Watch::begin(files.to_vec(), move || waker.request_repaint())
+                    };
+                    document.watch = Some(watch(&case.about.files));
+                    let summary = &case.about.summary;
+                    document.summary_watch = (!summary.is_empty()).then(|| watch(summary));
                 }
             }
             match document.watch.as_ref().and_then(Watch::poll) {
                 Some(Change::Written) => {
-                    document.loading = Some(begin_loading(ctx, document.paths(), None))
+                    let paths = document.paths();
+                    document.loading = Some(begin_loading(ctx, paths, None, &self.grids));
                 }
                 Some(Change::Gone) => gone = Some(document.title()),
                 None => {}
             }
+            let summary = document.summary_watch.as_ref().and_then(Watch::poll);
+            has_grown |= summary == Some(Change::Written);
+        }
+        if has_grown {
+            self.asked.forget_vectors();
         }
         if let Some(name) = gone {
             self.fail(format!(

@@ -2,6 +2,7 @@
 
 mod bar;
 mod camera;
+mod cases;
 mod commands;
 mod difference;
 mod docks;
@@ -12,12 +13,13 @@ mod sheets;
 mod sides;
 
 use std::path::PathBuf;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use eframe::egui::{self, Context, Ui};
 
 use super::action::Action;
-use super::cases::{self, Meaning};
+use super::cases::{Meaning, meaning};
 use super::dialogs::{CasesSheet, Dialog};
 use super::document::Document;
 use super::export::Export;
@@ -28,6 +30,7 @@ use super::pictures::{DraftCount, Pictures};
 use super::reader::Reader;
 use super::settings::Settings;
 use super::state::{CurvePlots, State};
+use crate::case::GridPool;
 use crate::case::load::{self, CasePaths};
 use crate::picking::Pick;
 use difference::CaseDifference;
@@ -58,6 +61,8 @@ pub struct Window {
     awaited: Option<String>,
     /// What the reader was asked for last.
     asked: ReadRequests,
+    /// The grids of the cases that are open, equal ones once.
+    grids: Arc<GridPool>,
     /// The difference of two cases that was asked for last.
     case_difference: Option<CaseDifference>,
     /// The size of letters that is remembered has been set.
@@ -85,6 +90,7 @@ impl Window {
             watches,
             awaited: None,
             asked: ReadRequests::default(),
+            grids: Arc::default(),
             case_difference: None,
             is_zoomed: false,
         };
@@ -97,7 +103,7 @@ impl Window {
     pub fn open(&mut self, ctx: &Context, paths: Vec<PathBuf>) {
         let mut files = Vec::new();
         for path in paths {
-            match cases::meaning(&path) {
+            match meaning(&path) {
                 Meaning::Case(case) if path.is_dir() => files.push(case),
                 Meaning::Several(cases) => self.sheets.cases = Some(CasesSheet::new(cases)),
                 // What is no case says why when it is read.
@@ -113,10 +119,7 @@ impl Window {
         // What is not there says so in a tab of its own, and keeps no other case from opening.
         let (there, missing): (Vec<_>, Vec<_>) =
             files.into_iter().partition(|file| load::is_there(file));
-        let missing = missing.into_iter().map(|path| CasePaths {
-            path,
-            with: Vec::new(),
-        });
+        let missing = missing.into_iter().map(CasePaths::of);
         for paths in load::group(&there).into_iter().chain(missing) {
             self.show_case(ctx, paths);
         }
@@ -138,7 +141,7 @@ impl Window {
 
     /// Opens a case in a tab of its own, or brings the tab to the front that has it.
     pub(super) fn show_case(&mut self, ctx: &Context, paths: CasePaths) {
-        let tab = self.documents.iter().position(|d| d.path == paths.path);
+        let tab = self.documents.iter().position(|d| d.is_of(&paths));
         if let Some(tab) = tab {
             self.current = tab;
             // The same case with other files is read again with all of them.
@@ -160,7 +163,12 @@ impl Window {
 
     /// Begins to open a case.
     fn load(&self, ctx: &Context, paths: CasePaths) -> Loading {
-        begin_loading(ctx, paths, self.settings.first_property.clone())
+        begin_loading(
+            ctx,
+            paths,
+            self.settings.first_property.clone(),
+            &self.grids,
+        )
     }
 
     /// Reads the case in front again; it stays as it is until then.
@@ -343,9 +351,16 @@ impl Window {
 }
 
 /// Begins to open a case, with a property in front where the case has it.
-pub(super) fn begin_loading(ctx: &Context, paths: CasePaths, property: Option<String>) -> Loading {
+pub(super) fn begin_loading(
+    ctx: &Context,
+    paths: CasePaths,
+    property: Option<String>,
+    grids: &Arc<GridPool>,
+) -> Loading {
     let waker = ctx.clone();
-    Loading::begin(paths, property, move || waker.request_repaint())
+    Loading::begin(paths, property, grids.clone(), move || {
+        waker.request_repaint();
+    })
 }
 
 impl eframe::App for Window {

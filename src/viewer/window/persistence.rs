@@ -41,7 +41,8 @@ impl Window {
         let document = self.document().ok_or("open a case first")?;
         let vectors = document.vectors.as_ref().filter(|v| !v.curves.is_empty());
         let vectors = vectors.ok_or("choose summary vectors below the picture first (Ctrl + G)")?;
-        std::fs::write(path, vectors.csv()?).map_err(|e| format!("{}: {e}", path.display()))?;
+        let text = vectors.csv(document.units())?;
+        std::fs::write(path, text).map_err(|e| format!("{}: {e}", path.display()))?;
         Ok(format!("the summary vectors are in {}", path.display()))
     }
 
@@ -52,7 +53,7 @@ impl Window {
     pub fn save_table(&self, path: &Path) -> Result<String, String> {
         let document = self.document().ok_or("open a case first")?;
         let table = document.table.as_ref().ok_or("select a cell first")?;
-        let text = panels::csv(table, document.curves.as_ref())?;
+        let text = panels::csv(table, document.curves.as_ref(), document.units())?;
         std::fs::write(path, text).map_err(|e| format!("{}: {e}", path.display()))?;
         Ok(format!("the values are in {}", path.display()))
     }

@@ -28,6 +28,13 @@ pub struct ReadRequests {
     vectors: VectorsRequest,
 }
 
+impl ReadRequests {
+    /// The vectors are asked for once more, as their files have changed.
+    pub(super) fn forget_vectors(&mut self) {
+        self.vectors = None;
+    }
+}
+
 /// Address of a case, and the step of the wells or which vectors.
 type WellRequest = Option<(usize, usize)>;
 type VectorsRequest = Option<(usize, VectorRequest)>;
@@ -42,7 +49,7 @@ impl Window {
         let comparison = document.state.setup.comparison.as_ref()?;
         match &comparison.case {
             Some(path) => {
-                let other = self.documents.iter().find(|d| d.path == *path);
+                let other = self.documents.iter().find(|d| d.key() == *path);
                 other.and_then(|d| d.case.clone())
             }
             None => document.case.clone(),

@@ -388,7 +388,9 @@ impl Window {
             return;
         }
         let pick = self.sides.hover.as_ref();
-        let text = pick.and_then(|pick| panels::hover_text(pick, &pointed.wanted.case));
+        let wanted = &pointed.wanted;
+        let units = wanted.scene.units.into();
+        let text = pick.and_then(|pick| panels::hover_text(pick, &wanted.case, units));
         if let Some(text) = text {
             overlay::tip(ui, pointed.pointer + vec2(14.0, 14.0), &text);
         }

@@ -50,7 +50,63 @@ fn a_deck_of_dual_porosity_shows_its_matrix() {
     assert_eq!(active(&case), 60);
     near(&[case.grid.signed_bulk_volume()], &[7.2e6]);
     near(&stats(&case, "PORO", 0), &[0.2, 0.2, 0.2]);
-    told(&case, &["matrix", "fractures"]);
+    near(&stats(&case, "PORO.FRACTURE", 0), &[0.01, 0.01, 0.01]);
+}
+
+#[test]
+fn fractures_of_a_deck_have_values_of_their_own() {
+    let folder = tempfile::tempdir().unwrap();
+    let sizes = "DX\n 120*100 /\nDY\n 120*80 /\nDZ\n 30*10 30*20 60*5 /\nTOPS\n 30*2000 /\nPORO\n 60*0.2 60*0.05 /\n\
+                 PERMX\n 60*1 60*1000 /\nACTNUM\n 60*1 30*1 30*0 /\nMULTIPLY\n PERMX 2 1 6 1 5 2 3 /\n/\n\
+                 SOLUTION\nSWAT\n 60*0.2 60*0.7 /\n";
+    let text = blocks(sizes).replace("METRIC", "METRIC\nDUALPORO");
+    let case = open(&tiny::write(folder.path(), "A.DATA", &text));
+    assert_eq!(case.about.porosity_model, "dual");
+    let values = |name: &str| {
+        let field = case.field(name, 0).unwrap();
+        [field.values()[0], field.values()[30]].map(f64::from)
+    };
+    // The box of MULTIPLY reaches over the second layer of the matrix and the first one of the fractures.
+    near(&values("PERMX"), &[1.0, 2.0]);
+    near(&values("PERMX.FRACTURE")[..1], &[2000.0]);
+    // Fractures of the second layer are inactive.
+    assert!(values("PERMX.FRACTURE")[1].is_nan());
+    // By pore volume, of which the matrix of the first layer has 0.2 and the fractures 0.05 of the same rock.
+    near(
+        &values("SWAT.TOTAL"),
+        &[(0.2 * 0.2 + 0.05 * 0.7) / 0.25, 0.2],
+    );
+    near(&values("PORV")[..1], &[100.0 * 80.0 * 10.0 * 0.2]);
+    assert!(!names(&case).contains(&"PORO.TOTAL") && !names(&case).contains(&"DX.FRACTURE"));
+    told(&case, &["PERMX.FRACTURE", "NODPPM"]);
+    let effective = text.replace("DUALPORO", "DUALPORO\nNODPPM");
+    let case = open(&tiny::write(folder.path(), "B.DATA", effective));
+    assert!(!case.about.notes.iter().any(|n| n.contains("NODPPM")));
+    // As one porosity the same text is four layers, without fractures.
+    let case = open(&tiny::write(
+        folder.path(),
+        "C.DATA",
+        text.replace("DUALPORO", ""),
+    ));
+    assert_eq!(active(&case), 90);
+    assert!(!names(&case).iter().any(|name| name.contains('.')));
+}
+
+#[test]
+fn fractures_without_pore_volume_leave_the_matrix() {
+    let folder = tempfile::tempdir().unwrap();
+    let sizes = "DX\n 120*100 /\nDY\n 120*80 /\nDZ\n 120*10 /\nTOPS\n 30*2000 /\nPORO\n 30*0.2 30*0 30*0 30*0.1 /\n";
+    let text = blocks(sizes).replace("METRIC", "METRIC\nDUALPERM");
+    let case = open(&tiny::write(folder.path(), "A.DATA", &text));
+    assert_eq!(active(&case), 60);
+    let values = |name: &str| case.field(name, 0).unwrap().values().to_vec();
+    let [matrix, fractures] = ["PORO", "PORO.FRACTURE"].map(values);
+    assert!(matrix[0] > 0.0 && fractures[0].is_nan());
+    assert!(matrix[30].is_nan() && fractures[30] > 0.0);
+    // Where neither has any, there is no cell.
+    let none = text.replace("30*0 30*0 30*0.1", "30*0 60*0");
+    let case = open(&tiny::write(folder.path(), "B.DATA", none));
+    assert_eq!(active(&case), 30);
 }
 
 #[test]

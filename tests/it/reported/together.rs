@@ -34,6 +34,7 @@ fn f16_properties_beside_a_grid() {
         let expected = [CasePaths {
             path: grid.clone(),
             with: vec![poro.clone()],
+            others: Vec::new(),
         }];
         assert_eq!(load::group(&[grid.clone(), poro.clone()]), expected);
         assert_eq!(load::group(&[poro, grid]), expected);
@@ -66,6 +67,7 @@ fn f16_results_and_faults_of_another_name() {
         [CasePaths {
             path: grid.clone(),
             with: with.clone(),
+            others: Vec::new(),
         }]
     );
     let case = load::open_with(&grid, &with).unwrap();

@@ -1,13 +1,17 @@
-//! Wells as tubes in world space: through the cells that they are connected to, and up to a head above the model.
+//! Wells as tubes in world space: along their paths, or through the cells that they are connected to and up to a head
+//! above the model.
+
+mod course;
 
 use std::sync::Arc;
 
 use glam::DVec3;
 
+use self::course::Flow;
 use super::error::SceneError;
 use super::step::well_step;
 use super::surfaces::Surfaces;
-use crate::case::{Case, Connection, ConnectionAxis, Well, WellKind};
+use crate::case::{Case, Well, WellKind};
 use crate::model::{Grid, Spaces};
 use crate::scene::names::matches;
 use crate::scene::{Scene, ShownWells};
@@ -58,8 +62,7 @@ pub struct Head {
 impl Head {
     /// The well in words, such as `Well P1: producer, open`.
     pub fn in_words(&self) -> String {
-        let state = if self.is_open { "open" } else { "shut" };
-        format!("Well {}: {}, {state}", self.name, self.kind.name())
+        format!("Well {}: {}", self.name, self.kind.in_words(self.is_open))
     }
 }
 
@@ -72,8 +75,8 @@ const SHUT: f64 = 0.6;
 /// How much thicker tubes are in cells that they are open to, and at the head.
 const OPEN: f64 = 1.7;
 const HEAD: f64 = 2.4;
-/// Height of heads above the model's box, as a part of its diagonal.
-const ABOVE: f64 = 0.035;
+/// How far wells reach beyond the model's box, as a part of its diagonal.
+pub(super) const BEYOND: f64 = 0.035;
 
 /// Color of a well (sRGB, 0..1): of those that color-blind people tell apart (Okabe and Ito 2008), gray where it is
 /// shut.
@@ -85,6 +88,7 @@ pub fn well_color(kind: WellKind, is_open: bool) -> [f64; 3] {
         WellKind::WaterInjector => [0.0, 0.447, 0.698],
         WellKind::GasInjector => [0.835, 0.369, 0.0],
         WellKind::Unknown => [0.6, 0.6, 0.6],
+        WellKind::Path => [0.8, 0.475, 0.655],
     }
 }
 
@@ -107,10 +111,15 @@ impl<'a> Measures<'a> {
             lateral: 0.5 * (edges.x + edges.y),
         }
     }
+
+    /// Of the model's box.
+    fn diagonal(&self) -> f64 {
+        self.corners[0].distance(self.corners[7])
+    }
 }
 
 /// The wells that a scene shows, of the step that it names whether or not its property changes with time; none of
-/// those that have no connection in a grid shown.
+/// those that have neither a path near the model nor a connection in a grid shown.
 pub(super) fn shown(
     scene: &Scene,
     case: &Case,
@@ -181,16 +190,14 @@ impl Wells {
     }
 
     fn add(&mut self, grid: &Grid, well: &Well, measures: &Measures<'_>) {
-        let pieces = pieces(grid, well, measures.spaces);
-        let Some((first, _)) = pieces.first() else {
+        let course = course::along_path(grid, well, measures);
+        let Some(course) = course.or_else(|| course::through_cells(grid, well, measures)) else {
             return;
         };
-        let diagonal = measures.corners[0].distance(measures.corners[7]);
+        let diagonal = measures.diagonal();
         let [most, least] = RADIUS.map(|part| part * diagonal);
         let radius = (PART_OF_CELL * measures.lateral).min(most).max(least);
         let radius = if well.is_open { radius } else { SHUT * radius };
-        let tops = measures.corners.iter().map(|corner| corner.z);
-        let top = tops.fold(f64::MIN, f64::max) + ABOVE * diagonal;
         let color = well_color(well.kind, well.is_open);
         let closed = well_color(well.kind, false);
         let number = self.heads.len();
@@ -202,62 +209,21 @@ impl Wells {
                 well: number,
             });
         };
-        let head = first[0].with_z(top);
-        add([head; 2], HEAD * radius, color);
-        let mut before = head;
-        for ([from, to], is_open) in &pieces {
-            if before.distance(*from) > 1e-9 * diagonal {
-                add([before, *from], radius, color);
+        add([course.head; 2], HEAD * radius, color);
+        for piece in course.pieces {
+            match piece.flow {
+                Flow::None => add(piece.ends, radius, color),
+                Flow::Open if well.is_open => add(piece.ends, OPEN * radius, color),
+                Flow::Open | Flow::Closed => add(piece.ends, radius, closed),
             }
-            match *is_open && well.is_open {
-                true => add([*from, *to], OPEN * radius, color),
-                false => add([*from, *to], radius, closed),
-            }
-            before = *to;
         }
         self.heads.push(Head {
             name: well.name.clone(),
             kind: well.kind,
             is_open: well.is_open,
-            at: head,
+            at: course.head,
             radius: HEAD * radius,
             color,
         });
     }
-}
-
-/// The parts of a well in its cells, from the head on, in world space; true where something can flow.
-fn pieces(grid: &Grid, well: &Well, spaces: &Spaces) -> Vec<([DVec3; 2], bool)> {
-    let mut pieces: Vec<([DVec3; 2], bool)> = Vec::new();
-    for connection in well.finest_connections(grid) {
-        let Some(ends) = ends(grid, connection) else {
-            continue;
-        };
-        let [a, b] = ends.map(|p| spaces.world_from_grid.transform_point3(p));
-        let before = pieces.last().map(|([_, before], _)| *before);
-        // The nearer end comes first; of the first cell the upper one.
-        let is_turned = match before {
-            Some(before) => before.distance(b) < before.distance(a),
-            None => b.z > a.z,
-        };
-        let ends = if is_turned { [b, a] } else { [a, b] };
-        pieces.push((ends, connection.is_open));
-    }
-    pieces
-}
-
-/// Middles of the two faces through which a well passes a cell, in grid space; `None` where that lies in no grid.
-fn ends(grid: &Grid, connection: &Connection) -> Option<[DVec3; 2]> {
-    let cell = grid.placed(connection.cell_in(grid)?);
-    let corners = grid.hexahedron(cell).0;
-    let bit = match connection.axis {
-        ConnectionAxis::I => 0,
-        ConnectionAxis::J => 1,
-        ConnectionAxis::K => 2,
-    };
-    let middle = |end: usize| {
-        let of_face = (0..8).filter(|n| n >> bit & 1 == end);
-        0.25 * of_face.map(|n| corners[n]).sum::<DVec3>()
-    };
-    Some([middle(0), middle(1)])
 }
