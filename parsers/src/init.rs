@@ -15,7 +15,7 @@ use crate::records::{RecordFile, RecordWriter};
 /// # Errors
 /// When the file holds no whole array.
 pub fn open(path: &Path, warnings: &mut Warnings) -> Result<CellArrays, ParseError> {
-    from_bytes(FileBytes::open(path)?, warnings)
+    Ok(all_of(RecordFile::open_lenient(path, warnings)?))
 }
 
 /// As [`open`], for a file that is in memory.
@@ -26,9 +26,12 @@ pub fn from_bytes(
     file: impl Into<FileBytes>,
     warnings: &mut Warnings,
 ) -> Result<CellArrays, ParseError> {
-    let file = Arc::new(RecordFile::from_bytes_lenient(file, warnings)?);
+    Ok(all_of(RecordFile::from_bytes_lenient(file, warnings)?))
+}
+
+fn all_of(file: RecordFile) -> CellArrays {
     let all = 0..file.entries().len();
-    Ok(CellArrays::new(&file, all))
+    CellArrays::new(&Arc::new(file), all)
 }
 
 /// Writes an INIT file; each of `arrays` has one value per active cell, or per cell as PORV has, and is made when its

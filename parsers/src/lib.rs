@@ -1,7 +1,7 @@
 //! Readers and writers of Eclipse-style reservoir files, and of regular volumes such as seismic ([`volume`]), as written:
 //! no geometry, no GPU.
 //!
-//! Three levels: bytes (a memory map, records, tokens), typed records ([`egrid`], [`init`],
+//! Three levels: bytes (records, tokens), typed records ([`egrid`], [`init`],
 //! [`restart`], [`wells`], [`paths`], [`summary`], [`deck`], [`roff`], [`resqml`]), and the [`case`] that finds the files belonging together. Bad files
 //! end in a [`ParseError`] that names file, keyword and place; no reader panics, prints, or
 //! allocates by a count that the remaining bytes do not cover.
@@ -90,10 +90,8 @@
 //!
 //! # Features
 //!
-//! Both are on by default; the crate builds without them, as for a browser.
-//!
-//! - `mmap`: large files on disk are mapped. Without it they are read into memory, all at once, as small ones always are.
-//! - `parallel`: arrays are converted in several threads. Without it, in the one that asks.
+//! `parallel`, on by default: arrays are read and converted in several threads. Without it, as for a browser, in the one
+//! that asks.
 
 pub mod arrays;
 mod bytes;
@@ -105,8 +103,6 @@ pub mod egrid;
 pub mod error;
 mod geometry;
 pub mod init;
-#[cfg(feature = "mmap")]
-mod mapped;
 mod parallel;
 pub mod paths;
 mod radial;

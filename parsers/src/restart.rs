@@ -34,7 +34,7 @@ pub struct Step {
 /// When the file is damaged before its first complete array, or has no step. A file that ends
 /// within an array is read up to there, with a warning.
 pub fn open_unified(path: &Path, warnings: &mut Warnings) -> Result<Vec<Step>, ParseError> {
-    unified_from_bytes(FileBytes::open(path)?, warnings)
+    unified(RecordFile::open_lenient(path, warnings)?, warnings)
 }
 
 /// As [`open_unified`], for a file that is in memory.
@@ -45,7 +45,11 @@ pub fn unified_from_bytes(
     file: impl Into<FileBytes>,
     warnings: &mut Warnings,
 ) -> Result<Vec<Step>, ParseError> {
-    let file = Arc::new(RecordFile::from_bytes_lenient(file, warnings)?);
+    unified(RecordFile::from_bytes_lenient(file, warnings)?, warnings)
+}
+
+fn unified(file: RecordFile, warnings: &mut Warnings) -> Result<Vec<Step>, ParseError> {
+    let file = Arc::new(file);
     let path = file.path();
     let entries = file.entries();
     let mut starts = starts(&file, "SEQNUM");
@@ -133,9 +137,11 @@ pub fn open_separate(
     files: &[(u32, PathBuf)],
     warnings: &mut Warnings,
 ) -> Result<Vec<Step>, ParseError> {
-    let opened =
-        |(report, path): &(u32, PathBuf)| (*report, FileBytes::open_one_of(path, files.len()));
-    separate(files.iter().map(opened), warnings)
+    let reports = files.iter().map(|(report, path)| (*report, path));
+    let open = |path: &PathBuf, warnings: &mut Warnings| {
+        RecordFile::open_one_of(path, files.len(), warnings)
+    };
+    separate(reports, open, warnings)
 }
 
 /// As [`open_separate`], for files that are in memory.
@@ -146,18 +152,18 @@ pub fn separate_from_bytes(
     files: impl IntoIterator<Item = (u32, FileBytes)>,
     warnings: &mut Warnings,
 ) -> Result<Vec<Step>, ParseError> {
-    let files = files.into_iter();
-    separate(files.map(|(report, file)| (report, Ok(file))), warnings)
+    separate(files, RecordFile::from_bytes_lenient, warnings)
 }
 
-fn separate(
-    files: impl Iterator<Item = (u32, Result<FileBytes, ParseError>)>,
+fn separate<F>(
+    files: impl IntoIterator<Item = (u32, F)>,
+    open: impl Fn(F, &mut Warnings) -> Result<RecordFile, ParseError>,
     warnings: &mut Warnings,
 ) -> Result<Vec<Step>, ParseError> {
     let mut steps = Vec::new();
     let mut failed: Option<ParseError> = None;
     for (report, file) in files {
-        match file.and_then(|file| single(report, file, warnings)) {
+        match open(file, warnings).and_then(|file| single(report, file)) {
             Ok(step) => steps.push(step),
             Err(error) => {
                 let keyword = Some(&error.keyword).filter(|k| !k.is_empty());
@@ -177,8 +183,8 @@ fn separate(
     }
 }
 
-fn single(report: u32, file: FileBytes, warnings: &mut Warnings) -> Result<Step, ParseError> {
-    let file = Arc::new(RecordFile::from_bytes_lenient(file, warnings)?);
+fn single(report: u32, file: RecordFile) -> Result<Step, ParseError> {
+    let file = Arc::new(file);
     let all = 0..file.entries().len();
     let step = step(&file, all, report)?;
     match step.arrays.find("INTEHEAD") {

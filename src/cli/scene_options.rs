@@ -8,6 +8,7 @@ use strataray::case::load::{self, CasePaths};
 use strataray::case::{Case, GridPool, Minus, distinct_names, minus};
 use strataray::render::{self, Executor};
 use strataray::scene::lighting::{OcclusionMethod, PRESETS};
+use strataray::scene::read_text;
 use strataray::scene::{
     CameraSpec, FramingCamera, Interpolation, LightMode, LightingSpec, Mode, Projection, Scene,
     Space, StepSpec, Storage, StrategyKind, Units,
@@ -268,7 +269,7 @@ pub type SceneKeys = serde_json::Map<String, serde_json::Value>;
 pub fn read_keys(path: &Path) -> anyhow::Result<SceneKeys> {
     let text = match path.as_os_str() == "-" {
         true => std::io::read_to_string(std::io::stdin()),
-        false => std::fs::read_to_string(path),
+        false => read_text(path),
     };
     let text = text.with_context(|| format!("cannot read {}", path.display()))?;
     // As a whole scene first, for errors that name line and column.

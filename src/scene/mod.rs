@@ -4,6 +4,7 @@
 //! (`view::look::opening`): there absent keys follow the case. [`Scene::default`] is plain and the same for all.
 
 mod camera;
+mod file;
 mod filter;
 pub mod lighting;
 pub mod names;
@@ -15,6 +16,7 @@ pub mod transfer;
 use serde::{Deserialize, Serialize};
 
 pub use camera::{AutomaticCamera, CameraSpec, ExplicitCamera, FramingCamera, Projection};
+pub use file::read_text;
 pub use filter::{Filter, Indices, PropertyFilter};
 pub use lighting::{LightMode, LightSpec, LightingSpec};
 pub use settings::{

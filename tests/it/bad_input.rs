@@ -60,9 +60,14 @@ fn err_impossible_counts_and_values() {
             "{said}"
         );
     }
+    // One that is no number is left out; where most are, there is no grid.
     let mut nan = whole.clone();
-    let first_depth = at(b"ZCORN   ") + 24;
+    let first_depth = at(b"ZCORN   ") + 28;
     nan[first_depth..first_depth + 4].copy_from_slice(&f32::NAN.to_be_bytes());
+    assert_eq!(info(folder.path(), "B.EGRID", &nan), None);
+    let end = at(b"ACTNUM  ") - 4;
+    let depths = nan[first_depth..end].chunks_exact_mut(4008);
+    depths.for_each(|block| block[..3996].as_chunks_mut().0.fill(f32::NAN.to_be_bytes()));
     assert!(
         info(folder.path(), "B.EGRID", &nan)
             .unwrap()

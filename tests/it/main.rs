@@ -41,6 +41,7 @@ mod metrics;
 mod occlusion;
 mod odd_cells;
 mod oracle;
+mod outliers;
 mod overlap;
 mod pairs;
 mod parameters;

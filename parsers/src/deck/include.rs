@@ -1,5 +1,6 @@
 //! INCLUDE, GDFILE, IMPORT and PATHS: how one file leads to the next.
 
+use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
@@ -14,6 +15,9 @@ use crate::records::{Form, RecordFile};
 /// Deepest nesting and largest number of included files.
 const DEEPEST: usize = 64;
 const MOST_FILES: usize = 2000;
+/// Bytes of files that may be included again after their first time: each time they are read through, and their arrays
+/// noted.
+const MOST_AGAIN: usize = 64 << 20;
 
 /// The files being read.
 #[derive(Default)]
@@ -22,6 +26,9 @@ pub(super) struct Nesting {
     open: Vec<PathBuf>,
     /// How many were opened so far.
     opened: usize,
+    /// All that were included, and bytes of those that were again.
+    known: HashSet<PathBuf>,
+    again: usize,
 }
 
 /// Files that included one, innermost first, with the line of the INCLUDE.
@@ -39,7 +46,7 @@ impl Nesting {
 
     /// The file that a keyword names, with those that include it, unless it is one of them or they are too many.
     pub(super) fn include(
-        &self,
+        &mut self,
         source: &Source,
         keyword: &Keyword,
         at: usize,
@@ -62,6 +69,16 @@ impl Nesting {
         }
         if self.open.len() >= DEEPEST || self.opened >= MOST_FILES {
             let message = format!("more than {DEEPEST} nested or {MOST_FILES} included files");
+            return Err(source.error(ErrorKind::TooLarge, at, name, message));
+        }
+        if !self.known.insert(path.to_owned()) {
+            self.again = self.again.saturating_add(file.bytes().len());
+        }
+        if self.again > MOST_AGAIN {
+            let most = MOST_AGAIN >> 20;
+            let message = format!(
+                "the same files are included again and again, with more than {most} MiB in all"
+            );
             return Err(source.error(ErrorKind::TooLarge, at, name, message));
         }
         Ok((file, chain))
@@ -97,7 +114,7 @@ impl Places<'_> {
 
 /// The file that INCLUDE names, opened, and where its name stands.
 pub(super) fn included(
-    places: &Places<'_>,
+    places: &mut Places<'_>,
     source: &Source,
     cursor: &mut Cursor,
     keyword: &Keyword,
@@ -115,7 +132,7 @@ pub(super) fn included(
         );
         source.error(ErrorKind::NotFound, at, &keyword.name, message)
     })?;
-    Ok((at, places.files.open(&path)))
+    Ok((at, places.open(&path)))
 }
 
 impl Scan<'_> {
@@ -125,7 +142,7 @@ impl Scan<'_> {
         cursor: &mut Cursor,
         keyword: &Keyword,
     ) -> Result<Flow, ParseError> {
-        let (at, file) = included(&self.places, source, cursor, keyword)?;
+        let (at, file) = included(&mut self.places, source, cursor, keyword)?;
         self.include_file(source, keyword, at, file)
     }
 
@@ -145,7 +162,7 @@ impl Scan<'_> {
         }
         let found = self.places.find(&written, source.path());
         let path = found.unwrap_or_else(|places| places.into_iter().next().unwrap_or_default());
-        let file = self.places.files.open(&path);
+        let file = self.places.open(&path);
         if file.as_ref().is_ok_and(|file| !holds_arrays(file.bytes())) {
             return self.include_file(source, keyword, at, file);
         }

@@ -90,11 +90,13 @@ impl Source {
 
 /// Where included files are looked for, and the aliases PATHS gives to directories.
 pub(super) struct Places<'f> {
-    pub(super) files: &'f dyn DeckFiles,
+    files: &'f dyn DeckFiles,
     /// Directory of the main deck.
     root: PathBuf,
     /// Alias without its `$`, and what it stands for.
     pub(super) aliases: HashMap<String, String>,
+    /// Files that were opened: those included again are held once.
+    opened: HashMap<PathBuf, FileBytes>,
 }
 
 impl<'f> Places<'f> {
@@ -104,7 +106,18 @@ impl<'f> Places<'f> {
             files,
             root,
             aliases: HashMap::new(),
+            opened: HashMap::new(),
         }
+    }
+
+    /// Opens a file that was [found](Self::find).
+    pub(super) fn open(&mut self, path: &Path) -> Result<FileBytes, ParseError> {
+        if let Some(file) = self.opened.get(path) {
+            return Ok(file.clone());
+        }
+        let file = self.files.open(path)?;
+        self.opened.insert(path.to_owned(), file.clone());
+        Ok(file)
     }
 
     /// The existing file that `written` means in `from`, else all places looked at.

@@ -59,7 +59,8 @@ pub struct Egrid {
     pub dims: [usize; 3],
     /// **Shape**: 6 values per pillar: x, y, depth of the upper, then of the lower end; for all layers but those of
     /// [`Self::reservoirs`]. Radii and angles of a radial
-    /// grid are made into x and y, around the origin.
+    /// grid are made into x and y, around the origin. As the file has
+    /// them: a damaged one may be no finite number, here and in `zcorn`.
     pub coord: Vec<f32>,
     /// **Shape**: 8 depths per cell, index `2i+di + 2ni(2j+dj) + 4ni*nj(2k+dk)`.
     pub zcorn: Vec<f32>,
@@ -94,7 +95,7 @@ impl Egrid {
     /// When the file is damaged, lacks a keyword, is no corner-point grid, or an array has the
     /// wrong length.
     pub fn read(path: &Path, warnings: &mut Warnings) -> Result<Self, ParseError> {
-        Self::from_bytes(FileBytes::open(path)?, warnings)
+        Self::of(&RecordFile::open(path)?, warnings)
     }
 
     /// As [`Self::read`], for a file that is in memory.
@@ -105,12 +106,15 @@ impl Egrid {
         file: impl Into<FileBytes>,
         warnings: &mut Warnings,
     ) -> Result<Self, ParseError> {
-        let file = RecordFile::from_bytes(file)?;
+        Self::of(&RecordFile::from_bytes(file)?, warnings)
+    }
+
+    fn of(file: &RecordFile, warnings: &mut Warnings) -> Result<Self, ParseError> {
         let entries = file.entries();
         // The global grid comes first; sections of local grids start at LGR, and NNC lists follow.
         let first_local = entries.iter().position(|e| e.name() == "LGR");
         let global = Section {
-            file: &file,
+            file,
             entries: &entries[..first_local.unwrap_or(entries.len())],
         };
         let is_legacy = global.find("COORD").is_none() && global.find("COORDS").is_some();
@@ -137,17 +141,17 @@ impl Egrid {
         }
         let cells = geometry.zcorn.len() / 8;
         let map = MapKeywords::read(&global, warnings)?;
-        let porosity_model = porosity_model(&file)?;
+        let porosity_model = porosity_model(file)?;
         // Fracture cells are numbered on behind the matrix cells.
         let numbered = |cells: usize| match porosity_model {
             PorosityModel::Single => cells,
             _ => cells.saturating_mul(2),
         };
-        let local_grids = local::read(&file, warnings, local::grid);
+        let local_grids = local::read(file, warnings, local::grid);
         let sizes = local_grids.iter().map(|g| (g.number, g.zcorn.len() / 8));
         let sizes: Vec<_> = [(0, cells)].into_iter().chain(sizes).collect();
         let sizes: Vec<_> = sizes.into_iter().map(|(n, c)| (n, numbered(c))).collect();
-        let (nnc, local_nnc) = connections::read(&file, &sizes, warnings)?;
+        let (nnc, local_nnc) = connections::read(file, &sizes, warnings)?;
         Ok(Self {
             dims: head.dims,
             coord,

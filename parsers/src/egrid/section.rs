@@ -1,7 +1,7 @@
 //! The arrays of one grid, global or local: head, pillars, depths, active cells.
 
 use crate::error::{At, ErrorKind, ParseError};
-use crate::geometry::{Lengths, MOST_CELLS, first_not, unaddressable};
+use crate::geometry::{Lengths, MOST_CELLS, unaddressable};
 use crate::records::{Entry, Kind, RecordFile};
 
 /// The arrays of a file that belong to one grid.
@@ -167,13 +167,5 @@ fn sized(
             format!("expected {expected} values, found {found}"),
         ));
     }
-    let values = file.f32s(entry)?;
-    match first_not(&values, |v| v.is_finite()) {
-        Some(number) => Err(file.error(
-            ErrorKind::BadValue,
-            entry,
-            format!("value {number} is not a finite number"),
-        )),
-        None => Ok(values),
-    }
+    file.f32s(entry)
 }

@@ -1,13 +1,13 @@
 //! The index of a record file: headers, found by skipping over the data.
 
+use super::store::{Store, Window};
 use super::{Entry, Form, Kind, i32_at, text};
-use crate::bytes::FileBytes;
 use crate::error::{ErrorKind, ParseError};
 
 /// Header record with its markers.
-const HEADER: u64 = 24;
+pub(super) const HEADER: u64 = 24;
 /// Type of a header whose count is minus the number of 2^31 elements to add to the next header's.
-const X231: &[u8] = b"X231";
+const X231: [u8; 4] = *b"X231";
 
 /// What stopped the indexing.
 pub(super) struct Fault {
@@ -19,33 +19,58 @@ pub(super) struct Fault {
 
 /// A header record.
 #[derive(Clone, Copy)]
-pub(super) struct Header<'a> {
+pub(super) struct Header {
     pub(super) name: [u8; 8],
     pub(super) count: i32,
-    pub(super) kind: &'a [u8],
+    pub(super) kind: [u8; 4],
     /// Byte offset behind it.
     pub(super) behind: u64,
 }
 
+/// What is looked at: a binary file place by place, text as a whole.
+enum Source<'a> {
+    Binary(Window<'a>),
+    Formatted(&'a [u8]),
+}
+
 /// The complete arrays from the start, and what stopped the indexing before the end.
-pub(super) fn index(file: &FileBytes, form: Form) -> (Vec<Entry>, Option<ParseError>) {
-    let bytes = file.bytes();
-    let mut entries = Vec::new();
-    let stop = |f: Fault| {
-        let at = form.place(bytes, f.at);
-        ParseError::of(f.kind, file.path(), at, &f.keyword, f.message)
+pub(super) fn index(store: &Store, form: Form) -> (Vec<Entry>, Option<ParseError>) {
+    let reader = match store.reader() {
+        Ok(reader) => reader,
+        Err(cause) => {
+            let error = ParseError::io(store.path(), "cannot open", cause);
+            return (Vec::new(), Some(error));
+        }
     };
-    if bytes.is_empty() {
-        return (
-            entries,
-            Some(stop(fault(ErrorKind::Truncated, 0, "the file is empty"))),
-        );
+    let mut source = match form {
+        Form::Binary => Source::Binary(Window::new(reader)),
+        Form::Formatted => Source::Formatted(store.text()),
+    };
+    let (entries, fault) = entries(&mut source);
+    if let Source::Binary(window) = source
+        && let Some(cause) = window.failed()
+    {
+        let error = ParseError::io(store.path(), "cannot read", cause);
+        return (entries, Some(error));
     }
-    let mut at = form.next(bytes, 0);
-    while at < bytes.len() as u64 {
-        match array(bytes, at, form) {
+    let error = fault.map(|fault| {
+        let at = form.place(store.text(), fault.at);
+        ParseError::of(fault.kind, store.path(), at, &fault.keyword, fault.message)
+    });
+    (entries, error)
+}
+
+fn entries(source: &mut Source<'_>) -> (Vec<Entry>, Option<Fault>) {
+    let mut entries: Vec<Entry> = Vec::new();
+    if source.length() == 0 {
+        let empty = fault(ErrorKind::Truncated, 0, "the file is empty");
+        return (entries, Some(empty));
+    }
+    let mut at = source.next(0);
+    while at < source.length() {
+        match array(source, at) {
             Ok(entry) => {
-                at = form.next(bytes, entry.end);
+                at = source.next(entry.end);
                 entries.push(entry);
             }
             Err(mut fault) => {
@@ -54,33 +79,42 @@ pub(super) fn index(file: &FileBytes, form: Form) -> (Vec<Entry>, Option<ParseEr
                     fault.keyword = last.name().to_owned();
                     fault.message = format!("after it: {}", fault.message);
                 }
-                return (entries, Some(stop(fault)));
+                return (entries, Some(fault));
             }
         }
     }
     (entries, None)
 }
 
-impl Form {
+impl Source<'_> {
+    fn length(&self) -> u64 {
+        match self {
+            Self::Binary(window) => window.length(),
+            Self::Formatted(text) => text.len() as u64,
+        }
+    }
+
     /// Where the header stands that follows at `at`.
-    fn next(self, bytes: &[u8], at: u64) -> u64 {
+    fn next(&self, at: u64) -> u64 {
         match self {
-            Self::Binary => at,
-            Self::Formatted => usize::try_from(at).map_or(at, |at| text::visible(bytes, at) as u64),
+            Self::Binary(_) => at,
+            Self::Formatted(text) => {
+                usize::try_from(at).map_or(at, |at| text::visible(text, at) as u64)
+            }
         }
     }
 
-    fn header(self, bytes: &[u8], at: u64) -> Result<Header<'_>, Fault> {
+    fn header(&mut self, at: u64) -> Result<Header, Fault> {
         match self {
-            Self::Binary => header(bytes, at),
-            Self::Formatted => text::header(bytes, at),
+            Self::Binary(window) => header(window, at),
+            Self::Formatted(text) => text::header(text, at),
         }
     }
 
-    fn data_end(self, bytes: &[u8], data: u64, count: u64, kind: Kind) -> Result<u64, Fault> {
+    fn data_end(&mut self, data: u64, count: u64, kind: Kind) -> Result<u64, Fault> {
         match self {
-            Self::Binary => data_end(bytes, data, count, kind),
-            Self::Formatted => text::data_end(bytes, data, count, kind),
+            Self::Binary(window) => data_end(window, data, count, kind),
+            Self::Formatted(text) => text::data_end(text, data, count, kind),
         }
     }
 }
@@ -95,8 +129,8 @@ pub(super) fn fault(kind: ErrorKind, at: u64, message: impl Into<String>) -> Fau
 }
 
 /// The array whose header is at `at`.
-fn array(bytes: &[u8], at: u64, form: Form) -> Result<Entry, Fault> {
-    let first = form.header(bytes, at)?;
+fn array(source: &mut Source<'_>, at: u64) -> Result<Entry, Fault> {
+    let first = source.header(at)?;
     let named = |mut fault: Fault| {
         fault.keyword = String::from_utf8_lossy(&first.name).into_owned();
         fault
@@ -105,8 +139,8 @@ fn array(bytes: &[u8], at: u64, form: Form) -> Result<Entry, Fault> {
     let (high, second) = match first.kind {
         X231 => match u64::try_from(-i64::from(first.count)) {
             Ok(multiple) => {
-                let at = form.next(bytes, first.behind);
-                let second = form.header(bytes, at).map_err(named)?;
+                let at = source.next(first.behind);
+                let second = source.header(at).map_err(named)?;
                 (multiple << 31, second)
             }
             Err(_) => {
@@ -121,8 +155,8 @@ fn array(bytes: &[u8], at: u64, form: Form) -> Result<Entry, Fault> {
     if second.name != first.name {
         return wrong("its X231 header is not followed by a second header of that name".into());
     }
-    let Some(kind) = Kind::parse(second.kind) else {
-        let kind = String::from_utf8_lossy(second.kind);
+    let Some(kind) = Kind::parse(&second.kind) else {
+        let kind = String::from_utf8_lossy(&second.kind);
         return wrong(format!(
             "has the unknown type {kind:?}; the file is damaged"
         ));
@@ -135,7 +169,7 @@ fn array(bytes: &[u8], at: u64, form: Form) -> Result<Entry, Fault> {
     };
     let count = high + low;
     let data = second.behind;
-    let end = form.data_end(bytes, data, count, kind).map_err(named)?;
+    let end = source.data_end(data, count, kind).map_err(named)?;
     Ok(Entry {
         name: first.name,
         kind,
@@ -146,9 +180,8 @@ fn array(bytes: &[u8], at: u64, form: Form) -> Result<Entry, Fault> {
     })
 }
 
-fn header(bytes: &[u8], at: u64) -> Result<Header<'_>, Fault> {
-    let rest = usize::try_from(at).ok().and_then(|at| bytes.get(at..));
-    let rest = rest.unwrap_or_default();
+fn header(window: &mut Window<'_>, at: u64) -> Result<Header, Fault> {
+    let rest = window.at(at, HEADER as usize);
     let damaged = || {
         let message = "not an array header: this is neither a binary nor a formatted Eclipse file, or it is damaged";
         match at {
@@ -171,7 +204,7 @@ fn header(bytes: &[u8], at: u64) -> Result<Header<'_>, Fault> {
         (Some(count), Some(16)) if record[4..12].is_ascii() => Ok(Header {
             name,
             count,
-            kind: &record[16..20],
+            kind: record[16..20].try_into().unwrap_or_default(),
             behind: at + HEADER,
         }),
         _ => Err(damaged()),
@@ -179,15 +212,15 @@ fn header(bytes: &[u8], at: u64) -> Result<Header<'_>, Fault> {
 }
 
 /// Where the data records of an array end.
-fn data_end(bytes: &[u8], data: u64, count: u64, kind: Kind) -> Result<u64, Fault> {
-    let length = bytes.len() as u64;
+fn data_end(window: &mut Window<'_>, data: u64, count: u64, kind: Kind) -> Result<u64, Fault> {
+    let length = window.length();
     let Some(total) = count.checked_mul(kind.size()) else {
         let message = format!("a count of {count} is not possible");
         return Err(fault(ErrorKind::TooLarge, data, message));
     };
     if total == 0 {
         // Conventionally nothing follows; some writers put an empty record.
-        let empty = i32_at(bytes, data) == Some(0) && i32_at(bytes, data + 4) == Some(0);
+        let empty = window.at(data, 8) == [0; 8];
         return Ok(if empty { data + 8 } else { data });
     }
     let too_short = |needed: u64| {
@@ -201,30 +234,31 @@ fn data_end(bytes: &[u8], data: u64, count: u64, kind: Kind) -> Result<u64, Faul
     if total > length - data {
         return Err(too_short(total.saturating_add(8)));
     }
-    match conventional_end(bytes, data, total, kind) {
+    match conventional_end(window, data, total, kind) {
         Some(end) => Ok(end),
-        None => walk(bytes, data, total, kind.size(), too_short),
+        None => walk(window, data, total, kind.size(), too_short),
     }
 }
 
 /// The end by the conventional block sizes, where first and last block and what follows agree
 /// with them; so that indexing touches only a page or two of each array.
-fn conventional_end(bytes: &[u8], data: u64, total: u64, kind: Kind) -> Option<u64> {
+fn conventional_end(window: &mut Window<'_>, data: u64, total: u64, kind: Kind) -> Option<u64> {
     let block = kind.size() * kind.block();
     let blocks = total.div_ceil(block);
     let last = total - (blocks - 1) * block;
     let end = data + total + 8 * blocks;
-    let marker = |at: u64, length: u64| i32_at(bytes, at).map(i64::from) == Some(length as i64);
-    let agrees = marker(data, total.min(block))
-        && marker(end - 4, last)
-        && marker(end - 8 - last, last)
-        && (end == bytes.len() as u64 || header(bytes, end).is_ok());
+    let mut agrees = |at: u64, length: u64| window.i32(at).map(i64::from) == Some(length as i64);
+    // In the order of the file, so that the end of the array is looked at in one piece.
+    let agrees = agrees(data, total.min(block))
+        && agrees(end - 8 - last, last)
+        && agrees(end - 4, last)
+        && (end == window.length() || header(window, end).is_ok());
     agrees.then_some(end)
 }
 
 /// The end by following the markers block by block.
 fn walk(
-    bytes: &[u8],
+    window: &mut Window<'_>,
     data: u64,
     total: u64,
     size: u64,
@@ -234,7 +268,7 @@ fn walk(
     while left > 0 {
         // With at least one more block, and its two markers.
         let needed = at - data + left + 8;
-        let Some(marker) = i32_at(bytes, at) else {
+        let Some(marker) = window.i32(at) else {
             return Err(too_short(needed));
         };
         let block = u64::try_from(marker).ok();
@@ -244,7 +278,7 @@ fn walk(
             );
             return Err(fault(ErrorKind::Malformed, at, message));
         };
-        match i32_at(bytes, at + 4 + block) {
+        match window.i32(at + 4 + block) {
             None => return Err(too_short(needed)),
             Some(again) if again != marker => {
                 let message = format!(

@@ -3,10 +3,12 @@
 //! Each array of a binary file has a header record of 16 bytes (name, count, type) and data in blocks, every record
 //! between two copies of its length in bytes; a formatted file (FEGRID, FINIT, FUNRST, ...) has the same as text.
 //! Which one it is the content says, not the name. Opening a file indexes the headers by skipping over
-//! the data; an array is decoded when asked for.
+//! the data; an array is decoded when asked for. Large binary files stay on disk, from where arrays are read by place.
 
+mod blocks;
 mod decode;
 mod index;
+mod store;
 mod text;
 mod write;
 
@@ -14,6 +16,8 @@ use std::path::Path;
 
 use crate::bytes::FileBytes;
 use crate::error::{At, ErrorKind, ParseError, Warnings};
+
+use store::{SMALL, Store};
 
 pub use write::RecordWriter;
 pub(crate) use write::refused;
@@ -135,7 +139,7 @@ impl Entry {
 /// A file with the index of its arrays.
 #[derive(Debug)]
 pub struct RecordFile {
-    file: FileBytes,
+    store: Store,
     form: Form,
     entries: Vec<Entry>,
     is_cut: bool,
@@ -147,7 +151,7 @@ impl RecordFile {
     /// # Errors
     /// When the file cannot be read, is not such a file, or ends within an array.
     pub fn open(path: &Path) -> Result<Self, ParseError> {
-        Self::from_bytes(FileBytes::open(path)?)
+        Self::whole(Store::open(path, 1, SMALL)?)
     }
 
     /// As [`Self::open`], for a file that is in memory.
@@ -155,18 +159,7 @@ impl RecordFile {
     /// # Errors
     /// When it is not such a file, or ends within an array.
     pub fn from_bytes(file: impl Into<FileBytes>) -> Result<Self, ParseError> {
-        let file = file.into();
-        let form = Form::of(file.bytes()).unwrap_or(Form::Binary);
-        let (entries, broken) = index::index(&file, form);
-        match broken {
-            Some(error) => Err(error),
-            None => Ok(Self {
-                file,
-                form,
-                entries,
-                is_cut: false,
-            }),
-        }
+        Self::whole(Store::Memory(file.into()))
     }
 
     /// Like [`Self::open`], but keeps the complete arrays of a file that ends within one, as a
@@ -175,7 +168,17 @@ impl RecordFile {
     /// # Errors
     /// When the file cannot be read or holds no complete array.
     pub fn open_lenient(path: &Path, warnings: &mut Warnings) -> Result<Self, ParseError> {
-        Self::from_bytes_lenient(FileBytes::open(path)?, warnings)
+        Self::open_one_of(path, 1, warnings)
+    }
+
+    /// As [`Self::open_lenient`], of a file that is one of `count` that are held together: all of them take no more
+    /// memory than one.
+    pub(crate) fn open_one_of(
+        path: &Path,
+        count: usize,
+        warnings: &mut Warnings,
+    ) -> Result<Self, ParseError> {
+        Self::as_far_as_whole(Store::open(path, count, SMALL)?, warnings)
     }
 
     /// As [`Self::open_lenient`], for a file that is in memory.
@@ -186,12 +189,20 @@ impl RecordFile {
         file: impl Into<FileBytes>,
         warnings: &mut Warnings,
     ) -> Result<Self, ParseError> {
-        let file = file.into();
-        let form = Form::of(file.bytes()).unwrap_or(Form::Binary);
-        let (entries, broken) = index::index(&file, form);
-        let is_cut = broken.is_some();
+        Self::as_far_as_whole(Store::Memory(file.into()), warnings)
+    }
+
+    fn whole(store: Store) -> Result<Self, ParseError> {
+        match Self::indexed(store) {
+            (_, Some(error)) => Err(error),
+            (file, None) => Ok(file),
+        }
+    }
+
+    fn as_far_as_whole(store: Store, warnings: &mut Warnings) -> Result<Self, ParseError> {
+        let (file, broken) = Self::indexed(store);
         if let Some(error) = broken {
-            if entries.is_empty() {
+            if file.entries.is_empty() {
                 return Err(error);
             }
             let message = match error.keyword.as_str() {
@@ -203,12 +214,23 @@ impl RecordFile {
             };
             warnings.push(file.path(), error.at, message);
         }
-        Ok(Self {
-            file,
+        Ok(file)
+    }
+
+    /// The file with the index of its complete arrays, and why these are not all.
+    fn indexed(store: Store) -> (Self, Option<ParseError>) {
+        let form = match &store {
+            Store::Memory(file) => Form::of(file.bytes()).unwrap_or(Form::Binary),
+            Store::Disk(_) => Form::Binary,
+        };
+        let (entries, broken) = index::index(&store, form);
+        let file = Self {
+            store,
             form,
             entries,
-            is_cut,
-        })
+            is_cut: broken.is_some(),
+        };
+        (file, broken)
     }
 
     /// Whether the file is binary or text.
@@ -218,7 +240,7 @@ impl RecordFile {
 
     /// The place in the file that people are told of a byte: a line of text, or the byte itself.
     pub fn place(&self, offset: u64) -> At {
-        self.form.place(self.file.bytes(), offset)
+        self.form.place(self.store.text(), offset)
     }
 
     /// True where the file ends within an array, as one does that is being written.
@@ -233,7 +255,7 @@ impl RecordFile {
 
     /// The path that was opened, or the name that was given.
     pub fn path(&self) -> &Path {
-        self.file.path()
+        self.store.path()
     }
 
     /// The first array called `name`.
@@ -254,16 +276,9 @@ impl RecordFile {
 }
 
 /// Big-endian i32 at a byte offset, if the bytes are there.
-fn i32_at(bytes: &[u8], at: u64) -> Option<i32> {
-    let four = bytes_at(bytes, at, 4)?;
-    Some(i32::from_be_bytes(four.try_into().ok()?))
-}
-
-/// So many bytes at a byte offset, if they are there.
-fn bytes_at(bytes: &[u8], at: u64, length: u64) -> Option<&[u8]> {
-    let start = usize::try_from(at).ok()?;
-    let end = usize::try_from(at.checked_add(length)?).ok()?;
-    bytes.get(start..end)
+fn i32_at(bytes: &[u8], at: usize) -> Option<i32> {
+    let four = bytes.get(at..)?.first_chunk()?;
+    Some(i32::from_be_bytes(*four))
 }
 
 #[cfg(test)]
@@ -340,22 +355,110 @@ pub(crate) mod tests {
         }
     }
 
-    #[cfg(feature = "mmap")]
+    /// A file that stays on disk, however small it is, and is one of `count`.
+    fn on_disk(path: &Path, count: usize) -> Result<RecordFile, ParseError> {
+        RecordFile::whole(Store::open(path, count, 0)?)
+    }
+
+    /// What is in a file, or why it cannot be read.
+    fn contents(file: Result<RecordFile, ParseError>) -> Vec<String> {
+        let file = match file {
+            Ok(file) => file,
+            Err(error) => return vec![error.message],
+        };
+        let of_entry = |entry: &Entry| {
+            let values = file.f64s(entry).map_err(|e| e.message);
+            let strings = file.strings(entry).map_err(|e| e.message);
+            let last = (entry.count as usize).saturating_sub(1);
+            let one = [0, last / 2, last].map(|n| file.f32_at(entry, n).map_err(|e| e.message));
+            format!("{entry:?} {values:?} {strings:?} {one:?}")
+        };
+        file.entries().iter().map(of_entry).collect()
+    }
+
     #[test]
-    fn err_file_that_is_cut_off_while_open() {
-        let bytes = array("PORO", "REAL", 4, &reals(5000), 1000);
+    fn ok_files_on_disk_are_read_as_those_in_memory() {
         let path = tempfile::NamedTempFile::new().unwrap();
-        std::fs::write(path.path(), &bytes).unwrap();
-        let mapped = FileBytes::open_mapping(path.path(), 0).unwrap();
-        let file = RecordFile::from_bytes(mapped).unwrap();
-        assert!(file.f32s(&file.entries()[0]).is_ok());
-        let in_memory = RecordFile::open(path.path()).unwrap();
-        let writer = std::fs::OpenOptions::new().write(true).open(path.path());
-        writer.unwrap().set_len(100).unwrap();
-        let error = file.f32s(&file.entries()[0]).unwrap_err().to_string();
-        assert!(error.contains("cut off"), "{error}");
-        // What was read is whole.
-        assert!(in_memory.f32s(&in_memory.entries()[0]).is_ok());
+        let compare = |bytes: &[u8]| {
+            std::fs::write(path.path(), bytes).unwrap();
+            let memory = contents(open(bytes));
+            for count in [1, 1000] {
+                let file = on_disk(path.path(), count);
+                let is_on_disk = |file: &RecordFile| matches!(file.store, Store::Disk(_));
+                assert!(file.as_ref().map_or(true, is_on_disk));
+                assert_eq!(contents(file), memory);
+            }
+            memory
+        };
+        let mut random = fastrand::Rng::with_seed(3);
+        for block in [1, 7, 1000, 1500, 70_000, 100_000] {
+            let mut bytes = array("PORO", "REAL", 4, &reals(80_000), block);
+            bytes.extend(array("NOTHING", "INTE", 4, &[], 1000));
+            bytes.extend(array("TEXT", "C012", 12, b"abc         defghijklmno", 105));
+            bytes.extend(array("ENDSOL", "MESS", 0, &[], 1));
+            let whole = compare(&bytes);
+            assert_eq!(whole.len(), 4, "{block}");
+            assert!(whole[0].contains("79999.0") && whole[2].contains("defghijklmno"));
+            for _ in 0..20 {
+                let mut damaged = bytes.clone();
+                let at = match random.bool() {
+                    true => random.usize(..100),
+                    false => random.usize(..bytes.len()),
+                };
+                damaged[at] = damaged[at].wrapping_add(random.u8(1..));
+                damaged.truncate(
+                    random
+                        .usize(bytes.len() / 2..2 * bytes.len())
+                        .min(bytes.len()),
+                );
+                compare(&damaged);
+            }
+        }
+        // Blocks of other sizes that together take as many bytes.
+        let halves = [
+            array("A", "REAL", 4, &reals(500), 500),
+            array("A", "REAL", 4, &reals(1500), 1500),
+        ];
+        let mut odd = halves.map(|array| array[24..].to_vec()).concat();
+        odd.splice(
+            ..0,
+            array("PORO", "REAL", 4, &reals(2000), 1000)[..24].to_vec(),
+        );
+        assert!(compare(&odd)[0].contains("1499.0"));
+    }
+
+    #[test]
+    fn err_file_that_is_cut_off_or_written_anew_while_open() {
+        let path = tempfile::NamedTempFile::new().unwrap();
+        for (count, block) in [(1, 1000), (1000, 1000), (1, 700)] {
+            let bytes = array("PORO", "REAL", 4, &reals(5000), block);
+            std::fs::write(path.path(), &bytes).unwrap();
+            let file = on_disk(path.path(), count).unwrap();
+            let poro = file.entries()[0];
+            assert_eq!(file.f32s(&poro).unwrap().len(), 5000);
+            let in_memory = RecordFile::open(path.path()).unwrap();
+            let writer = std::fs::OpenOptions::new().write(true).open(path.path());
+            let writer = writer.unwrap();
+            for (length, place) in [(9000, "byte 0x2328"), (100, "byte 0x64"), (3, "byte 0x3")] {
+                writer.set_len(length).unwrap();
+                let errors = [
+                    file.f32s(&poro).unwrap_err(),
+                    file.f32_at(&poro, 4999).unwrap_err(),
+                ];
+                for error in errors {
+                    assert_eq!(error.kind, ErrorKind::Truncated);
+                    assert!(error.message.contains("cut off at"), "{error}");
+                }
+                let error = file.f32s(&poro).unwrap_err().to_string();
+                assert!(error.contains("PORO") && error.contains(place), "{error}");
+            }
+            let other = array("PERMX", "REAL", 4, &reals(6000), 1000);
+            std::fs::write(path.path(), other).unwrap();
+            let error = file.f32s(&poro).unwrap_err().to_string();
+            assert!(error.contains("written anew"), "{error}");
+            // What was read is whole.
+            assert!(in_memory.f32s(&in_memory.entries()[0]).is_ok());
+        }
     }
 
     #[test]

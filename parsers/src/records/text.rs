@@ -53,7 +53,7 @@ fn is_blank(byte: u8) -> bool {
 }
 
 /// The header that starts at `at`, the place of its first quote.
-pub(super) fn header(bytes: &[u8], at: u64) -> Result<Header<'_>, Fault> {
+pub(super) fn header(bytes: &[u8], at: u64) -> Result<Header, Fault> {
     let damaged = |at: usize| {
         let message = "not an array header like 'PORO    '  3 'REAL': this is not a formatted Eclipse file, or it is damaged";
         fault(ErrorKind::Malformed, at as u64, message)
@@ -78,8 +78,9 @@ pub(super) fn header(bytes: &[u8], at: u64) -> Result<Header<'_>, Fault> {
     let (Some(count), true) = (count, name.is_ascii()) else {
         return Err(damaged(start));
     };
-    let Some((kind, behind)) = quoted(bytes, kind_start, 4).filter(|(kind, _)| kind.len() == 4)
-    else {
+    let kind = quoted(bytes, kind_start, 4);
+    let kind = kind.and_then(|(kind, behind)| Some((kind.try_into().ok()?, behind)));
+    let Some((kind, behind)) = kind else {
         return Err(match line_ends(bytes, kind_start) {
             true => damaged(start),
             false => cut(),
@@ -243,8 +244,11 @@ impl RecordFile {
     }
 
     fn text(&self, entry: &Entry) -> Result<&[u8], ParseError> {
-        let bytes = super::bytes_at(self.file.bytes(), entry.data, entry.end - entry.data);
-        bytes.ok_or_else(|| self.shortened(entry))
+        let place = usize::try_from(entry.data)
+            .ok()
+            .zip(usize::try_from(entry.end).ok());
+        let text = place.and_then(|(start, end)| self.store.text().get(start..end));
+        text.ok_or_else(|| self.cut_off(entry, self.store.text().len() as u64))
     }
 }
 

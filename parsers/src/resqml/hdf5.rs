@@ -126,10 +126,6 @@ impl Files {
         let error = |kind, message: String| {
             Err(ParseError::of(kind, path, At::File, &dataset.name, message))
         };
-        if !arrays.bytes.is_whole() {
-            let message = "the file has become shorter since it was opened: open it again";
-            return error(ErrorKind::Truncated, message.into());
-        }
         let found = match arrays.file.dataset(&dataset.name) {
             Ok(found) => found,
             Err(why) => return error(kind_of(&why), sentence(&why)),

@@ -398,8 +398,8 @@ impl RoffFile {
     fn data(&self, item: &Item) -> Result<&[u8], ParseError> {
         let [start, end] = item.data;
         let bytes = self.file.bytes().get(start..end);
-        bytes.filter(|_| self.file.is_whole()).ok_or_else(|| {
-            let message = "the file was cut off while it was open; load it again";
+        bytes.ok_or_else(|| {
+            let message = "the file ends before its values";
             self.error(ErrorKind::Truncated, item, message)
         })
     }

@@ -80,16 +80,13 @@ pub struct Parameter {
     data: Item,
 }
 
-/// Properties stand in files of their own, and a case holds all of them.
-const FILES_HELD: usize = 64;
-
 impl RoffFile {
     /// Opens a file and indexes its tags.
     ///
     /// # Errors
     /// When the file cannot be read, is no ROFF file, or ends too early.
     pub fn open(path: &Path) -> Result<Self, ParseError> {
-        Self::from_bytes(FileBytes::open_one_of(path, FILES_HELD)?)
+        Self::from_bytes(FileBytes::open(path)?)
     }
 
     /// As [`Self::open`], for a file that is in memory.

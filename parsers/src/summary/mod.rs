@@ -32,7 +32,7 @@
 mod extended;
 mod vector;
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use crate::bytes::FileBytes;
 use crate::calendar;
@@ -96,18 +96,19 @@ impl Summary {
     pub fn open(source: &SummarySource, warnings: &mut Warnings) -> Result<Self, ParseError> {
         match source {
             SummarySource::Unified { spec, data } => {
-                Self::from_bytes(FileBytes::open(spec)?, FileBytes::open(data)?, warnings)
+                let data = RecordFile::open_lenient(data, warnings)?;
+                Self::by_step(&RecordFile::open(spec)?, vec![(None, data)], warnings)
             }
             SummarySource::Separate { spec, data } => {
-                let count = data.len();
-                let open = |(report, path): &(u32, PathBuf)| {
-                    Ok((*report, FileBytes::open_one_of(path, count)?))
-                };
-                let data = data.iter().map(open).collect::<Result<_, ParseError>>()?;
-                Self::separate_from_bytes(FileBytes::open(spec)?, data, warnings)
+                let mut files = Vec::with_capacity(data.len());
+                for (report, path) in data {
+                    let file = RecordFile::open_one_of(path, data.len(), warnings)?;
+                    files.push((Some(*report), file));
+                }
+                Self::by_step(&RecordFile::open(spec)?, files, warnings)
             }
             SummarySource::Extended(path) => {
-                Self::extended_from_bytes(FileBytes::open(path)?, warnings)
+                extended::read(RecordFile::open_lenient(path, warnings)?, warnings)
             }
         }
     }
@@ -122,7 +123,8 @@ impl Summary {
         warnings: &mut Warnings,
     ) -> Result<Self, ParseError> {
         let data = RecordFile::from_bytes_lenient(data, warnings)?;
-        Self::by_step(spec.into(), vec![(None, data)], warnings)
+        let spec = RecordFile::from_bytes(spec)?;
+        Self::by_step(&spec, vec![(None, data)], warnings)
     }
 
     /// As [`Self::open`], for SMSPEC and one file per report, with its number, in memory.
@@ -139,7 +141,7 @@ impl Summary {
             let file = RecordFile::from_bytes_lenient(file, warnings)?;
             files.push((Some(report), file));
         }
-        Self::by_step(spec.into(), files, warnings)
+        Self::by_step(&RecordFile::from_bytes(spec)?, files, warnings)
     }
 
     /// As [`Self::open`], for an ESMRY in memory.
@@ -154,17 +156,16 @@ impl Summary {
     }
 
     fn by_step(
-        spec: FileBytes,
+        spec: &RecordFile,
         files: Vec<(Option<u32>, RecordFile)>,
         warnings: &mut Warnings,
     ) -> Result<Self, ParseError> {
-        let spec = RecordFile::from_bytes(spec)?;
-        let names = vector::Names::read(&spec)?;
+        let names = vector::Names::read(spec)?;
         let (params, mut steps) = params(&files, names.count(), warnings)?;
         let mut summary = Self {
             vectors: names.vectors(),
             steps: Vec::new(),
-            start: start(&spec, "STARTDAT", |[minute, micros]| {
+            start: start(spec, "STARTDAT", |[minute, micros]| {
                 60.0 * minute + micros / 1e6
             })?,
             dims: names.dims,

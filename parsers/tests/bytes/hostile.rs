@@ -62,6 +62,20 @@ fn chains_and_circles_of_includes() {
 }
 
 #[test]
+fn a_large_file_that_is_included_again_and_again() {
+    let large = "-- nothing\n".repeat(1 << 20);
+    let deck = |times: usize| {
+        let files = [
+            ("A", "INCLUDE\n 'B' /\n".repeat(times) + CELL),
+            ("B", large.clone()),
+        ];
+        read(&MemoryFiles::from_iter(files), "A")
+    };
+    assert!(deck(3).is_ok());
+    refused(deck(1000), ErrorKind::TooLarge, "again and again");
+}
+
+#[test]
 fn enormous_counts_in_text() {
     for zcorn in [
         "1000000000*0",
@@ -179,21 +193,55 @@ fn links_and_pipes_and_odd_names() {
     }
 }
 
+/// Arrays of a file that is too large to be read into memory at once.
+const ARRAYS: usize = 20;
+
 #[test]
-fn a_file_that_is_cut_off_while_it_is_read() -> io::Result<()> {
+fn a_large_file_that_is_cut_off_while_it_is_read() -> io::Result<()> {
     let folder = tempfile::tempdir()?;
     let path = folder.path().join("A.INIT");
-    let mut out = RecordWriter::new(Vec::new());
-    out.real("PORO", &vec![0.5; 1 << 20])?;
-    fs::write(&path, out.finish()?)?;
+    let values: Vec<f32> = (0..1 << 20).map(|n| n as f32).collect();
+    let mut out = RecordWriter::new(fs::File::create(&path)?);
+    for _ in 0..ARRAYS {
+        out.real("PORO", &values)?;
+    }
+    out.finish()?;
+    let length = fs::metadata(&path)?.len();
+    assert!(length > 64 << 20);
     let file = RecordFile::open(&path).unwrap();
-    fs::OpenOptions::new()
-        .write(true)
-        .open(&path)?
-        .set_len(100)?;
-    // Touching mapped pages that are gone would end this process.
-    let values = file.f32s(&file.entries()[0]);
-    assert_eq!(values.unwrap().len(), 1 << 20);
+    let read = || -> Vec<Result<Vec<f32>, ParseError>> {
+        file.entries()
+            .iter()
+            .map(|entry| file.f32s(entry))
+            .collect()
+    };
+    assert!(
+        read()
+            .iter()
+            .all(|r| r.as_ref().is_ok_and(|v| *v == values))
+    );
+    // Mapped memory that is gone would end this process.
+    let writer = fs::OpenOptions::new().write(true).open(&path)?;
+    let results = std::thread::scope(|scope| {
+        scope.spawn(|| {
+            for part in (1..1000).rev() {
+                let _ = writer.set_len(length / 1000 * part);
+            }
+        });
+        let rounds = [read(), read(), read()];
+        rounds.into_iter().flatten().collect::<Vec<_>>()
+    });
+    writer.set_len(100)?;
+    for result in results.into_iter().chain(read()) {
+        match result {
+            Ok(found) => assert!(found == values),
+            Err(error) => {
+                assert_eq!(error.kind, ErrorKind::Truncated, "{error}");
+                assert!(error.to_string().contains("cut off at byte 0x"), "{error}");
+            }
+        }
+    }
+    assert!(read().iter().all(Result::is_err));
     Ok(())
 }
 

@@ -116,7 +116,6 @@ pub fn egrid(bytes: Vec<u8>) -> Result<(), ParseError> {
     check_warnings(&warnings);
     let lengths = [grid.coord.len(), grid.zcorn.len()];
     check_grid(grid.dims, lengths, grid.actnum.as_deref());
-    assert!(grid.coord.iter().chain(&grid.zcorn).all(|v| v.is_finite()));
     for local in &grid.local_grids {
         let [ni, nj, _] = local.dims;
         // Of one coordinate system or several.

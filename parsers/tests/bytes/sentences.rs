@@ -434,11 +434,6 @@ fn of_grids(all: &mut Sentences) {
         out.real("COORD", &[0.5; 24]).unwrap();
         out.real("ZCORN", &[0.5; 8]).unwrap();
     });
-    all.egrid("an infinite depth", |out| {
-        out.inte("GRIDHEAD", &[1, 1, 1, 1]).unwrap();
-        out.real("COORD", &[0.5; 24]).unwrap();
-        out.real("ZCORN", &[f32::INFINITY; 8]).unwrap();
-    });
     all.egrid("activity of another grid", |out| {
         grid(out);
         out.inte("ACTNUM", &[1, 1]).unwrap();

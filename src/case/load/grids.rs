@@ -12,6 +12,7 @@ use strataray_parsers::roff::Pillars;
 use strataray_parsers::units::{LengthUnit, UnitSystem};
 use strataray_parsers::{At, ErrorKind, ParseError, Warnings};
 
+use super::outliers::{self, Coordinate};
 use super::resqml::{self, PackageValues};
 use super::roff;
 use super::slots::CellFlags;
@@ -177,17 +178,14 @@ fn of_results(grids: Vec<LocalGrid>) -> Vec<DeckLocalGrid> {
 }
 
 /// The grid of the arrays of a file; what building it takes is noted.
-fn built<C, Z>(
+fn built<C: Coordinate, Z: Coordinate>(
     path: &Path,
     input: &GridInput<'_, C, Z>,
     about: &mut About,
-) -> Result<Grid, ParseError>
-where
-    C: Copy + Into<f64> + Sync,
-    Z: Copy + Into<f64> + Send + Sync,
-{
+) -> Result<Grid, ParseError> {
     let start = Instant::now();
-    let grid = Grid::new(input).map_err(|e| model_error(path, &e))?;
+    let grid = outliers::built(input, &mut about.notes);
+    let grid = grid.map_err(|e| model_error(path, &e))?;
     about.load_times = LoadTimes {
         model: start.elapsed(),
     };

@@ -8,6 +8,7 @@ use strataray_parsers::deck::{DeckLocalGrid, DeckProperty};
 use strataray_parsers::egrid::{GridConnections, LocalGrid as FileGrid, Reservoir};
 use strataray_parsers::records::{Entry, Kind};
 
+use super::outliers;
 use super::pore_volume::Least;
 use super::radial;
 use super::slots::{CellFlags, CellSlots, ResultCells};
@@ -191,14 +192,16 @@ fn local(
         ));
         file.coord.truncate(6 * dims.pillars());
     }
-    let mut grid = Grid::new(&GridInput {
+    let of_file = |note: String| format!("local grid {}: {note}", file.name);
+    let input = GridInput {
         dims,
         coord: &file.coord,
         zcorn: &file.zcorn,
         actnum: file.actnum.as_deref(),
         map_axes: None,
-    })
-    .map_err(|e| e.to_string())?;
+    };
+    let mut found = Vec::new();
+    let mut grid = outliers::built(&input, &mut found).map_err(|e| e.to_string())?;
     if let Some(least) = least {
         least.leave_small_of_local(&file.name, &mut grid, &texts, notes);
     }
@@ -209,7 +212,9 @@ fn local(
             .filter(|active| *active > 0),
         init,
     };
-    let slots = CellSlots::new(&mut grid, &CellFlags::default(), &results, notes);
+    let mut slots = CellSlots::new(&mut grid, &CellFlags::default(), &results, notes);
+    found.extend(outliers::leave_out(&mut grid, &mut slots));
+    notes.extend(found.into_iter().map(of_file));
     let mut grid = LocalGrid {
         name: file.name.clone(),
         parent: 0,

@@ -2,6 +2,7 @@
 
 mod grids;
 mod local;
+mod outliers;
 mod paths;
 mod pore_volume;
 mod properties;
@@ -277,7 +278,9 @@ fn build(mut loaded: Loaded, read: Read<'_>, mut about: About, warnings: &Warnin
         init: init.as_ref(),
     };
     let summary = summary.of_grid(loaded.grid.main_dims());
-    let cells = CellSlots::new(&mut loaded.grid, &loaded.flags, &results, &mut about.notes);
+    let mut cells = CellSlots::new(&mut loaded.grid, &loaded.flags, &results, &mut about.notes);
+    let left_out = outliers::leave_out(&mut loaded.grid, &mut cells);
+    about.notes.extend(left_out);
     let local_grids = std::mem::take(&mut loaded.local_grids);
     let beside = Beside {
         main: &loaded.grid,

@@ -173,6 +173,26 @@ impl CellSlots {
 }
 
 impl CellSlots {
+    /// Follows a grid of which some active cells, in natural order, have become inactive though files have values for them.
+    pub fn leave_out(&mut self, cells: &[CellIndex]) {
+        if cells.is_empty() {
+            return;
+        }
+        let keeps = |cell: u32| cells.binary_search(&CellIndex(cell)).is_err();
+        let kept: Vec<bool> = self.cells.iter().map(|cell| keeps(*cell)).collect();
+        let places = self.places.take().unwrap_or_else(|| Places {
+            of: (0..)
+                .zip(&self.cells)
+                .map(|(n, cell)| Some((n, *cell)))
+                .collect(),
+            count: self.cells.len(),
+            whole: self.total,
+        });
+        self.places = Some(places.of_kept(&kept));
+        self.fractures = self.fractures.take().map(|places| places.of_kept(&kept));
+        self.cells.retain(|cell| keeps(*cell));
+    }
+
     /// True where an array of all cells has values of fractures behind those of the matrix.
     pub fn has_all_fractures(&self, count: usize) -> bool {
         let fractures = self.fractures.as_ref();
@@ -206,6 +226,15 @@ impl Places {
             count: count as usize,
             whole: 2 * total,
         })
+    }
+
+    /// The places of the cells that are kept.
+    ///
+    /// **Shape**: `kept` has one value for each place.
+    fn of_kept(mut self, kept: &[bool]) -> Self {
+        let mut kept = kept.iter();
+        self.of.retain(|_| kept.next() == Some(&true));
+        self
     }
 
     /// The values of the active cells from an array that fits; not a number where a cell has none.

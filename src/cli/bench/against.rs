@@ -5,6 +5,7 @@ use std::path::Path;
 use anyhow::Context;
 use serde_json::Value;
 use strataray::compare::markdown::{Row, row, table};
+use strataray::scene::read_text;
 
 /// Figures that are compared of a case, and of each of its frames.
 const OF_CASE: [&str; 3] = ["open_ms", "model_ms", "acceleration_ms"];
@@ -15,7 +16,7 @@ const OF_FRAMES: [&str; 4] = ["first_frame_ms", "frame_wall_ms", "frame_cpu_ms",
 /// # Errors
 /// When the file cannot be read, or holds something else.
 pub fn read(path: &Path) -> anyhow::Result<Value> {
-    let text = std::fs::read_to_string(path);
+    let text = read_text(path);
     let text = text.with_context(|| format!("cannot read {}", path.display()))?;
     let figures: Value =
         serde_json::from_str(&text).with_context(|| format!("{}", path.display()))?;

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::Window;
-use crate::scene::Scene;
+use crate::scene::{Scene, read_text};
 use crate::viewer::action::Action;
 use crate::viewer::{panels, shell_line};
 
@@ -14,7 +14,7 @@ impl Window {
     /// When the file is no scene; the sentence names it.
     pub fn load_scene(&mut self, path: &Path) -> Result<String, String> {
         let why = |e: &dyn std::fmt::Display| format!("{}: {e}", path.display());
-        let text = std::fs::read_to_string(path).map_err(|e| why(&e))?;
+        let text = read_text(path).map_err(|e| why(&e))?;
         let scene: Scene = serde_json::from_str(&text).map_err(|e| why(&e))?;
         let document = self.document_mut().ok_or("open a case first")?;
         document.history.end_gesture();

@@ -203,7 +203,7 @@ impl Walk<'_> {
             named_file(source, cursor, keyword)?;
             return Ok(Flow::On);
         }
-        let found = included(&self.places, source, cursor, keyword);
+        let found = included(&mut self.places, source, cursor, keyword);
         match found.and_then(|(at, file)| self.nesting.include(source, keyword, at, file)) {
             Ok((file, chain)) => self.file(file, chain),
             Err(error) if error.kind == ErrorKind::NotFound => {
