@@ -170,7 +170,7 @@ impl Summary {
             })?,
             dims: names.dims,
             units: names.units_of_case,
-            restart: restart(&spec)?,
+            restart: restart(spec)?,
             values: Values::ByStep(files.into_iter().map(|(_, file)| file).collect(), params),
         };
         let days = summary.days(spec.path())?;
