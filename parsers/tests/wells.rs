@@ -139,6 +139,19 @@ fn sections_before_the_schedule_are_passed() {
 }
 
 /// The public data, where it is.
+#[test]
+fn lines_drawn_behind_keywords_are_decoration() {
+    let of = |line: &str| {
+        let text = format!("SUMMARY\nWOPR\n/\n\nSCHEDULE {line}\nWELSPECS\n P G 1 1 /\n/\n");
+        schedule(&text).wells(None, [3, 3, 3]).len()
+    };
+    for line in ["", "=====", "----- -- wells", "= - =", "_____"] {
+        assert_eq!(of(line), 1, "{line}");
+    }
+    // What could be a record is none.
+    assert_eq!(of("P /"), 0);
+}
+
 fn data(path: &str) -> Option<PathBuf> {
     let folder = std::env::var_os("STRATARAY_DATA")?;
     Some(PathBuf::from(folder).join(path))

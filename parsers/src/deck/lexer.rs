@@ -67,7 +67,7 @@ pub(super) struct Keyword {
     pub(super) at: usize,
     /// Offset behind it.
     pub(super) end: usize,
-    /// True when nothing but a comment follows on its line.
+    /// True when nothing but a comment, or a line that is drawn, follows on its line.
     pub(super) alone: bool,
 }
 
@@ -247,7 +247,9 @@ pub(super) fn keyword(text: &[u8], at: usize) -> Option<Keyword> {
     let end = at + word.len();
     let line = &text[end..line_end(text, end)];
     let follows = line.trim_ascii_start();
-    let alone = follows.is_empty() || follows.starts_with(b"--");
+    // Lines drawn behind a keyword are decoration.
+    let is_drawn = |byte: &u8| b"=-_#~".contains(byte) || byte.is_ascii_whitespace();
+    let alone = follows.starts_with(b"--") || follows.iter().all(is_drawn);
     Some(Keyword {
         name,
         at,
