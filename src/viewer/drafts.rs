@@ -9,6 +9,7 @@ use super::budget::{COARSEST, DraftBudget, DraftSize, Spent};
 use super::job::{Picture, RenderRequest};
 use crate::case::Case;
 use crate::image::Rgb8;
+use crate::scene::lighting::OcclusionSpec;
 use crate::scene::{LightingSpec, Scene, StrategyKind};
 use crate::view::Lighting;
 
@@ -67,7 +68,10 @@ impl ShownSide {
         let budget = if is_known { &self.budget } else { &fresh };
         let [width, height] = wanted.scene.size.map(f64::from);
         let pixels = width * height;
-        let voxels = self.voxels(&wanted.scene);
+        let voxels = match self.has_light(wanted) {
+            true => 0.0,
+            false => self.voxels(&wanted.scene),
+        };
         let asked = wanted.scene.strategy;
         let of_draft = self.draft_strategy(wanted, is_software);
         let rays = pixels * f64::from(wanted.scene.supersample.pow(2));
@@ -83,6 +87,7 @@ impl ShownSide {
     /// Makes a draft of what is wanted.
     pub fn make_draft(&self, wanted: &mut RenderRequest, draft: DraftSize, is_software: bool) {
         wanted.scene.strategy = self.draft_strategy(wanted, is_software);
+        let has_light = self.has_light(wanted);
         let scene = &mut wanted.scene;
         let smaller = |n: u32| ((f64::from(n) * draft.part).round() as u32).max(16);
         scene.size = scene.size.map(smaller);
@@ -93,9 +98,40 @@ impl ShownSide {
                 .light_size
                 .map(|size| coarser(size, part))
                 .unwrap_or(FIRST_LIGHT);
-            let is_whole = self.light_size.is_some() && part == 1;
+            let is_whole = self.light_size.is_some() && (part == 1 || has_light);
             scene.lighting.volume.light_size = (!is_whole).then_some(coarse);
         }
+    }
+
+    /// True where the whole light of what is wanted is there, from what is shown: the camera alone has moved since, and
+    /// light does not follow it.
+    fn has_light(&self, wanted: &RenderRequest) -> bool {
+        let follows = |o: &OcclusionSpec| !o.method.is_around();
+        let is_same = |shown: &ShownImage| {
+            let known = &shown.picture.wanted;
+            let size = shown.picture.view.style.lighting.light_size();
+            let seen_alike = Scene {
+                camera: wanted.scene.camera.clone(),
+                size: wanted.scene.size,
+                strategy: wanted.scene.strategy,
+                supersample: wanted.scene.supersample,
+                lighting: LightingSpec {
+                    volume: wanted.scene.lighting.volume,
+                    ..known.scene.lighting.clone()
+                },
+                ..known.scene.clone()
+            };
+            self.light_size == Some(size)
+                && Arc::ptr_eq(&known.case, &wanted.case)
+                && seen_alike == wanted.scene
+        };
+        !wanted
+            .scene
+            .lighting
+            .occlusion
+            .as_ref()
+            .is_some_and(follows)
+            && self.shown.as_ref().is_some_and(is_same)
     }
 
     /// Voxels of the light volume of a final picture; 0 where there is none, or it is not known.

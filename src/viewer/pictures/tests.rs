@@ -5,6 +5,7 @@ use std::sync::{Condvar, Mutex};
 
 use super::*;
 use crate::render::gpu::Gpu;
+use crate::scene::lighting::OcclusionMethod;
 use crate::scene::{CameraSpec, FramingCamera, LightingSpec, Projection, Scene};
 use crate::view::Lighting;
 use crate::viewer::budget::COARSEST;
@@ -85,6 +86,18 @@ impl Turning {
         self.pictures.schedule(&self.ctx, wanted, true, false);
     }
 
+    /// Frames at rest until the final picture from there is shown.
+    fn rest(&mut self, degrees: u32) {
+        let start = Instant::now();
+        while !self.pictures.sides[0].is_finished(&self.wanted(degrees)) {
+            self.pictures.listen(&self.ctx);
+            let wanted = vec![self.wanted(degrees)];
+            self.pictures.schedule(&self.ctx, wanted, false, false);
+            assert!(start.elapsed() < PATIENCE, "no final picture");
+            std::thread::sleep(Duration::from_millis(2));
+        }
+    }
+
     /// Azimuth of the camera of the picture that is shown.
     fn shown(&self) -> Option<f64> {
         let shown = self.pictures.shown(0, &self.case)?;
@@ -162,6 +175,24 @@ fn every_move_leads_to_a_draft_within_bounds_and_the_light_with_it() {
         assert_eq!(drafts.asked, drafts.made);
         assert!(drafts.made - first.made <= 20);
         assert!(drafts.made > first.made, "the first one is a draft");
+    }
+}
+
+#[test]
+fn light_from_all_sides_stays_whole_while_the_camera_turns() {
+    let Some(mut turning) = turning("strong") else {
+        return;
+    };
+    if let Some(occlusion) = &mut turning.lighting.occlusion {
+        occlusion.method = OcclusionMethod::Surround;
+    }
+    turning.rest(10);
+    for degrees in 11..15 {
+        turning.until(degrees);
+        let picture = &turning.pictures.shown(0, &turning.case).unwrap().picture;
+        let lighting = &picture.view.style.lighting;
+        let whole = Lighting::light_size_of(lighting.size());
+        assert_eq!(lighting.light_size(), whole);
     }
 }
 
