@@ -205,18 +205,9 @@ impl Scan<'_> {
         file: FileBytes,
         included_from: Vec<(PathBuf, usize)>,
     ) -> Result<Flow, ParseError> {
-        let source = Rc::new(Source::new(file, included_from));
+        let source = Rc::new(Source::new(file, included_from)?);
         let path = source.path();
-        let text = source.text();
-        if text.iter().take(512).any(|&byte| byte == 0) {
-            return Err(source.error(
-                ErrorKind::NotThisFormat,
-                0,
-                "",
-                "this is a binary file, not a text deck",
-            ));
-        }
-        self.found.bytes = self.found.bytes.saturating_add(text.len());
+        self.found.bytes = self.found.bytes.saturating_add(source.text().len());
         if !self.found.files.iter().any(|file| file == path) {
             self.found.files.push(path.to_owned());
         }

@@ -19,13 +19,22 @@ pub(super) struct Source {
 }
 
 impl Source {
-    pub(super) fn new(file: FileBytes, included_from: Vec<(PathBuf, usize)>) -> Self {
-        let counted = Cell::new((0, 1));
-        Self {
+    /// # Errors
+    /// When the file is not text.
+    pub(super) fn new(
+        file: FileBytes,
+        included_from: Vec<(PathBuf, usize)>,
+    ) -> Result<Self, ParseError> {
+        let source = Self {
             file,
             included_from,
-            counted,
+            counted: Cell::new((0, 1)),
+        };
+        if source.text().iter().take(512).any(|byte| *byte == 0) {
+            let message = "this is a binary file, not a text deck";
+            return Err(source.error(ErrorKind::NotThisFormat, 0, "", message));
         }
+        Ok(source)
     }
 
     /// The text, without the mark that some editors put before it (UTF-8 byte order mark).

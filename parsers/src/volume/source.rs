@@ -6,7 +6,7 @@ use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use crate::bytes::FileBytes;
+use crate::bytes::{self, FileBytes};
 use crate::error::{At, ErrorKind, ParseError};
 
 /// Headers longer than this are none.
@@ -28,53 +28,22 @@ enum Content {
     Memory(FileBytes),
 }
 
-/// Opens a regular file: a pipe would wait for a writer, and a device has no end.
-fn open(path: &Path) -> io::Result<(File, u64)> {
-    let metadata = std::fs::metadata(path)?;
-    if metadata.is_dir() {
-        return Err(io::ErrorKind::IsADirectory.into());
-    }
-    if !metadata.is_file() {
-        return Err(io::Error::other("not a regular file"));
-    }
-    let file = File::open(path)?;
-    let length = file.metadata()?.len();
-    Ok((file, length))
-}
-
-#[cfg(unix)]
+/// Fills `out` from a byte offset.
 fn read_at(file: &File, offset: u64, out: &mut [u8]) -> io::Result<()> {
-    std::os::unix::fs::FileExt::read_exact_at(file, out, offset)
-}
-
-#[cfg(windows)]
-fn read_at(file: &File, mut offset: u64, mut out: &mut [u8]) -> io::Result<()> {
-    while !out.is_empty() {
-        let count = std::os::windows::fs::FileExt::seek_read(file, out, offset)?;
-        if count == 0 {
-            return Err(io::ErrorKind::UnexpectedEof.into());
-        }
-        offset += count as u64;
-        out = &mut out[count..];
+    match bytes::read_at(file, offset, out)? == out.len() {
+        true => Ok(()),
+        false => Err(io::ErrorKind::UnexpectedEof.into()),
     }
-    Ok(())
-}
-
-/// Without threads nobody else moves the file's position.
-#[cfg(not(any(unix, windows)))]
-fn read_at(mut file: &File, offset: u64, out: &mut [u8]) -> io::Result<()> {
-    io::Seek::seek(&mut file, io::SeekFrom::Start(offset))?;
-    file.read_exact(out)
 }
 
 impl Source {
     pub(super) fn open(path: &Path) -> Result<Self, ParseError> {
-        let (file, length) =
-            open(path).map_err(|cause| ParseError::io(path, "cannot open", cause))?;
+        let (file, metadata) =
+            bytes::open(path).map_err(|cause| ParseError::io(path, "cannot open", cause))?;
         Ok(Self {
             path: path.to_owned(),
             content: Content::Open(Arc::new(file)),
-            length,
+            length: metadata.len(),
         })
     }
 
@@ -105,7 +74,9 @@ impl Source {
     pub(super) fn read(&self, offset: u64, out: &mut [u8]) -> Result<(), ParseError> {
         let read = match &self.content {
             Content::Open(file) => read_at(file, offset, out),
-            Content::Closed => open(&self.path).and_then(|(file, _)| read_at(&file, offset, out)),
+            Content::Closed => {
+                bytes::open(&self.path).and_then(|(file, _)| read_at(&file, offset, out))
+            }
             Content::Memory(file) => {
                 let start = usize::try_from(offset).unwrap_or(usize::MAX);
                 let end = start.saturating_add(out.len());

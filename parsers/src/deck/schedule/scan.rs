@@ -110,11 +110,7 @@ impl Walk<'_> {
         file: FileBytes,
         included_from: Vec<(PathBuf, usize)>,
     ) -> Result<Flow, ParseError> {
-        let source = Rc::new(Source::new(file, included_from));
-        if source.text().iter().take(512).any(|byte| *byte == 0) {
-            let message = "this is a binary file, not a text deck";
-            return Err(source.error(ErrorKind::NotThisFormat, 0, "", message));
-        }
+        let source = Rc::new(Source::new(file, included_from)?);
         self.nesting.enter(source.path());
         let flow = self.keywords(&source);
         self.nesting.leave();
