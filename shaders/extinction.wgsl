@@ -73,12 +73,17 @@ fn opacity_of_values(at: vec3i) -> f32 {
     let voxel = field_voxel(at);
     let in_cell = transfer_at(blur.position_low + blur.position_scale * voxel.value).w;
     var coverage = voxel.coverage;
+    // Outside of the texture, where there are none, this is 0.
+    var occluders = textureLoad(source, at, 0).x;
     if CLIPS {
         let point = blur.box_low + (vec3f(at) + 0.5) * blur.spacing;
         for (var n = 0u; n < blur.clip_count; n++) {
             let plane = blur.clip_planes[n];
-            coverage = select(0.0, coverage, dot(plane.xyz, point) + plane.w >= 0.0);
+            let is_kept = dot(plane.xyz, point) + plane.w >= 0.0;
+            coverage = select(0.0, coverage, is_kept);
+            occluders = select(0.0, occluders, is_kept);
         }
     }
-    return coverage * (1.0 - exp(-select(in_cell, blur.ghost, voxel.is_ghost) * blur.sigma));
+    let opacity = coverage * (1.0 - exp(-select(in_cell, blur.ghost, voxel.is_ghost) * blur.sigma));
+    return 1.0 - (1.0 - opacity) * (1.0 - occluders);
 }

@@ -5,7 +5,7 @@
 //! A light volume is made anew with the extinction, and where its own emitter has changed; what is compiled, where
 //! its constants have.
 
-use crate::scene::Storage;
+use crate::scene::{Hull, Storage};
 use crate::view::View;
 
 /// Numbers that count up with each change of what a view shows of one grid, and never fall: what a canceled update
@@ -54,7 +54,8 @@ impl RevisionCounter {
         let opacities = changes(|a, b| opacities(a) != opacities(b));
         let visible = values || opacities;
         let space = changes(|a, b| space(a) != space(b));
-        let extinction = values || space || opacities;
+        let occluders = changes(|a, b| occluders(a) != occluders(b));
+        let extinction = values || space || opacities || occluders;
         let gradients = values || space || changes(|a, b| range(a) != range(b));
         for (revision, changes) in [
             (&mut self.now.grid, grid),
@@ -97,6 +98,26 @@ fn space(view: &View) -> impl PartialEq {
     let lighting = &view.style.lighting;
     let size = (lighting.size(), lighting.light_size(), lighting.extent);
     (size, view.world.vertical_exaggeration, &view.shown.clip)
+}
+
+/// What else than cells stands in the way of light.
+fn occluders(view: &View) -> impl PartialEq {
+    let lit = view.style.lighting.geometry && !view.style.lighting.is_off();
+    let shown = view.style.surfaces;
+    let wells = (lit && shown.wells).then(|| {
+        let capsules = view.shown.wells.capsules.iter();
+        capsules.map(|c| (c.ends, c.radius)).collect::<Vec<_>>()
+    });
+    let sheets = lit && shown.faults && shown.hull != Hull::Opaque;
+    (
+        wells,
+        sheets.then(|| {
+            (
+                view.shown.named_faults.clone(),
+                view.shown.chosen_faults.clone(),
+            )
+        }),
+    )
 }
 
 fn opacities(view: &View) -> impl PartialEq {

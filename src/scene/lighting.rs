@@ -22,6 +22,8 @@ pub struct LightingSpec {
     pub blinn_phong: bool,
     /// Only what carries no number is shaded: inactive cells. Colors of values stay exact.
     pub exact_colors: bool,
+    /// Wells and fault sheets darken what lies behind them, as cells do.
+    pub geometry: bool,
     /// Volumes that extinction and light are sampled into.
     pub volume: VolumeSpec,
     /// Rays over a cone in the mode `monte_carlo`.
@@ -42,6 +44,7 @@ impl Default for LightingSpec {
             ambient: None,
             blinn_phong: false,
             exact_colors: false,
+            geometry: true,
             volume: VolumeSpec::default(),
             rays: 16,
             rays_gap: 1.0,

@@ -136,6 +136,8 @@ pub struct Lighting {
     pub blinn_phong: bool,
     /// Only inactive cells are shaded.
     pub exact_colors: bool,
+    /// Wells and sheets of faults stand in the way of light too.
+    pub geometry: bool,
     /// Rays over a cone in the mode `MonteCarlo`.
     pub rays: u32,
     /// Distance at which they start, in standard deviations of the finest level. Cones have a gap of their own:
@@ -290,6 +292,7 @@ pub(crate) fn resolve(
         ambient,
         blinn_phong: spec.blinn_phong && !spec.lights.is_empty(),
         exact_colors: spec.exact_colors,
+        geometry: spec.geometry,
         rays: spec.rays,
         rays_gap: within("lighting.rays_gap", spec.rays_gap, [0.0, 20.0])?,
         seed: spec.seed,

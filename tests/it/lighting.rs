@@ -191,7 +191,7 @@ fn nothing_said_is_no_light_and_all_said_comes_back() {
         "shadows": {
             "mode": "monte_carlo", "splits": 3, "attenuation": 0.9, "gap": 1.5, "length": 0.6, "even_media": true,
         },
-        "ambient": 0.2, "blinn_phong": true, "exact_colors": true,
+        "ambient": 0.2, "blinn_phong": true, "exact_colors": true, "geometry": false,
         "volume": {"budget_mb": 7, "size": [10, 11, 12], "light_size": [5, 6, 7]},
         "rays": 32, "rays_gap": 2.5, "seed": 5,
     });

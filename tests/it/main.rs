@@ -38,6 +38,7 @@ mod lighting;
 mod limits;
 mod local_grids;
 mod metrics;
+mod occluders;
 mod occlusion;
 mod odd_cells;
 mod oracle;

@@ -50,13 +50,32 @@ impl Integrator<'_> {
                 direction: cosine * axis + across,
             };
             let weight = if is_around { 1.0 } else { cosine };
-            sum += weight * (-self.optical_depth(ray, range, step, random.f64())).exp();
+            let passed = match self.view.style.lighting.geometry {
+                true => self.past_surfaces(ray, range),
+                false => 1.0,
+            };
+            if passed > 0.0 {
+                let depth = self.optical_depth(ray, range, step, random.f64());
+                sum += weight * passed * (-depth).exp();
+            }
             weights += weight;
         }
         match is_around {
             // Light comes to a point of an even surface from half of all directions.
             true => (2.0 * sum / weights).min(1.0),
             false => sum / weights,
+        }
+    }
+
+    /// Part of the light that wells and sheets of faults leave within a range of a ray, in the model's box.
+    fn past_surfaces(&self, ray: Ray, [start, end]: [f64; 2]) -> f64 {
+        let Some([enter, leave]) = ray.within(self.view.world.bounds) else {
+            return 1.0;
+        };
+        let range = [start.max(enter), end.min(leave)];
+        match self.meets_tube(ray, range) {
+            true => 0.0,
+            false => self.past_sheets(ray, range),
         }
     }
 

@@ -274,6 +274,19 @@ impl Integrator<'_> {
     }
 
     fn sheets(&self, ray: Ray) -> Vec<Layer> {
+        let sheets = self.sheets_met(ray);
+        sheets.iter().map(|hit| self.sheet(ray, hit)).collect()
+    }
+
+    /// Part of the light that sheets leave within a range of a ray.
+    pub(super) fn past_sheets(&self, ray: Ray, [start, end]: [f64; 2]) -> f64 {
+        let met = self.sheets_met(ray).into_iter();
+        let counts = met.filter(|hit| (start..=end).contains(&hit.distance));
+        (1.0 - SHEET_OPACITY).powi(counts.count() as i32)
+    }
+
+    /// Sheets on a ray, each of them once, nearest first.
+    fn sheets_met(&self, ray: Ray) -> Vec<Hit<'_>> {
         let gap = self.view.fault_gap();
         let mut hits = self.kept(&self.surfaces.sheets, ray);
         hits.sort_by(|a, b| a.distance.total_cmp(&b.distance));
@@ -286,7 +299,7 @@ impl Integrator<'_> {
                 sheets.push(hit);
             }
         }
-        sheets.iter().map(|hit| self.sheet(ray, hit)).collect()
+        sheets
     }
 
     fn hull(&self, ray: Ray, hit: &Hit<'_>) -> Layer {

@@ -37,6 +37,21 @@ impl Integrator<'_> {
     }
 }
 
+impl Integrator<'_> {
+    /// True where a ray meets a well within a range of distances.
+    pub(super) fn meets_tube(&self, ray: Ray, [start, end]: [f64; 2]) -> bool {
+        let capsules = &self.view.shown.wells.capsules;
+        let is_met = |hit: Hit| {
+            (start..=end).contains(&hit.distance)
+                && self.is_kept(ray.origin + hit.distance * ray.direction)
+        };
+        self.view.style.surfaces.wells
+            && capsules
+                .iter()
+                .any(|c| hits(c, ray).into_iter().any(is_met))
+    }
+}
+
 /// All points of a capsule's surface on a ray: of the cylinder between its ends and of the half spheres beyond them.
 fn hits(capsule: &Capsule, ray: Ray) -> Vec<Hit> {
     let [a, b] = capsule.ends;

@@ -12,6 +12,7 @@ use super::volume::Voxels;
 use crate::render::job::Progress;
 use crate::render::plan::extinction::{Blur, Line, MOST_LEVELS};
 use crate::render::plan::layout::PACKED_GHOST;
+use crate::render::plan::occluders::Occluders;
 use crate::view::voxels::Shape;
 
 /// Opacities are kept below one, as in the transfer function.
@@ -54,11 +55,12 @@ pub fn depth_of(opacity: f32) -> f32 {
     -(1.0 - opacity.min(MOST_OPACITY)).ln()
 }
 
-/// Opacities of a unit of length.
+/// Opacities of a unit of length: of cells, and of what stands in the way beside them.
 pub async fn opacities(
     field: &Voxels<u16>,
     blur: &Blur,
     tables: &Tables,
+    occluders: Option<&Occluders>,
     progress: &Progress,
 ) -> Voxels<f32> {
     let numbers = blur.info(Line {
@@ -82,19 +84,28 @@ pub async fn opacities(
     let planes = &planes[..numbers.clip_count as usize];
     let [low, spacing] = [numbers.box_low, numbers.spacing].map(Vec3A::from);
     Voxels::by_rows(blur.size, progress, |y, z| {
-        let opacity = |(x, packed): (usize, &u16)| {
+        let is_kept = |x: usize| {
             let at = Vec3A::new(x as f32, y as f32, z as f32) + 0.5;
             let is_kept =
                 |plane: &Vec4| Vec3A::from_vec4(*plane).dot(low + at * spacing) + plane.w >= 0.0;
-            match *packed != 0 && planes.iter().all(is_kept) {
-                true => {
-                    let value = u32::from(*packed) & PACKED_GHOST;
-                    FieldVoxel::of(*packed).coverage * of_values[value as usize]
-                }
-                false => 0.0,
-            }
+            planes.iter().all(is_kept)
         };
-        field.row(y, z).iter().enumerate().map(opacity).collect()
+        let opacity = |(x, packed): (usize, &u16)| match *packed != 0 && is_kept(x) {
+            true => {
+                let value = u32::from(*packed) & PACKED_GHOST;
+                FieldVoxel::of(*packed).coverage * of_values[value as usize]
+            }
+            false => 0.0,
+        };
+        let mut row: Vec<f32> = field.row(y, z).iter().enumerate().map(opacity).collect();
+        if let Some(occluders) = occluders {
+            let others = row.iter_mut().zip(occluders.row(y, z)).enumerate();
+            for (x, (opacity, other)) in others.filter(|(_, (_, other))| *other > 0.0) {
+                let other = if is_kept(x) { other } else { 0.0 };
+                *opacity = 1.0 - (1.0 - *opacity) * (1.0 - other);
+            }
+        }
+        row
     })
     .await
 }

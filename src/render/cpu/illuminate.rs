@@ -7,8 +7,9 @@ use super::resample::FieldVoxel;
 use super::volume::Voxels;
 use crate::render::job::Progress;
 use crate::render::plan::layout::LightingInfo;
+use crate::render::plan::occluders::Occluders;
 
-/// Transmittances at the middles of voxels over a box of a size in lighting space; 1 where no cell is so near that it
+/// Transmittances at the middles of voxels over a box of a size in lighting space; 1 where nothing is so near that it
 /// matters.
 pub async fn light_volume(
     box_size: Vec3A,
@@ -30,9 +31,38 @@ pub async fn light_volume(
 
 /// Which voxels of light volumes of a size count for places in cells, or within a voxel of values from them.
 pub async fn near_cells(field: &Voxels<u16>, size: [u32; 3], progress: &Progress) -> Voxels<bool> {
-    // Voxels of values so near to a voxel of light that it counts there.
+    let is_cell = |y, z| field.row(y, z).iter().map(|packed| *packed != 0).collect();
+    near(field.size, &is_cell, size, progress).await
+}
+
+/// As [`near_cells`], with places in wells and sheets of faults, or within a voxel from them.
+pub async fn near_occluders(
+    cells: &Voxels<bool>,
+    occluders: &Occluders,
+    progress: &Progress,
+) -> Voxels<bool> {
+    let size = cells.size.map(|n| n as u32);
+    let is_there = |y, z| occluders.row(y, z).map(|opacity| opacity > 0.0).collect();
+    let from = occluders.size.map(|n| n as usize);
+    let near = near(from, &is_there, size, progress).await;
+    Voxels::by_rows(size, progress, |y, z| {
+        let both = near.row(y, z).iter().zip(cells.row(y, z));
+        both.map(|(a, b)| *a || *b).collect()
+    })
+    .await
+}
+
+/// Which voxels of a size count for places in the voxels of a size `from` that rows along x tell, or within one of those
+/// from them.
+async fn near(
+    from: [usize; 3],
+    is_there: &(dyn Fn(usize, usize) -> Vec<bool> + Sync),
+    size: [u32; 3],
+    progress: &Progress,
+) -> Voxels<bool> {
+    // Voxels so near to a voxel of light that it counts there.
     let around = |axis: usize, voxel: usize| {
-        let (from, to) = (field.size[axis], size[axis]);
+        let (from, to) = (from[axis], size[axis]);
         let ratio = from as f32 / to as f32;
         let low = ((voxel as f32 - 0.5) * ratio - 2.0).ceil().max(0.0) as usize;
         let high = ((voxel as f32 + 1.5) * ratio + 1.0).floor() as usize;
@@ -47,10 +77,10 @@ pub async fn near_cells(field: &Voxels<u16>, size: [u32; 3], progress: &Progress
         }
         any
     };
-    let [_, height, depth] = field.size.map(|n| n as u32);
+    let [_, height, depth] = from.map(|n| n as u32);
     let first = Voxels::by_rows([size[0], height, depth], progress, |y, z| {
-        let row = field.row(y, z);
-        let is_near = |x| row[around(0, x)].iter().any(|packed| *packed != 0);
+        let row = is_there(y, z);
+        let is_near = |x| row[around(0, x)].contains(&true);
         (0..size[0] as usize).map(is_near).collect()
     });
     let first = first.await;

@@ -11,19 +11,21 @@ use super::cone_rays::ConeRays;
 use super::cones::Cones;
 use super::extinction::{Pyramid, opacities};
 use super::grid::Grid;
-use super::illuminate::{gradients, light_volume, near_cells};
+use super::illuminate::{gradients, light_volume, near_cells, near_occluders};
 use super::kept::Kept;
 use super::lamps::Lamp;
 use super::light::Light;
 use super::resample::Resampler;
 use super::transfer::Tables;
 use super::volume::Voxels;
+use crate::model::Grid as Model;
 use crate::render::LightTimes;
 use crate::render::job::Progress;
 use crate::render::plan::around::shells;
 use crate::render::plan::extinction::Blur;
 use crate::render::plan::layout::{Emitter, LightingInfo};
 use crate::render::plan::light::{Emitters, Shading};
+use crate::render::plan::occluders::Occluders;
 use crate::render::revisions::Revisions;
 use crate::scene::Interpolation;
 use crate::scene::lighting::OcclusionMethod;
@@ -36,6 +38,8 @@ pub struct Illumination {
     /// Opacities of a unit of length without any blur, for rays over cones, and their means where they are asked for.
     opacities: Kept<Means>,
     pyramid: Kept<Pyramid>,
+    /// Voxels of light volumes that count, where not for cells alone.
+    near: Option<Voxels<bool>>,
     /// One for each emitter whose light is found before the rays.
     volumes: Vec<LightVolume>,
     gradients: Kept<Voxels<Vec4>>,
@@ -101,7 +105,9 @@ impl<'a> Finder<'a> {
 
 /// What light is made of.
 pub struct Source<'a> {
-    /// The grid with its values.
+    /// The grid of the case.
+    pub model: &'a Model,
+    /// The same with its values, as it is held.
     pub grid: &'a Grid,
     /// Those of the view.
     pub revisions: Revisions,
@@ -200,7 +206,14 @@ impl Illumination {
             return;
         };
         let blur = Blur::new(&source.grid.compact.facts, source.view, field.range);
-        let made = opacities(&field.voxels, &blur, source.tables, progress).await;
+        let facts = &source.grid.compact.facts;
+        let occluders = Occluders::of(facts, source.view, source.model);
+        let occluders = occluders.as_ref();
+        self.near = match occluders {
+            Some(occluders) => Some(near_occluders(&field.near, occluders, progress).await),
+            None => None,
+        };
+        let made = opacities(&field.voxels, &blur, source.tables, occluders, progress).await;
         if wants_cones {
             self.pyramid.forget();
             let pyramid = Pyramid::new(&made, &blur, progress).await;
@@ -251,7 +264,8 @@ impl Illumination {
             };
             let found = finder.of(&lit, &self.lamps[at]);
             let box_size = Vec3A::from(info.size);
-            let voxels = light_volume(box_size, &*found, &field.near, progress).await;
+            let near = self.near.as_ref().unwrap_or(&field.near);
+            let voxels = light_volume(box_size, &*found, near, progress).await;
             let made = LightVolume { lit, voxels };
             match self.volumes.get_mut(n) {
                 Some(volume) => *volume = made,

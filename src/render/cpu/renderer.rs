@@ -95,6 +95,7 @@ impl CpuRenderer {
         let (model, now) = (&self.model, self.revisions);
         let tables = self.tables.update(now.transfer, || Ok(Tables::new(view)))?;
         let source = Source {
+            model,
             grid: &self.grid,
             revisions: now,
             view,

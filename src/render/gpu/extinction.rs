@@ -14,12 +14,14 @@ use crate::render::plan::layout::{Slab, WORK_GAUSSIAN, WORK_MEAN, WORK_VALUES};
 use crate::view::voxels::Shape;
 
 /// What a pyramid is made from.
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 pub struct PyramidSource {
     /// See [`crate::render::revisions::Revisions::extinction`].
     pub revision: u64,
     /// Opacities of values, which shaders find in bind group 2, and their blur.
     pub blur: Blur,
+    /// Opacities of what stands in the way beside cells, from 0 to 1, or a texture without any.
+    pub occluders: wgpu::TextureView,
 }
 
 /// The pyramid, and what it was made from.
@@ -169,9 +171,9 @@ async fn opacities(
         counts: [target.shape.size[0]; 2],
         deviation: 0.0,
     };
-    // Values come from the bind group; this is only there to be bound.
-    let read = Volume::new(slabs.gpu, Shape::single([1; 3], 1)).level(0);
-    pass_over(slabs, source, group, pass, line, &read, (target, 0)).await
+    // Values come from the bind group.
+    let read = &source.occluders;
+    pass_over(slabs, source, group, pass, line, read, (target, 0)).await
 }
 
 /// Filters opacities along x, y and depth in turn: into a level of the pyramid, or into their means.

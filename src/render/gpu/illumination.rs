@@ -14,7 +14,8 @@ use super::resample;
 use super::slabs::Slabs;
 use super::tiles::Pace;
 use super::transfer_tables::TransferTables;
-use super::volume::Volume;
+use super::volume::{Volume, of_bytes};
+use crate::model::Grid;
 use crate::render::RenderError;
 use crate::render::job::Progress;
 use crate::render::plan::around::shells;
@@ -23,6 +24,7 @@ use crate::render::plan::layout::{
     Emitter, LightingInfo, METHOD_CONES, METHOD_SPAO_MIPMAP, METHOD_SURROUND, Slab,
 };
 use crate::render::plan::light::{Emitters, Shading};
+use crate::render::plan::occluders::Occluders;
 use crate::render::stats::LightTimes;
 use crate::scene::lighting::OcclusionMethod;
 use crate::view::View;
@@ -131,14 +133,14 @@ impl Illumination {
         })
     }
 
-    /// Brings the light of a view up to date.
+    /// Brings the light of a view of a case's grid up to date.
     ///
     /// # Errors
     /// When a volume exceeds what the adapter holds, or the device reports an error.
     pub async fn update(
         &mut self,
         gpu: &Gpu,
-        grid: &GpuGrid,
+        (model, grid): (&Grid, &GpuGrid),
         view: &View,
         tables: &TransferTables,
         progress: &Progress,
@@ -153,7 +155,8 @@ impl Illumination {
         self.fill(gpu, grid, view, progress).await?;
         self.times.field = start.elapsed();
         let start = Instant::now();
-        self.blur(gpu, grid, view, tables, progress).await?;
+        self.blur(gpu, (model, grid), view, tables, progress)
+            .await?;
         self.times.extinction = start.elapsed();
         let start = Instant::now();
         let emitters = Emitters::new(&grid.facts, view);
@@ -202,11 +205,12 @@ impl Illumination {
         Ok(())
     }
 
-    /// Makes the pyramid where the values, the transfer function or the clip planes have changed.
+    /// Makes the pyramid where the values, the transfer function, the clip planes or what stands in the way beside
+    /// cells have changed.
     async fn blur(
         &mut self,
         gpu: &Gpu,
-        grid: &GpuGrid,
+        (model, grid): (&Grid, &GpuGrid),
         view: &View,
         tables: &TransferTables,
         progress: &Progress,
@@ -214,33 +218,47 @@ impl Illumination {
         let Some(field) = &self.field else {
             return Ok(());
         };
-        let source = PyramidSource {
-            revision: grid.revisions.extinction,
-            blur: Blur::new(&grid.facts, view, field.range),
-        };
+        let revision = grid.revisions.extinction;
         let shading = Shading::of(&view.style.lighting);
         let is_stale =
-            |made: &Option<Pyramid>| made.as_ref().is_none_or(|p| p.revision != source.revision);
+            |made: &Option<Pyramid>| made.as_ref().is_none_or(|p| p.revision != revision);
         let group = self.bind(gpu, tables);
         let mut slabs = Slabs::new(gpu, &mut self.pace, progress);
         let means = match shading.averages() {
             true => shells(&view.style.lighting),
             false => 0,
         };
-        let levels = Shape::single(source.blur.size, 1 + means).levels;
+        let levels = Shape::single(view.style.lighting.size(), 1 + means).levels;
         let has_other_levels =
             |o: &Option<Pyramid>| o.as_ref().is_none_or(|o| o.levels() != levels);
-        if !shading.casts_rays() && !shading.averages() {
+        let uses_opacities = shading.casts_rays() || shading.averages();
+        if !uses_opacities {
             self.opacities = None;
-        } else if is_stale(&self.opacities) || has_other_levels(&self.opacities) {
+        }
+        if !shading.traces_cones() {
+            self.pyramid = None;
+        }
+        let wants_opacities =
+            uses_opacities && (is_stale(&self.opacities) || has_other_levels(&self.opacities));
+        let wants_cones = shading.traces_cones() && is_stale(&self.pyramid);
+        if !wants_opacities && !wants_cones {
+            return Ok(());
+        }
+        let source = PyramidSource {
+            revision,
+            blur: Blur::new(&grid.facts, view, field.range),
+            occluders: match Occluders::of(&grid.facts, view, model) {
+                Some(some) => of_bytes(gpu, "occluders", some.size, &some.opacities),
+                None => self.nothing[0].level(0),
+            },
+        };
+        if wants_opacities {
             let before = self.opacities.take();
             let made = Pyramid::make_sharp(&mut slabs, &source, &group, means, before);
             self.opacities = Some(made.await?);
             self.made.means += 1;
         }
-        if !shading.traces_cones() {
-            self.pyramid = None;
-        } else if is_stale(&self.pyramid) {
+        if wants_cones {
             let before = self.pyramid.take();
             let made = Pyramid::make(&mut slabs, &source, &group, before);
             self.pyramid = Some(made.await?);

@@ -108,7 +108,7 @@ impl GpuRenderer {
         // What is made for light is of all drawn cells.
         on_device.meet_all(gpu, true);
         light
-            .update(gpu, on_device, view, tables, &progress)
+            .update(gpu, (of_case, on_device), view, tables, &progress)
             .await?;
         let strategy = match view.casts_rays() {
             true => strategy(gpu, &mut self.strategies, view.sampling.strategy),

@@ -33,6 +33,28 @@ impl Shape {
     }
 }
 
+/// A texture of bytes that shaders read as 0 to 1: x fastest, then y, then depth.
+pub fn of_bytes(gpu: &Gpu, what: &str, size: [u32; 3], bytes: &[u8]) -> wgpu::TextureView {
+    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some(what),
+        size: extent(size),
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D3,
+        format: wgpu::TextureFormat::R8Unorm,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    });
+    let layout = wgpu::TexelCopyBufferLayout {
+        offset: 0,
+        bytes_per_row: Some(size[0]),
+        rows_per_image: Some(size[1]),
+    };
+    gpu.queue
+        .write_texture(texture.as_image_copy(), bytes, layout, extent(size));
+    texture.create_view(&Default::default())
+}
+
 /// A volume over the box of the active cells.
 ///
 /// **Shape**: x fastest, then y, then depth; voxel n of N along an axis has its middle at (n + 1/2) / N of

@@ -94,7 +94,7 @@ pub fn position(view: &View, range: [f64; 2]) -> [f32; 2] {
 
 /// Lighting space: the grid's axes from the low corner of the box, in units of the finest level's standard
 /// deviation in world space.
-struct LightSpace<'a> {
+pub(super) struct LightSpace<'a> {
     grid: &'a GridFacts,
     view: &'a View,
     scale: DVec3,
@@ -102,7 +102,7 @@ struct LightSpace<'a> {
 }
 
 impl<'a> LightSpace<'a> {
-    fn new(grid: &'a GridFacts, view: &'a View) -> Self {
+    pub(super) fn new(grid: &'a GridFacts, view: &'a View) -> Self {
         let [low, high] = grid.bounds;
         let sigma = view.style.lighting.sigma();
         let edges = (high - low).max(DVec3::splat(1e-6));
@@ -114,7 +114,7 @@ impl<'a> LightSpace<'a> {
         }
     }
 
-    fn point(&self, world: DVec3) -> Vec3 {
+    pub(super) fn point(&self, world: DVec3) -> Vec3 {
         let to_grid = &self.view.world.spaces.grid_from_world;
         let point = to_grid.transform_point3(world) - self.grid.origin;
         ((point - self.grid.bounds[0]) * self.scale).as_vec3()

@@ -16,6 +16,7 @@ pub mod layout;
 pub mod light;
 mod lists;
 pub mod majorants;
+pub mod occluders;
 pub mod packing;
 pub mod srg;
 pub mod surfaces;
