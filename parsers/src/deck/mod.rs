@@ -23,6 +23,7 @@ mod scan;
 mod schedule;
 mod skip;
 mod source;
+mod walk;
 mod write;
 
 use std::path::{Path, PathBuf};
