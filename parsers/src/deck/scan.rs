@@ -7,7 +7,7 @@ use std::rc::Rc;
 use super::edit::{CellBox, Edit, Place};
 use super::files::DeckFiles;
 use super::lexer::{Cursor, Item, Keyword, Mistake, line_end, record_end};
-use super::refine::{Refinement, Target, is_division};
+use super::refine::{Refinement, Target};
 use super::skip::{Skipped, ends_records, is_operation, skip_records};
 use super::source::Source;
 use super::walk::{Flow, Visitor, Walk};
@@ -440,7 +440,7 @@ impl Scan<'_> {
                     "DXV" | "DYV" | "DZV" | "DRV" | "DTHETAV" | "INRAD" | "OUTRAD" if is_main => {
                         self.found.vectors.push(block);
                     }
-                    _ if is_division(name) => self.division(block),
+                    _ if self.is_division(name) => self.division(block),
                     _ => self.keep(block, self.input_box),
                 }
             }
