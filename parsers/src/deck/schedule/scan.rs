@@ -22,7 +22,7 @@ const MOST_CHANGES: usize = 3_000_000;
 /// Keywords whose records are read one by one, up to an empty one.
 const LISTS: &[&str] = &[
     "WELSPECS", "WELSPECL", "COMPDAT", "COMPDATL", "WCONPROD", "WCONHIST", "WCONINJE", "WCONINJH",
-    "WCONINJ", "WELOPEN", "WLIST", "DATES",
+    "WCONINJ", "WELOPEN", "WELTARG", "WLIST", "DATES",
 ];
 
 /// Keywords about wells that are not evaluated.
@@ -206,14 +206,22 @@ impl Scan<'_> {
             "WELSPECL" => records::head(items, 3)?,
             "COMPDAT" => records::connect(items, 1)?,
             "COMPDATL" => records::connect(items, 2)?,
-            "WCONPROD" | "WCONHIST" => records::producer(items),
+            "WCONPROD" | "WCONHIST" => records::producer(name, items),
+            "WELTARG" => match records::target(items) {
+                Some(what) => what,
+                None => {
+                    let keyword = "WELTARG of other quantities than rates and pressures";
+                    self.not_evaluated.insert(keyword.to_owned());
+                    return Ok(());
+                }
+            },
             "WELOPEN" if records::is_by_number(items) => {
                 let keyword = "WELOPEN by numbers of completions";
                 self.not_evaluated.insert(keyword.to_owned());
                 return Ok(());
             }
             "WELOPEN" => records::open(items)?,
-            _ => records::injector(items),
+            _ => records::injector(name, items),
         };
         let is_new = matches!(what, What::Head { .. }) && !well.contains(['*', '?']);
         let numbers = match is_new {
