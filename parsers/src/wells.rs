@@ -465,7 +465,7 @@ impl<'a> Section<'a> {
         let needed = (count as u64).saturating_mul(each as u64);
         if entry.count < needed {
             let message = format!(
-                "INTEHEAD says {count} times {each} values, and there are {}",
+                "has {} values, and INTEHEAD says {count} times {each}; the file is damaged",
                 entry.count
             );
             let file = self.arrays.file();

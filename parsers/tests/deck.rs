@@ -1207,11 +1207,11 @@ fn err_missing_keywords() {
     };
     err(
         &without(0),
-        "no grid: SPECGRID (or DIMENS) missing",
+        "no grid: SPECGRID (or DIMENS) is missing: open the file",
     );
-    err(&without(1), "no grid: COORD missing");
-    err(&without(2), "no grid: ZCORN missing");
-    err("", "SPECGRID (or DIMENS) and COORD and ZCORN missing");
+    err(&without(1), "no grid: COORD is missing");
+    err(&without(2), "no grid: ZCORN is missing");
+    err("", "SPECGRID (or DIMENS), COORD, ZCORN are missing");
     err(
         "DIMENS\n1 1 1 /\nDX\n100 /\nDY\n100 /\nDZ\n1 /\n",
         "no grid: a block-centered one needs DIMENS, DX (or DXV)",

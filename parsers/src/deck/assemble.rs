@@ -333,7 +333,11 @@ fn missing(path: &Path, found: &Found) -> ParseError {
         "no grid: a block-centered one needs DIMENS, DX (or DXV), DY (or DYV), DZ (or DZV) and TOPS"
             .to_owned()
     } else {
-        format!("no grid: {} missing", absent.join(" and "))
+        let verb = if absent.len() == 1 { "is" } else { "are" };
+        format!(
+            "no grid: {} {verb} missing: open the file that has the grid",
+            absent.join(", ")
+        )
     };
     ParseError::of(ErrorKind::MissingKeyword, path, At::File, "", message)
 }

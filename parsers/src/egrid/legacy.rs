@@ -215,9 +215,13 @@ fn cells(global: &Section<'_>, dims: [usize; 3]) -> Result<Vec<Cell>, ParseError
             _ => [0; 3],
         };
         if place.iter().zip(dims).any(|(n, size)| *n < 1 || *n > size) {
+            let numbers: Vec<String> = values.iter().take(3).map(ToString::to_string).collect();
             let message = format!(
-                "no cell of a grid of {} x {} x {}: {values:?}",
-                dims[0], dims[1], dims[2]
+                "names the cell {}, and DIMENS says {} x {} x {} cells; the file is damaged",
+                numbers.join(" "),
+                dims[0],
+                dims[1],
+                dims[2]
             );
             return Err(file.error(ErrorKind::BadValue, head, message));
         }
