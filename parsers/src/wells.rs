@@ -59,6 +59,17 @@ pub struct Well {
     pub local: Vec<LocalWell>,
     /// What flows, where XWEL is written.
     pub flow: Option<Flow>,
+    /// What a schedule asks of it; none of a restart.
+    pub targets: Vec<Target>,
+}
+
+/// A rate or a pressure that a schedule asks of a well, or limits it to, in the units of the deck.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Target {
+    /// ORAT, WRAT, GRAT, LRAT, RESV, BHP or THP, or RATE of an injector.
+    pub name: &'static str,
+    /// How much.
+    pub value: f64,
 }
 
 impl Well {
@@ -75,6 +86,7 @@ impl Well {
             completions: Vec::new(),
             local: Vec::new(),
             flow: None,
+            targets: Vec::new(),
         }
     }
 }
@@ -453,7 +465,7 @@ impl<'a> Section<'a> {
         let needed = (count as u64).saturating_mul(each as u64);
         if entry.count < needed {
             let message = format!(
-                "INTEHEAD says {count} times {each} values, and there are {}",
+                "has {} values, and INTEHEAD says {count} times {each}; the file is damaged",
                 entry.count
             );
             let file = self.arrays.file();
@@ -502,6 +514,7 @@ impl<'a> Section<'a> {
                 completions: self.completions(n, item(4), &connections),
                 local: Vec::new(),
                 flow: flow(xwel.of(n)),
+                targets: Vec::new(),
             }
         };
         Ok((0..count).map(well).collect())

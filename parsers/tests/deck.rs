@@ -10,7 +10,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use strataray_parsers::deck::{Grdecl, MemoryFiles, UnitSystem};
+use strataray_parsers::deck::{DeckProperty, Grdecl, MemoryFiles, UnitSystem};
 use strataray_parsers::egrid::PorosityModel;
 use strataray_parsers::records::RecordWriter;
 use strataray_parsers::{ParseError, Warnings};
@@ -891,9 +891,59 @@ fn ok_local_grids_that_are_left_out() {
             1,
         ),
         (
-            "RADFIN\nR 1 1 1 1 3 4 1 /\nINRAD\n1 /\nENDFIN\n".to_owned(),
-            "radial local grids are not read",
+            "RADFIN\nR 1 1 1 1 3 4 /\nINRAD\n1 /\nENDFIN\n".to_owned(),
+            "RADFIN needs a name",
             0,
+        ),
+        (
+            "RADFIN\nR 1 1 1 1 3 4 1 /\nDRV\n0.1 0.1 0.1 /\nENDFIN\n".to_owned(),
+            "INRAD, the radius of its innermost ring, is missing",
+            0,
+        ),
+        (
+            "RADFIN\nR 1 1 1 1 3 4 1 1* 0.1 0.05 /\nENDFIN\n".to_owned(),
+            "OUTRAD 0.05 must be above INRAD 0.1",
+            0,
+        ),
+        (
+            "RADFIN\nR 1 1 1 1 3 4 1 1* 0.1 /\nENDFIN\n".to_owned(),
+            "has neither DRV nor OUTRAD",
+            1,
+        ),
+        (
+            "RADFIN\nR 1 1 1 1 3 4 1 1* 0.1 /\nDRV\n0.3 0.3 0.3 /\nENDFIN\n".to_owned(),
+            "its outermost ring begins at a radius of 0.7",
+            0,
+        ),
+        (
+            "RADFIN\nR 1 1 1 1 2 2 1 1* 0.1 0.3 /\nDTHETAV\n90 180 /\nENDFIN\n".to_owned(),
+            "its sectors have 270 degrees",
+            0,
+        ),
+        (
+            "RADFIN4\nR 1 2 1 1 1 1 2 4 1 /\nINRAD\n0.1 /\nENDFIN\n".to_owned(),
+            "RADFIN4 refines two columns along I and two along J",
+            0,
+        ),
+        (
+            "RADFIN\nR 1 1 1 1 2 2 1 1* 0.1 0.3 /\nDR\n2*0.1 0.1 0.2 /\nENDFIN\n".to_owned(),
+            "DR is not the same for all cells",
+            0,
+        ),
+        (
+            "RADFIN\nR 1 1 1 1 2 2 1 1* 0.1 0.3 /\nNXFIN\n2 /\nENDFIN\n".to_owned(),
+            "NXFIN is not used",
+            1,
+        ),
+        (
+            "RADFIN\nR 1 1 1 1 2 2 1 1* 0.1 0.3 /\nDZ\n4*1 /\nENDFIN\n".to_owned(),
+            "DZ of local grid R is not read: its rings",
+            1,
+        ),
+        (
+            "RADFIN\nR 1 1 1 1 2 2 1 1* 0.1 0.3 /\nENDFIN\nCARFIN\nB 1 1 1 1 1 1 2 1 1 1* R /\nENDFIN\n".to_owned(),
+            "it refines a radial grid",
+            1,
         ),
         (
             first.replace("ENDFIN", "DX\n16*1 /\nENDFIN"),
@@ -913,10 +963,111 @@ fn ok_local_grids_that_are_left_out() {
         assert_eq!(property(&grid, "PORO"), [0.2; 4], "{text}");
         assert!(grid.faults.is_empty() && grid.dims == [4, 1, 1], "{text}");
     }
-    let dual = blocks.replace("4 1 1 /", "4 1 2 /\nGRID");
-    let (grid, warning) = warned(&format!("RUNSPEC\nDUALPORO\n{dual}{first}"));
-    assert!(warning.contains("dual porosity"), "{warning}");
-    assert!(grid.local_grids.is_empty());
+}
+
+#[test]
+fn ok_radial_local_grids() {
+    // Columns of 10 m by 10 m, of which the second along I has other values.
+    let text = |local: &str| {
+        format!(
+            "DIMENS\n3 2 2 /\nDXV\n3*10 /\nDYV\n2*10 /\nDZV\n4 6 /\nTOPS\n6*100 /\n\
+             PORO\n12*0.1 /\nEQUALS\n PORO 0.2 2 2 1 1 1 2 /\n/\n{local}"
+        )
+    };
+    let one = "RADFIN\n'WELL' 2 1 1 2 3 4 4 1* 0.5 /\nDRV\n 0.5 1 9 /\nDTHETAV\n 45 135 2*90 /\n\
+               EQUALS\n PORO 0.5 1 3 2 2 1 1 /\n/\nENDFIN\n";
+    let grid = ok(&text(one));
+    let well = &grid.local_grids[0];
+    assert!(well.grid.is_radial && well.grid.dims == [3, 4, 4]);
+    // The outermost ring is as large as its column, though the deck says more.
+    let radii: Vec<f64> = (0..4).map(|i| well.grid.coord[6 * i]).collect();
+    let outermost = (100.0 / std::f64::consts::PI).sqrt();
+    assert_eq!(radii, [0.5, 1.0, 2.0, outermost]);
+    let angles: Vec<f64> = (0..5).map(|j| well.grid.coord[24 * j + 1]).collect();
+    assert_eq!(angles, [0.0, 45.0, 180.0, 270.0, 360.0]);
+    // Two layers in each host of 4 and 6 m.
+    let depths: Vec<f64> = (0..8).map(|plane| well.grid.zcorn[48 * plane]).collect();
+    assert_eq!(
+        depths,
+        [100.0, 102.0, 102.0, 104.0, 104.0, 107.0, 107.0, 110.0]
+    );
+    assert_eq!((well.grid.host[0], well.grid.host[47]), (2, 8));
+    let values = |p: &DeckProperty| (p.name == "PORO").then(|| p.values.clone());
+    let porosity = well.properties.iter().find_map(values).unwrap();
+    assert_eq!(porosity[..7], [0.2, 0.2, 0.2, 0.5, 0.5, 0.5, 0.2]);
+    // By sizes of cells, and with the factor from ring to ring that two radii leave.
+    let sizes = one.replace("DRV\n 0.5 1 9", &format!("DR\n {}", "0.5 1 9 ".repeat(16)));
+    assert_eq!(ok(&text(&sizes)).local_grids[0].grid, well.grid);
+    let growing = one.replace("DRV\n 0.5 1 9", "OUTRAD\n 13.5");
+    let growing = &ok(&text(&growing)).local_grids[0].grid;
+    assert!((growing.coord[6] - 1.5).abs() < 1e-12 && (growing.coord[12] - 4.5).abs() < 1e-12);
+    // Around the pillar between four columns: I + and J - first.
+    let four = "RADFIN4\n'FOUR' 2 3 1 2 1 1 2 8 1 /\nINRAD\n 1 /\nOUTRAD\n 9 /\nENDFIN\n";
+    let four = &ok(&text(four)).local_grids[0].grid;
+    let hosts: Vec<i32> = four.host.iter().step_by(2).copied().collect();
+    assert_eq!(hosts, [3, 3, 2, 2, 5, 5, 6, 6]);
+    assert!((four.coord[12] - (400.0 / std::f64::consts::PI).sqrt()).abs() < 1e-12);
+}
+
+#[test]
+fn ok_local_grids_of_dual_porosity() {
+    // Two layers of matrix above two of fractures.
+    let text = |local: &str| {
+        format!(
+            "RUNSPEC\nDUALPORO\nDIMENS\n2 1 4 /\nGRID\nDXV\n2*10 /\nDYV\n10 /\nDZV\n2*4 2*4 /\nTOPS\n4*100 4*100 /\n\
+             PORO\n0.1 0.2 0.3 0.4 0.01 0.02 0.03 0.04 /\nACTNUM\n7*1 0 /\n{local}"
+        )
+    };
+    let carfin = "CARFIN\nA 2 2 1 1 1 2 2 1 8 /\nEQUALS\n PORO 0.9 1 1 1 1 8 8 /\n/\nENDFIN\n";
+    let (grid, warning) = warned(&text(carfin));
+    assert_eq!(warning.lines().count(), 1, "{warning}");
+    assert!(
+        warning
+            .contains("the 8 layers of local grid A are taken for 4 of matrix and 4 of fractures"),
+        "{warning}"
+    );
+    let fine = &grid.local_grids[0];
+    assert_eq!((fine.grid.dims, fine.grid.zcorn.len()), ([2, 1, 4], 64));
+    assert_eq!(fine.grid.host, [2, 2, 2, 2, 4, 4, 4, 4]);
+    let values = |p: &DeckProperty| (p.name == "PORO").then(|| p.values.clone());
+    let porosity = fine.properties.iter().find_map(values).unwrap();
+    let matrix = [0.2, 0.2, 0.2, 0.2, 0.4, 0.4, 0.4, 0.4];
+    assert_eq!(porosity[..8], matrix);
+    assert_eq!(
+        porosity[8..],
+        [0.02, 0.02, 0.02, 0.02, 0.04, 0.04, 0.9, 0.04]
+    );
+    // The matrix alone where the host has no fracture.
+    assert_eq!(fine.grid.actnum, Some(vec![3, 3, 3, 3, 1, 1, 1, 1]));
+    // The same text of single porosity has eight layers.
+    let (single, _) = warned(&text(carfin).replace("DUALPORO\n", ""));
+    assert_eq!(single.local_grids[0].grid.dims, [2, 1, 8]);
+    for (wrong, told) in [
+        (
+            carfin.replace("1 2 2 1 8", "1 2 2 1 7"),
+            "7 layers of dual porosity",
+        ),
+        (
+            carfin.replace("1 2 2 1 8", "3 4 2 1 8"),
+            "outside the matrix",
+        ),
+    ] {
+        let (grid, warning) = warned(&text(&wrong));
+        assert!(
+            warning.contains(told) && grid.local_grids.is_empty(),
+            "{warning}"
+        );
+    }
+    // Fractures that are given nothing have what their matrix has, by DPGRID alone.
+    let own = text(&carfin.replace("CARFIN", "PERMX\n4*5 /\nCARFIN"));
+    let values = |text: &str| {
+        let (grid, _) = warned(text);
+        let values = |p: &DeckProperty| (p.name == "PERMX").then(|| p.values.clone());
+        let found = grid.local_grids[0].properties.iter().find_map(values);
+        found.unwrap()
+    };
+    assert_eq!(values(&own), [5.0; 8]);
+    assert_eq!(values(&own.replace("GRID\n", "GRID\nDPGRID\n")), [5.0; 16]);
 }
 
 #[test]
@@ -1054,10 +1205,13 @@ fn err_missing_keywords() {
             .map(|part| *part.1)
             .collect::<String>()
     };
-    err(&without(0), "no grid: SPECGRID (or DIMENS) missing");
-    err(&without(1), "no grid: COORD missing");
-    err(&without(2), "no grid: ZCORN missing");
-    err("", "SPECGRID (or DIMENS) and COORD and ZCORN missing");
+    err(
+        &without(0),
+        "no grid: SPECGRID (or DIMENS) is missing: open the file",
+    );
+    err(&without(1), "no grid: COORD is missing");
+    err(&without(2), "no grid: ZCORN is missing");
+    err("", "SPECGRID (or DIMENS), COORD, ZCORN are missing");
     err(
         "DIMENS\n1 1 1 /\nDX\n100 /\nDY\n100 /\nDZ\n1 /\n",
         "no grid: a block-centered one needs DIMENS, DX (or DXV)",

@@ -110,6 +110,64 @@ fn what_is_said_at_a_date_holds_after_it() {
 }
 
 #[test]
+fn rates_and_pressures_that_are_asked_for() {
+    let text = "
+WELSPECS
+ P 'G' 3 4 1* OIL /
+ I 'G' 1 1 1* WATER /
+ H 'G' 2 2 1* OIL /
+/
+WCONPROD
+ P OPEN LRAT 100 2* 250 1* 50 /
+/
+WCONINJE
+ I WATER OPEN RATE 300 1* 400 /
+/
+WCONHIST
+ H OPEN ORAT 7 8 9 /
+/
+TSTEP
+ 10 /
+WELTARG
+ P LRAT 200 /
+ P WRAT 20 /
+ P GUID 3 /
+/
+TSTEP
+ 10 /
+WCONPROD
+ P OPEN BHP 1* MYUDQ 3* 60 /
+/
+";
+    let all = schedule(text);
+    let at = |date: Option<&str>, well: usize| -> Vec<(&str, f64)> {
+        let wells = all.wells(date.map(|date| moment(date).unwrap()), DIMS);
+        wells[well]
+            .targets
+            .iter()
+            .map(|t| (t.name, t.value))
+            .collect()
+    };
+    let first = [("ORAT", 100.0), ("LRAT", 250.0), ("BHP", 50.0)];
+    assert_eq!(at(Some("1983-01-05"), 0), first);
+    let changed = [
+        ("ORAT", 100.0),
+        ("LRAT", 200.0),
+        ("BHP", 50.0),
+        ("WRAT", 20.0),
+    ];
+    assert_eq!(at(Some("1983-01-15"), 0), changed);
+    // A record says all anew; a quantity that the run computes is no number.
+    assert_eq!(at(None, 0), [("BHP", 60.0)]);
+    assert_eq!(at(None, 1), [("RATE", 300.0), ("BHP", 400.0)]);
+    assert_eq!(at(None, 2), [("ORAT", 7.0), ("WRAT", 8.0), ("GRAT", 9.0)]);
+    assert_eq!(
+        all.not_evaluated,
+        ["WELTARG of other quantities than rates and pressures"]
+    );
+}
+
+#[test]
 fn what_holds_under_a_condition_is_named_and_not_evaluated() {
     let text = "WELSPECS\n P G 1 1 /\n/\nACTIONX\n A 1 /\n WWCT P > 0.5 /\n/\nWELOPEN\n P SHUT /\n/\nENDACTIO\nWCONPROD\n P OPEN /\n/\n\
                 UDQ\n DEFINE WUX WOPR / 2 /\n/\nSKIP\nWELOPEN\n P SHUT /\n/\nENDSKIP\n";

@@ -84,6 +84,8 @@ pub struct Well {
     pub connections: Vec<Connection>,
     /// Its path, where a file has it.
     pub path: Option<Arc<WellPath>>,
+    /// What the deck's schedule asks of it, such as ORAT and BHP, in the units of the deck.
+    pub targets: Vec<(&'static str, f64)>,
 }
 
 impl Well {
@@ -95,6 +97,7 @@ impl Well {
             is_open: true,
             connections: Vec::new(),
             path: Some(path.clone()),
+            targets: Vec::new(),
         }
     }
 

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use rayon::prelude::*;
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 use strataray::case::{
     Case, Connection, Kind, Measure, NamedFault, Property, Statistic, Vector, VectorKind, WellPath,
 };
@@ -103,12 +103,17 @@ fn wells(case: &Case) -> anyhow::Result<Value> {
     // A case without steps has wells too.
     for index in 0..case.steps.len().max(1) {
         for well in case.wells(index)?.iter() {
-            let step = json!({
+            let mut step = json!({
                 "index": index,
                 "type": well.kind.name(),
                 "open": well.is_open,
                 "connections": well.connections.iter().map(connection).collect::<Vec<_>>(),
             });
+            if !well.targets.is_empty() {
+                let targets = well.targets.iter();
+                let targets = targets.map(|(name, value)| ((*name).to_owned(), json!(value)));
+                step["targets"] = targets.collect::<Map<_, _>>().into();
+            }
             match wells.iter_mut().find(|(name, _)| *name == well.name) {
                 Some((_, steps)) => steps.push(step),
                 None => wells.push((well.name.clone(), vec![step])),

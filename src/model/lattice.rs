@@ -29,6 +29,8 @@ pub struct LocalGrid {
     pub layers: Option<Range<usize>>,
     /// As [`Patch::split`].
     pub split: usize,
+    /// As [`Patch::is_reversed`].
+    pub is_reversed: bool,
     /// By cell, in natural order: the parent's cell that it lies in.
     pub hosts: Vec<CellIndex>,
 }
@@ -41,6 +43,7 @@ impl Patch {
             dims: local.grid.dims(),
             layers: local.layers.clone(),
             split: local.split,
+            is_reversed: local.is_reversed,
             first: [0; 2],
             hosts: local.hosts.clone(),
         }
@@ -331,7 +334,7 @@ impl Grid {
     fn own_cell(&self, at: Ijk) -> (&Patch, Ijk) {
         let patch = &self.patches.list[self.patch_of(at).unwrap_or(0)];
         let own = patch.own(at).unwrap_or(at);
-        let j = own.j / patch.split;
+        let j = patch.file_row(own.j);
         (patch, Ijk { j, ..own })
     }
 
@@ -348,7 +351,7 @@ impl Grid {
         let Dims { ni, nj, nk } = patch.file_dims();
         let is_inside = cell.i < ni && cell.j < nj && cell.k < nk;
         let own = Ijk {
-            j: cell.j * patch.split,
+            j: patch.first_row(cell.j),
             ..cell
         };
         is_inside.then(|| patch.to_lattice(own))

@@ -27,6 +27,8 @@ pub struct Patch {
     pub layers: Option<Range<usize>>,
     /// How many cells of the lattice along j are one cell of the file: circles need more corners than sectors have.
     pub split: usize,
+    /// True where J of the file runs the other way: angles that run from I + to J - would turn cells inside out.
+    pub is_reversed: bool,
     /// Column of the lattice, along i and j, where it begins.
     pub(super) first: [usize; 2],
     /// By cell, in natural order: the parent's cell that it lies in. None for the main grid.
@@ -39,6 +41,23 @@ impl Patch {
         Dims {
             nj: self.dims.nj / self.split,
             ..self.dims
+        }
+    }
+
+    /// J in the file of one of its rows.
+    pub(super) fn file_row(&self, j: usize) -> usize {
+        self.turned(j / self.split)
+    }
+
+    /// The first of the rows that are one of the file.
+    pub(super) fn first_row(&self, j: usize) -> usize {
+        self.turned(j) * self.split
+    }
+
+    fn turned(&self, j: usize) -> usize {
+        match self.is_reversed {
+            true => (self.file_dims().nj - 1).saturating_sub(j),
+            false => j,
         }
     }
 
@@ -109,6 +128,7 @@ impl Patches {
                 dims,
                 layers: None,
                 split: 1,
+                is_reversed: false,
                 first: [0; 2],
                 hosts: Vec::new(),
             }],

@@ -223,13 +223,14 @@ fn over_volume(
             taken: Vec::new(),
         };
         let names = well_names(view, &paper);
-        let areas = names.iter().map(|name| name.area(width(&name.text)));
+        let areas = names.texts.iter().map(|name| name.area(width(&name.text)));
         paper.taken.extend(areas);
         let mut marks = match annotations.show_box {
             true => Orientation::of(view, &annotations.lengths, paper),
             false => Orientation::default(),
         };
-        marks.texts.extend(names);
+        marks.texts.extend(names.texts);
+        marks.strokes.extend(names.leaders);
         marks
     };
     axes::draw_marks(&mut pen, &marks);

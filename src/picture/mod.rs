@@ -30,7 +30,7 @@ pub use info::Info;
 pub use layout::{LINE, Layout, LegendWidths, Length, Parts};
 pub use legend::{GROUND, Key, Legend, cut};
 pub use marks::{cell_edges, mark_cells, mark_color};
-pub use orientation::{Area, Arrow, Orientation, Paper, Text, on_screen, well_names};
+pub use orientation::{Area, Arrow, Orientation, Paper, Text, WellNames, on_screen, well_names};
 pub use plot::{Plot, Series};
 pub use sheet::{SheetError, SheetImage, contact_sheet};
 pub use units::{Lengths, short_unit};

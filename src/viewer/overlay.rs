@@ -37,14 +37,18 @@ pub fn draw(
         taken: Vec::new(),
     };
     let names = well_names(view, &paper);
-    let areas = names.iter().map(|name| name.area(width(&name.text)));
+    let areas = names.texts.iter().map(|name| name.area(width(&name.text)));
     paper.taken.extend(areas);
     if annotations.show_box {
         model_box(painter, rect, picture, view, ink);
         let made = Orientation::of(view, &annotations.lengths, paper);
         orientation(painter, rect, &made, ink);
     }
-    for name in &names {
+    for line in &names.leaders {
+        let line = line.map(|at| place(rect, at));
+        painter.line_segment(line, Stroke::new(1.0, ink));
+    }
+    for name in &names.texts {
         let [low, high] = name.area(width(&name.text)).map(|at| place(rect, at));
         let [r, g, b] = view.style.background.map(|v| (255.0 * v) as u8);
         let plate = Color32::from_rgba_unmultiplied(r, g, b, 200);

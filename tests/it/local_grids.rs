@@ -103,6 +103,7 @@ impl Refined<'_> {
             grid: grid.unwrap(),
             layers: None,
             split: 1,
+            is_reversed: false,
             hosts: (0..dims.cells() as u32).map(host).collect(),
         }
     }

@@ -311,6 +311,7 @@ fn a_local_grid_whose_rows_follow_no_rows_is_left_out() {
         grid: strataray::model::Grid::clone(&block_of_four().grid),
         layers: None,
         split: 1,
+        is_reversed: false,
         hosts: hosts.to_vec(),
     };
     // A square, and a ring around the middle of four cells as of a radial grid.

@@ -90,7 +90,7 @@ pub(super) fn assemble(
         coord: &coord,
         zcorn: &zcorn,
     };
-    let local_grids = refine::grids(local_grids, &corners);
+    let local_grids = refine::grids(local_grids, &corners, warnings);
     Ok(Grdecl {
         local_grids,
         dims,
@@ -168,7 +168,7 @@ fn shown_dims(
 }
 
 /// Activity as grid files have it of dual porosity: 1 matrix, 2 fractures, 3 both.
-fn matrix_and_fractures(actnum: Option<Vec<i32>>, cells: usize) -> Vec<i32> {
+pub(super) fn matrix_and_fractures(actnum: Option<Vec<i32>>, cells: usize) -> Vec<i32> {
     let Some(actnum) = actnum else {
         return vec![3; cells];
     };
@@ -333,7 +333,11 @@ fn missing(path: &Path, found: &Found) -> ParseError {
         "no grid: a block-centered one needs DIMENS, DX (or DXV), DY (or DYV), DZ (or DZV) and TOPS"
             .to_owned()
     } else {
-        format!("no grid: {} missing", absent.join(" and "))
+        let verb = if absent.len() == 1 { "is" } else { "are" };
+        format!(
+            "no grid: {} {verb} missing: open the file that has the grid",
+            absent.join(", ")
+        )
     };
     ParseError::of(ErrorKind::MissingKeyword, path, At::File, "", message)
 }

@@ -122,7 +122,10 @@ impl CellArrays {
                 Inheritance::None => {
                     let start = array.start();
                     let is_start = |value: f64| value == start || value.is_nan() && start.is_nan();
-                    if !hosts.iter().all(|host| is_start(array.values[*host])) {
+                    // Where cells lie is told by the local grid itself.
+                    let says = !is_size(&array.name)
+                        && !hosts.iter().all(|host| is_start(array.values[*host]));
+                    if says {
                         lost.push(array.name.clone());
                     }
                     continue;

@@ -6,8 +6,9 @@ use std::rc::Rc;
 
 use super::edit::{CellBox, Place};
 use super::lexer::{Cursor, Keyword, Token, line_end, record_end};
-use super::scan::{Block, Data, Flow, Scan};
+use super::scan::{Block, Data, Scan};
 use super::source::{Places, Source};
+use super::walk::{Flow, Visitor, Walk};
 use crate::bytes::FileBytes;
 use crate::error::{ErrorKind, ParseError};
 use crate::records::{Form, RecordFile};
@@ -113,7 +114,7 @@ impl Places<'_> {
 }
 
 /// The file that INCLUDE names, opened, and where its name stands.
-pub(super) fn included(
+fn included(
     places: &mut Places<'_>,
     source: &Source,
     cursor: &mut Cursor,
@@ -135,20 +136,37 @@ pub(super) fn included(
     Ok((at, places.open(&path)))
 }
 
-impl Scan<'_> {
+impl Walk<'_> {
+    /// Walks through the file that INCLUDE names.
     pub(super) fn include(
         &mut self,
-        source: &Rc<Source>,
+        visitor: &mut dyn Visitor,
+        source: &Source,
         cursor: &mut Cursor,
         keyword: &Keyword,
     ) -> Result<Flow, ParseError> {
         let (at, file) = included(&mut self.places, source, cursor, keyword)?;
-        self.include_file(source, keyword, at, file)
+        self.include_file(visitor, source, keyword, at, file)
     }
 
+    fn include_file(
+        &mut self,
+        visitor: &mut dyn Visitor,
+        source: &Source,
+        keyword: &Keyword,
+        at: usize,
+        file: Result<FileBytes, ParseError>,
+    ) -> Result<Flow, ParseError> {
+        let (file, chain) = self.nesting.include(source, keyword, at, file)?;
+        self.file(visitor, file, chain)
+    }
+}
+
+impl Scan<'_> {
     /// GDFILE and IMPORT: a text file is included, one of arrays noted for when the grid is built.
     pub(super) fn array_file(
         &mut self,
+        walk: &mut Walk<'_>,
         source: &Rc<Source>,
         cursor: &mut Cursor,
         keyword: &Keyword,
@@ -160,11 +178,11 @@ impl Scan<'_> {
         {
             cursor.at = line_end(cursor.text, end);
         }
-        let found = self.places.find(&written, source.path());
+        let found = walk.places.find(&written, source.path());
         let path = found.unwrap_or_else(|places| places.into_iter().next().unwrap_or_default());
-        let file = self.places.open(&path);
+        let file = walk.places.open(&path);
         if file.as_ref().is_ok_and(|file| !holds_arrays(file.bytes())) {
-            return self.include_file(source, keyword, at, file);
+            return walk.include_file(self, source, keyword, at, file);
         }
         let place = Place {
             source: Rc::clone(source),
@@ -203,17 +221,6 @@ impl Scan<'_> {
             }
         }
         Ok(())
-    }
-
-    fn include_file(
-        &mut self,
-        source: &Rc<Source>,
-        keyword: &Keyword,
-        at: usize,
-        file: Result<FileBytes, ParseError>,
-    ) -> Result<Flow, ParseError> {
-        let (file, chain) = self.nesting.include(source, keyword, at, file)?;
-        self.file(file, chain)
     }
 }
 

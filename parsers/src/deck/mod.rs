@@ -23,6 +23,7 @@ mod scan;
 mod schedule;
 mod skip;
 mod source;
+mod walk;
 mod write;
 
 use std::path::{Path, PathBuf};
@@ -70,7 +71,7 @@ pub struct Grdecl {
     pub min_pore_volume: Option<f64>,
     /// Keywords with one number per cell, in the order of their first appearance.
     pub properties: Vec<DeckProperty>,
-    /// Local grids (CARFIN), each behind the one that it refines.
+    /// Local grids (CARFIN, RADFIN), each behind the one that it refines.
     pub local_grids: Vec<DeckLocalGrid>,
     /// Faces of named faults, in file order.
     pub faults: Vec<FaultFaces>,
@@ -78,13 +79,13 @@ pub struct Grdecl {
     pub files: Vec<PathBuf>,
 }
 
-/// A local grid of a deck: the cells that a simulator makes of CARFIN, and their values.
+/// A local grid of a deck: the cells that a simulator makes of CARFIN or RADFIN, and their values.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DeckLocalGrid {
     /// Its cells, in the place of those that it refines.
     pub grid: LocalGrid<f64>,
     /// Those of the cells that it refines, changed by what the deck does between CARFIN or REFINE and ENDFIN; one value
-    /// for each of its cells.
+    /// for each of its cells, with dual porosity as in [`Grdecl::properties`].
     pub properties: Vec<DeckProperty>,
 }
 
@@ -144,7 +145,7 @@ pub struct FaultFaces {
 impl Grdecl {
     /// Reads the grid of the deck at `path` and of all files it includes.
     ///
-    /// What the reader leaves out or cannot evaluate (an operation on what is not given, radial local grids, ...) goes to `warnings`.
+    /// What the reader leaves out or cannot evaluate (an operation on what is not given, ...) goes to `warnings`.
     ///
     /// # Errors
     /// When a file is missing or ends inside a record, when the grid is missing, damaged or of the wrong

@@ -6,11 +6,11 @@ use std::rc::Rc;
 
 use super::edit::{CellBox, Edit, Place};
 use super::files::DeckFiles;
-use super::include::Nesting;
-use super::lexer::{Cursor, Item, Keyword, Mistake, keyword, line_end, record_end};
-use super::refine::{Refinement, Target, is_division};
+use super::lexer::{Cursor, Item, Keyword, Mistake, line_end, record_end};
+use super::refine::{Refinement, Target};
 use super::skip::{Skipped, ends_records, is_operation, skip_records};
-use super::source::{Places, Source};
+use super::source::Source;
+use super::walk::{Flow, Visitor, Walk};
 use super::{FaultFaces, GridUnit, faults, header};
 use crate::bytes::FileBytes;
 use crate::egrid::PorosityModel;
@@ -156,24 +156,14 @@ impl Found {
     }
 }
 
-/// How reading goes on after a keyword.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Flow {
-    On,
-    EndOfFile,
-    EndOfDeck,
-}
-
 pub(super) struct Scan<'a> {
     pub(super) warnings: &'a mut Warnings,
-    pub(super) places: Places<'a>,
     pub(super) found: Found,
     pub(super) section: Option<Section>,
     /// The cells that arrays at hand belong to.
     pub(super) input_box: CellBox,
     /// Whose cells keywords are for.
     pub(super) target: Target,
-    pub(super) nesting: Nesting,
 }
 
 /// Reads decks up to their arrays, one after the other as if they were one.
@@ -186,82 +176,45 @@ pub(super) fn scan(
     for path in paths {
         let mut scan = Scan {
             warnings,
-            places: Places::new(files, path),
             found,
             section: None,
             input_box: CellBox::default(),
             target: Target::Main,
-            nesting: Nesting::default(),
         };
-        scan.file(files.open(path)?, Vec::new())?;
+        Walk::through(files, path, &mut scan)?;
         found = scan.found;
     }
     Ok(found)
 }
 
-impl Scan<'_> {
-    pub(super) fn file(
-        &mut self,
-        file: FileBytes,
-        included_from: Vec<(PathBuf, usize)>,
-    ) -> Result<Flow, ParseError> {
-        let source = Rc::new(Source::new(file, included_from)?);
-        let path = source.path();
+impl Visitor for Scan<'_> {
+    fn begin(&mut self, source: &Source) {
         self.found.bytes = self.found.bytes.saturating_add(source.text().len());
+        let path = source.path();
         if !self.found.files.iter().any(|file| file == path) {
             self.found.files.push(path.to_owned());
         }
-        self.nesting.enter(path);
-        let flow = self.keywords(&source);
-        self.nesting.leave();
-        flow
     }
 
-    fn keywords(&mut self, source: &Rc<Source>) -> Result<Flow, ParseError> {
-        let mut cursor = Cursor::new(source.text(), 0);
-        let mut stray = None;
-        let mut flow = Flow::On;
-        while flow == Flow::On && cursor.skip_blank() {
-            if let Some(keyword) = keyword(cursor.text, cursor.at) {
-                cursor.at = keyword.end;
-                flow = self.keyword(source, &mut cursor, &keyword)?;
-            } else {
-                // A lone slash is common and harmless.
-                if cursor.text.get(cursor.at) != Some(&b'/') {
-                    stray.get_or_insert(cursor.at);
-                }
-                cursor.at = line_end(cursor.text, cursor.at);
-            }
-        }
-        if let Some(at) = stray {
-            self.warn(
-                source,
-                at,
-                "text that belongs to no keyword is skipped, here and in any later lines like it",
-            );
-        }
-        Ok(if flow == Flow::EndOfFile {
-            Flow::On
-        } else {
-            flow
-        })
+    fn stray(&mut self, source: &Source, at: usize) {
+        let message =
+            "text that belongs to no keyword is skipped, here and in any later lines like it";
+        self.warn(source, at, message);
     }
 
     fn keyword(
         &mut self,
+        walk: &mut Walk<'_>,
         source: &Rc<Source>,
         cursor: &mut Cursor,
         keyword: &Keyword,
     ) -> Result<Flow, ParseError> {
         let name = keyword.name.as_str();
         match name {
-            "END" | "SUMMARY" | "SCHEDULE" | "OPTIMIZE" => return Ok(Flow::EndOfDeck),
-            "ENDINC" => return Ok(Flow::EndOfFile),
+            "SUMMARY" | "SCHEDULE" | "OPTIMIZE" => return Ok(Flow::EndOfDeck),
             // PFLOTRAN names files to include like this.
-            "INCLUDE" | "EXTERNAL_FILE" => return self.include(source, cursor, keyword),
-            "GDFILE" | "IMPORT" => return self.array_file(source, cursor, keyword),
-            "TITLE" => skip_title(cursor),
-            "SKIP" | "SKIP100" | "SKIP300" => skip_region(source, cursor, keyword)?,
+            "INCLUDE" | "EXTERNAL_FILE" => return walk.include(self, source, cursor, keyword),
+            "GDFILE" | "IMPORT" => return self.array_file(walk, source, cursor, keyword),
             "METRIC" => self.found.unit_system = Some(UnitSystem::Metric),
             "FIELD" => self.found.unit_system = Some(UnitSystem::Field),
             "LAB" => self.found.unit_system = Some(UnitSystem::Lab),
@@ -274,7 +227,6 @@ impl Scan<'_> {
                 self.refine(source, cursor, keyword)?;
             }
             "COORD" | "ZCORN" | "ACTNUM" => self.array(source, cursor, keyword)?,
-            "PATHS" => self.places.add_aliases(source, cursor)?,
             "FAULTS" | "MULTFLT" | "ADDZCORN" => self.lists(source, cursor, keyword)?,
             "SPECGRID" | "DIMENS" | "MAPAXES" | "MAPUNITS" | "GRIDUNIT" | "GDORIENT" | "BOX"
             | "MINPV" | "MINPORV" | "GRIDOPTS" => {
@@ -288,7 +240,9 @@ impl Scan<'_> {
         }
         Ok(Flow::On)
     }
+}
 
+impl Scan<'_> {
     fn header(
         &mut self,
         source: &Source,
@@ -486,7 +440,7 @@ impl Scan<'_> {
                     "DXV" | "DYV" | "DZV" | "DRV" | "DTHETAV" | "INRAD" | "OUTRAD" if is_main => {
                         self.found.vectors.push(block);
                     }
-                    _ if is_division(name) => self.division(block),
+                    _ if self.is_division(name) => self.division(block),
                     _ => self.keep(block, self.input_box),
                 }
             }
@@ -538,32 +492,4 @@ impl Scan<'_> {
 /// `3 x 4 x 5`.
 pub(super) fn product_text([ni, nj, nk]: [usize; 3]) -> String {
     format!("{ni} x {nj} x {nk}")
-}
-
-/// SKIP and its like: moves behind ENDSKIP.
-pub(super) fn skip_region(
-    source: &Source,
-    cursor: &mut Cursor,
-    skip: &Keyword,
-) -> Result<(), ParseError> {
-    while cursor.skip_blank() {
-        let ends = keyword(cursor.text, cursor.at).is_some_and(|found| found.name == "ENDSKIP");
-        cursor.at = line_end(cursor.text, cursor.at);
-        if ends {
-            return Ok(());
-        }
-    }
-    Err(source.error(
-        ErrorKind::Truncated,
-        skip.at,
-        &skip.name,
-        "no ENDSKIP follows in this file",
-    ))
-}
-
-/// The title is the next line with text.
-pub(super) fn skip_title(cursor: &mut Cursor) {
-    if cursor.skip_blank() {
-        cursor.at = line_end(cursor.text, cursor.at);
-    }
 }

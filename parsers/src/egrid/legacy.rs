@@ -7,6 +7,11 @@
 //!
 //! Files may leave out cells. They are inactive here, and of no volume: their corners lie where the nearest cell of
 //! their column ends, or on the upper end of a pillar that no cell has, which is taken from the nearest one.
+//!
+//! Nothing in a file says that it has dual porosity. It does where the cells of the lower half of its layers lie where
+//! those of the upper half do, corner by corner: these are the matrix, and the others its fractures.
+
+use std::collections::HashMap;
 
 use super::section::{Section, dimensions};
 use super::{Egrid, LocalGrid, MapKeywords, PorosityModel, local};
@@ -24,7 +29,8 @@ const OF_VALUE: f32 = 1e-6;
 /// A cell as written.
 struct Cell {
     ijk: [usize; 3],
-    is_active: bool,
+    /// Activity: 1 of a cell or the matrix, 2 of fractures, 0 of what is inactive.
+    part: i32,
     /// Number of the cell that it lies in, from 1; 0 in the main grid.
     host: i32,
     /// x, y and depth of each corner.
@@ -35,6 +41,10 @@ struct Cell {
 pub(super) fn read(global: &Section<'_>, warnings: &mut Warnings) -> Result<Egrid, ParseError> {
     let map = MapKeywords::read(global, warnings)?;
     let (pillars, _) = grid(global, "", warnings)?;
+    let porosity_model = match pillars.is_dual {
+        true => PorosityModel::Dual,
+        false => PorosityModel::Single,
+    };
     Ok(Egrid {
         dims: pillars.dims,
         coord: pillars.coord,
@@ -44,7 +54,7 @@ pub(super) fn read(global: &Section<'_>, warnings: &mut Warnings) -> Result<Egri
         map_units: map.units,
         map_axes: map.axes,
         grid_unit: map.grid_unit,
-        porosity_model: PorosityModel::Single,
+        porosity_model,
         nnc: Vec::new(),
         local_nnc: Vec::new(),
         reservoirs: Vec::new(),
@@ -63,7 +73,8 @@ fn local_grid(
     let [name, parent] = [(); 2].map(|()| names.next().unwrap_or_default());
     let (pillars, cells) = grid(section, &format!(" of local grid {name}"), warnings)?;
     let mut host = vec![0; pillars.actnum.len()];
-    for cell in &cells {
+    // Those of the matrix come first.
+    for cell in cells.iter().rev() {
         host[pillars.cell(cell.ijk)] = cell.host;
     }
     if cells.iter().any(|cell| cell.host < 1) {
@@ -116,17 +127,63 @@ fn grid(
         return Err(file.error(ErrorKind::Unsupported, radial, message));
     }
     let dims = dimensions(file, head, [ni, nj, nk])?;
-    let cells = cells(section, dims)?;
-    let pillars = Pillars::new(section, head, dims, &cells)?;
+    let mut cells = cells(section, dims)?;
+    let half = dims[2] / 2;
+    let is_dual = has_fractures(&cells, dims);
+    let dims = match is_dual {
+        true => {
+            fold(&mut cells, half);
+            let message = format!(
+                "layers {} to {}{of} lie where layers 1 to {half} do: they are taken for the fractures of dual porosity",
+                half + 1,
+                2 * half
+            );
+            warnings.push(file.path(), At::File, message);
+            [dims[0], dims[1], half]
+        }
+        false => dims,
+    };
+    let pillars = Pillars {
+        is_dual,
+        ..Pillars::new(section, head, dims, &cells)?
+    };
     let total = pillars.actnum.len();
-    if cells.len() < total {
+    let absent = pillars.is_there.iter().filter(|is| !**is).count();
+    if absent > 0 {
         let message = format!(
-            "{} of {total} cells{of} are not in the file: they are inactive, without volume",
-            total - cells.len()
+            "{absent} of {total} cells{of} are not in the file: they are inactive, without volume"
         );
         warnings.push(file.path(), At::File, message);
     }
     Ok((pillars, cells))
+}
+
+/// True where cells of the lower half of the layers lie where those of the upper half do, and none of them elsewhere.
+fn has_fractures(cells: &[Cell], [_, _, nk]: [usize; 3]) -> bool {
+    let half = nk / 2;
+    if nk % 2 != 0 {
+        return false;
+    }
+    let upper = cells.iter().filter(|cell| cell.ijk[2] < half);
+    let upper: HashMap<[usize; 3], &Cell> = upper.map(|cell| (cell.ijk, cell)).collect();
+    let lower = cells.iter().filter(|cell| cell.ijk[2] >= half);
+    let mut pairs = lower.filter_map(|cell| {
+        let [i, j, k] = cell.ijk;
+        Some((cell, *upper.get(&[i, j, k - half])?))
+    });
+    let mut found = false;
+    pairs.all(|(lower, upper)| {
+        found = true;
+        lower.corners == upper.corners
+    }) && found
+}
+
+/// Lays the lower half of the layers into the upper one, as fractures.
+fn fold(cells: &mut [Cell], half: usize) {
+    for cell in cells.iter_mut().filter(|cell| cell.ijk[2] >= half) {
+        cell.ijk[2] -= half;
+        cell.part *= 2;
+    }
 }
 
 impl<'a> Section<'a> {
@@ -158,9 +215,13 @@ fn cells(global: &Section<'_>, dims: [usize; 3]) -> Result<Vec<Cell>, ParseError
             _ => [0; 3],
         };
         if place.iter().zip(dims).any(|(n, size)| *n < 1 || *n > size) {
+            let numbers: Vec<String> = values.iter().take(3).map(ToString::to_string).collect();
             let message = format!(
-                "no cell of a grid of {} x {} x {}: {values:?}",
-                dims[0], dims[1], dims[2]
+                "names the cell {}, and DIMENS says {} x {} x {} cells; the file is damaged",
+                numbers.join(" "),
+                dims[0],
+                dims[1],
+                dims[2]
             );
             return Err(file.error(ErrorKind::BadValue, head, message));
         }
@@ -171,7 +232,7 @@ fn cells(global: &Section<'_>, dims: [usize; 3]) -> Result<Vec<Cell>, ParseError
         }
         cells.push(Cell {
             ijk: place.map(|n| n - 1),
-            is_active: values.get(4).is_none_or(|active| *active != 0),
+            part: i32::from(values.get(4).is_none_or(|active| *active != 0)),
             host: values.get(5).copied().unwrap_or(0),
             corners: std::array::from_fn(|c| std::array::from_fn(|n| corners[3 * c + n])),
         });
@@ -189,6 +250,8 @@ struct Pillars {
     is_there: Vec<bool>,
     /// Which pillars a cell of the file has.
     is_known: Vec<bool>,
+    /// Matrix and fractures.
+    is_dual: bool,
 }
 
 impl Pillars {
@@ -217,6 +280,7 @@ impl Pillars {
             actnum: zeros(lengths.cells).ok_or_else(memory)?,
             is_there: zeros(lengths.cells).ok_or_else(memory)?,
             is_known: zeros(lengths.coord / 6).ok_or_else(memory)?,
+            is_dual: false,
         };
         cells.iter().for_each(|cell| pillars.add(cell));
         pillars.settle_known();
@@ -251,7 +315,7 @@ impl Pillars {
     fn add(&mut self, cell: &Cell) {
         let [i, j, _] = cell.ijk;
         let index = self.cell(cell.ijk);
-        self.actnum[index] = i32::from(cell.is_active);
+        self.actnum[index] |= cell.part;
         self.is_there[index] = true;
         for (c, point) in cell.corners.iter().enumerate() {
             let depth = self.depth(cell.ijk, c);

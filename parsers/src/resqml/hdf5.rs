@@ -111,7 +111,7 @@ impl Files {
             }
             None => {
                 let message = format!(
-                    "the package names no HDF5 file, which {} is in",
+                    "the package does not name the HDF5 file that has {}: export it again, with its .h5 file",
                     dataset.name
                 );
                 let kind = ErrorKind::NotFound;

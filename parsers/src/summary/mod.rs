@@ -268,7 +268,7 @@ fn params(
         }
         if misfits > 0 {
             let message = format!(
-                "{misfits} time steps were left out: their PARAMS have not the {count} values of KEYWORDS"
+                "{misfits} time steps were left out: their PARAMS have another number of values than the {count} that KEYWORDS names"
             );
             warnings.push(file.path(), At::File, message);
         }

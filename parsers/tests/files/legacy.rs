@@ -1,6 +1,6 @@
 //! The legacy GRID gives the grid that its EGRID twin gives.
 
-use strataray_parsers::egrid::{Egrid, LocalGrid};
+use strataray_parsers::egrid::{Egrid, LocalGrid, PorosityModel};
 use strataray_parsers::records::RecordWriter;
 use strataray_parsers::{ErrorKind, ParseError, Warnings, case};
 
@@ -352,6 +352,79 @@ fn ok_binary_grdecl() {
         let near = |(a, b): (&f32, f32)| (a - b).abs() < 1e-5 * radius.abs().max(1.0);
         assert!(made.iter().zip(expected).all(near), "{made:?} {expected:?}");
     }
+}
+
+/// The small grid with its layers twice, the lower ones as fractures of the upper ones; `off` moves the last
+/// cell down its pillars, and there is a fracture where `is_there` says so.
+fn doubled(off: f32, is_there: impl Fn(usize) -> bool) -> Vec<u8> {
+    let grid = small();
+    let actnum = grid.actnum.as_deref().unwrap();
+    let mut out = RecordWriter::new(Vec::new());
+    out.inte("DIMENS", &[3, 2, 8]).unwrap();
+    for n in (0..48_usize).filter(|n| *n < 24 || is_there(*n - 24)) {
+        let (cell, layer) = (n % 24, n / 6);
+        let ijk = [cell % 3, cell / 3 % 2, cell / 6];
+        // The matrix is active as in the small grid, fractures where it is not, and everywhere in the first layer.
+        let active = if n < 24 {
+            actnum[cell]
+        } else {
+            i32::from(cell < 6 || actnum[cell] == 0)
+        };
+        let place = [ijk[0], ijk[1], layer, n].map(|n| n as i32 + 1);
+        out.inte("COORDS", &[place.as_slice(), &[active, 0, 0]].concat())
+            .unwrap();
+        let mut corners: Vec<f32> = (0..8).flat_map(|c| corner(&grid, ijk, c)).collect();
+        if n == 47 {
+            // Along the pillars.
+            let along = [0.5 * off, -0.25 * off, off];
+            corners
+                .iter_mut()
+                .zip(along.iter().cycle())
+                .for_each(|(v, by)| *v += by);
+        }
+        out.real("CORNERS", &corners).unwrap();
+    }
+    out.finish().unwrap()
+}
+
+#[test]
+fn ok_layers_that_lie_where_others_do_are_fractures() {
+    let grid = small();
+    let told = |bytes: &[u8]| {
+        let mut warnings = Warnings::default();
+        let grid = read(bytes, &mut warnings).unwrap();
+        let said: Vec<_> = warnings.iter().map(ToString::to_string).collect();
+        (grid, said.join("\n"))
+    };
+    let (dual, said) = told(&doubled(0.0, |_| true));
+    assert_eq!(
+        said,
+        "A.GRID: layers 5 to 8 lie where layers 1 to 4 do: they are taken for the fractures of dual porosity"
+    );
+    assert_eq!(dual.porosity_model, PorosityModel::Dual);
+    assert_eq!((dual.dims, &dual.zcorn), (grid.dims, &grid.zcorn));
+    let active = grid.actnum.as_ref().unwrap().iter().enumerate();
+    let expected = active.map(|(n, active)| match (active, n < 6) {
+        (1, false) => 1,
+        (1, true) => 3,
+        _ => 2,
+    });
+    assert_eq!(dual.actnum, Some(expected.collect()));
+    // Fractures of some cells alone.
+    let (some, said) = told(&doubled(0.0, |n| n % 2 == 0));
+    assert!(
+        said.contains("fractures") && !said.contains("not in the file"),
+        "{said}"
+    );
+    assert_eq!((some.dims, some.actnum.unwrap()[1]), ([3, 2, 4], 1));
+    // A cell that lies elsewhere makes them layers of their own.
+    let mut warnings = Warnings::default();
+    let single = read(&doubled(0.25, |_| true), &mut warnings);
+    let single = single.unwrap();
+    assert_eq!(
+        (single.dims, single.porosity_model),
+        ([3, 2, 8], PorosityModel::Single)
+    );
 }
 
 #[test]

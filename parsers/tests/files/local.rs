@@ -226,7 +226,7 @@ fn ok_nested_grids() {
     );
 }
 
-/// The main grid of a file as a deck, with a CARFIN for each of its Cartesian local grids.
+/// The main grid of a file as a deck, with a CARFIN for each of its local grids, and a RADFIN4 for radial ones.
 fn deck_of(grid: &Egrid) -> String {
     let [ni, nj, nk] = grid.dims;
     let array = |values: &[f32]| {
@@ -236,17 +236,22 @@ fn deck_of(grid: &Egrid) -> String {
     };
     let (coord, zcorn) = (array(&grid.coord), array(&grid.zcorn));
     let mut deck = format!("SPECGRID\n{ni} {nj} {nk} 1 F /\nCOORD\n{coord}/\nZCORN\n{zcorn}/\n");
-    for local in grid.local_grids.iter().filter(|local| !local.is_radial) {
+    for local in &grid.local_grids {
         let [low, high] = local.host_box.unwrap();
-        let mut record = format!("CARFIN\n '{}'", local.name);
+        let keyword = ["CARFIN", "RADFIN4"][usize::from(local.is_radial)];
+        let mut record = format!("{keyword}\n '{}'", local.name);
         for axis in 0..3 {
             write!(record, " {} {}", low[axis], high[axis]).unwrap();
         }
         let [ni, nj, nk] = local.dims;
-        writeln!(deck, "{record} {ni} {nj} {nk} /\nENDFIN").unwrap();
+        let rings = if local.is_radial { RINGS } else { "" };
+        writeln!(deck, "{record} {ni} {nj} {nk} /\n{rings}ENDFIN").unwrap();
     }
     deck
 }
+
+/// The radii of the radial local grid of LGR_TESTMOD: each of its first five is the one before times the same factor.
+const RINGS: &str = "INRAD\n 0.2 /\nOUTRAD\n 92.699106 /\n";
 
 fn read_deck(text: &str) -> Grdecl {
     let files = MemoryFiles::from_iter([("A.DATA", text.as_bytes().to_vec())]);
@@ -273,7 +278,7 @@ fn apart(a: &LocalGrid<f64>, b: &LocalGrid) -> f64 {
 
 #[test]
 fn local_grids_of_a_deck_are_those_of_the_simulator() {
-    for (case, count) in CASES.iter().zip([1, 2]) {
+    for (case, count) in CASES.iter().zip([2, 2]) {
         let Some((file, _)) = facts(case) else {
             return;
         };
@@ -282,7 +287,10 @@ fn local_grids_of_a_deck_are_those_of_the_simulator() {
         assert_eq!(deck.local_grids.len(), count);
         for (local, expected) in deck.local_grids.iter().zip(&file.local_grids) {
             let off = apart(&local.grid, expected);
-            assert!(off < 2e-3, "{case} {}: {off} m", local.grid.name);
+            // The file has the sides of a tilted column at its middle, and angles in degrees.
+            let most = if expected.is_radial { 1e-2 } else { 2e-3 };
+            assert!(off < most, "{case} {}: {off}", local.grid.name);
+            assert_eq!(local.grid.is_radial, expected.is_radial);
         }
         // One that divides its hosts unevenly is another one.
         let first = &deck.local_grids[0].grid;
@@ -295,5 +303,9 @@ fn local_grids_of_a_deck_are_those_of_the_simulator() {
         );
         let uneven = read_deck(&uneven);
         assert!(apart(&uneven.local_grids[0].grid, &file.local_grids[0]) > 0.1);
+        if text.contains(RINGS) {
+            let other = read_deck(&text.replace("92.699106", "90"));
+            assert!(apart(&other.local_grids[1].grid, &file.local_grids[1]) > 0.1);
+        }
     }
 }

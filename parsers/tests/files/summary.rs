@@ -248,7 +248,9 @@ fn ok_what_vectors_are_of() {
     let said: Vec<_> = warnings.iter().map(ToString::to_string).collect();
     assert_eq!(
         said,
-        ["A.UNSMRY: 1 time steps were left out: their PARAMS have not the 12 values of KEYWORDS"]
+        [
+            "A.UNSMRY: 1 time steps were left out: their PARAMS have another number of values than the 12 that KEYWORDS names"
+        ]
     );
     // One that is still being written.
     let mut warnings = Warnings::default();

@@ -176,7 +176,7 @@ fn err_arrays_shorter_than_their_head_says() {
     assert_eq!((wells[0].depth, wells[0].flow), (None, None));
     let error = read(2, 12).unwrap_err().to_string();
     assert!(
-        error.ends_with("IWEL: INTEHEAD says 2 times 12 values, and there are 22"),
+        error.ends_with("IWEL: has 22 values, and INTEHEAD says 2 times 12; the file is damaged"),
         "{error}"
     );
     assert!(read(i32::MAX, i32::MAX).is_err());

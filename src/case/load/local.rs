@@ -9,7 +9,7 @@ use strataray_parsers::egrid::{GridConnections, LocalGrid as FileGrid, Reservoir
 use strataray_parsers::records::{Entry, Kind};
 
 use super::outliers;
-use super::pore_volume::Least;
+use super::pore_volume::{self, Least};
 use super::radial;
 use super::slots::{CellFlags, CellSlots, ResultCells};
 use crate::model::{CellIndex, Dims, Grid, GridInput, Ijk, LocalGrid};
@@ -32,6 +32,10 @@ pub struct Beside<'a> {
     pub init: Option<&'a CellArrays>,
     /// Which cells of a deck are too small.
     pub least: Option<&'a Least>,
+    /// True where cells have matrix and fractures.
+    pub is_dual: bool,
+    /// Of a deck, a cubic length unit of the grid as pore volume.
+    pub volume_unit: Option<f64>,
 }
 
 /// The local grids of a file that can be shown beside the main grid; why one cannot goes into the notes.
@@ -142,6 +146,7 @@ fn reservoir(main: &Grid, file: &Reservoir, number: i32) -> Result<Local, String
             grid: grid.map_err(|e| e.to_string())?,
             layers: Some(file.layers.clone()),
             split: 1,
+            is_reversed: false,
             hosts,
         },
         slots: None,
@@ -176,13 +181,14 @@ fn by_parents(mut files: Vec<DeckLocalGrid>, notes: &mut Vec<String>) -> Vec<Dec
 
 fn local(
     mut file: FileGrid<f64>,
-    texts: Vec<DeckProperty>,
+    mut texts: Vec<DeckProperty>,
     parent: &Grid,
-    &Beside { main, init, least }: &Beside<'_>,
+    beside: &Beside<'_>,
     notes: &mut Vec<String>,
 ) -> Result<Local, String> {
     let dims = dims(file.dims);
     let hosts = hosts(&file, parent.dims())?;
+    let init = beside.init;
     // Several coordinate systems follow each other; layers of the first one are those of all but rare grids.
     if file.coord.len() > 6 * dims.pillars() {
         let systems = file.coord.len() / (6 * dims.pillars());
@@ -202,8 +208,19 @@ fn local(
     };
     let mut found = Vec::new();
     let mut grid = outliers::built(&input, &mut found).map_err(|e| e.to_string())?;
-    if let Some(least) = least {
-        least.leave_small_of_local(&file.name, &mut grid, &texts, notes);
+    let mut flags = CellFlags {
+        porosity: file.actnum.clone().filter(|_| beside.is_dual),
+        coarse: None,
+    };
+    let cells = match file.is_radial {
+        true => pore_volume::Cells::Rings,
+        false => pore_volume::Cells::Boxes,
+    };
+    if let Some(least) = beside.least {
+        least.leave_small_of_local(&file.name, cells, &mut grid, &mut flags, &texts, notes);
+    }
+    if let Some(unit) = beside.volume_unit.filter(|_| flags.porosity.is_some()) {
+        pore_volume::complete(cells, &grid, &mut texts, unit);
     }
     let results = ResultCells {
         active: init
@@ -212,7 +229,7 @@ fn local(
             .filter(|active| *active > 0),
         init,
     };
-    let mut slots = CellSlots::new(&mut grid, &CellFlags::default(), &results, notes);
+    let mut slots = CellSlots::new(&mut grid, &flags, &results, notes);
     found.extend(outliers::leave_out(&mut grid, &mut slots));
     notes.extend(found.into_iter().map(of_file));
     let mut grid = LocalGrid {
@@ -221,10 +238,11 @@ fn local(
         grid,
         layers: None,
         split: 1,
+        is_reversed: false,
         hosts,
     };
     if file.is_radial {
-        grid = radial::straightened(&file, grid, parent, main)?;
+        grid = radial::straightened(&file, grid, parent)?;
         notes.push(format!(
             "local grid {} is radial: it is shown with flat faces, and its outer rings reach the sides of the cells that \
              it refines",
@@ -388,8 +406,8 @@ pub fn join(
 }
 
 impl Places {
-    /// Values of all grids: those of the main one, and those that local grids have of an array. A grid that does not have
-    /// it has no values.
+    /// Values of all grids: those of the main one, and those that local grids have of an array, of the matrix or of the
+    /// fractures. A grid that does not have them has no values.
     ///
     /// # Errors
     /// When a file is damaged.
@@ -398,6 +416,7 @@ impl Places {
         main: &[f32],
         arrays: &CellArrays,
         name: &str,
+        is_matrix: bool,
     ) -> Result<Vec<f32>, ParseError> {
         let grids = arrays.local_grids()?;
         let of_local = |local: &LocalPlaces| -> Result<Vec<f32>, ParseError> {
@@ -407,10 +426,18 @@ impl Places {
             let found = arrays.and_then(|arrays| Some((arrays, arrays.find(name)?)));
             let fits = |e: &Entry| {
                 let slots = slots.as_ref()?;
-                (e.is_numeric() && slots.fits(e.count as usize)).then_some(slots)
+                let count = e.count as usize;
+                let has = slots.fits(count) && (is_matrix || slots.has_fractures(count));
+                (e.is_numeric() && has).then_some(slots)
             };
             match found.and_then(|(arrays, entry)| Some((arrays, entry, fits(entry)?))) {
-                Some((arrays, entry, slots)) => Ok(slots.pick(&arrays.values(entry)?)),
+                Some((arrays, entry, slots)) => {
+                    let values = arrays.values(entry)?;
+                    Ok(match is_matrix {
+                        true => slots.pick(&values),
+                        false => slots.pick_fractures(&values),
+                    })
+                }
                 None => Ok(Vec::new()),
             }
         };
@@ -418,18 +445,19 @@ impl Places {
         Ok(self.of_all(main, &locals?))
     }
 
-    /// As [`Self::values`], from arrays of text, which local grids have of the matrix alone.
+    /// As [`Self::values`], from arrays of text.
     pub fn values_of_texts(&self, main: &[f32], name: &str, is_matrix: bool) -> Vec<f32> {
         let of_local = |local: &LocalPlaces| {
-            let text = local
-                .texts
-                .iter()
-                .find(|text| is_matrix && text.name == name);
+            let text = local.texts.iter().find(|text| text.name == name);
             let Some((text, slots)) = text.zip(local.slots.as_ref()) else {
                 return Vec::new();
             };
             let values: Vec<f32> = text.values.iter().map(|v| *v as f32).collect();
-            slots.pick_of_all(&values)
+            match is_matrix {
+                true => slots.pick_of_all(&values),
+                false if slots.has_all_fractures(values.len()) => slots.pick_fractures(&values),
+                false => Vec::new(),
+            }
         };
         let locals: Vec<_> = self.locals.iter().map(of_local).collect();
         self.of_all(main, &locals)

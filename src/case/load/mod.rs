@@ -272,7 +272,17 @@ fn build(mut loaded: Loaded, read: Read<'_>, mut about: About, warnings: &Warnin
     if let Some(least) = &least {
         least.leave_small(&mut loaded, &mut about.notes);
     }
-    pore_volume::complete(&mut loaded, units, length);
+    let is_dual = loaded.flags.porosity.is_some();
+    let volume_unit = pore_volume::unit(units, length);
+    let volume_unit = loaded.is_deck.then_some(volume_unit);
+    if let Some(unit) = volume_unit.filter(|_| is_dual) {
+        pore_volume::complete(
+            pore_volume::Cells::Boxes,
+            &loaded.grid,
+            &mut loaded.texts,
+            unit,
+        );
+    }
     let results = ResultCells {
         active: told.active,
         init: init.as_ref(),
@@ -286,6 +296,8 @@ fn build(mut loaded: Loaded, read: Read<'_>, mut about: About, warnings: &Warnin
         main: &loaded.grid,
         init: init.as_ref(),
         least: least.as_ref(),
+        is_dual,
+        volume_unit,
     };
     let locals = local::read(local_grids, &beside, &mut about.notes);
     let mut source = FileSource {

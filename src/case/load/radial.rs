@@ -2,6 +2,9 @@
 //!
 //! Files give rings that are as large as the cells that they refine, not of their shape: here the outermost ring reaches
 //! the sides of these. J runs around, and each sector is as many cells as keep its flat faces near to the circle.
+//!
+//! Angles begin at the side of I +, and run to that of J - in files of Eclipse: the sectors of LGR_TESTMOD lie in these
+//! columns by HOSTNUM, and are connected to the neighbors there.
 
 use glam::DVec2;
 use strataray_parsers::egrid::LocalGrid as FileGrid;
@@ -11,23 +14,22 @@ use crate::model::{CellIndex, Dims, Grid, GridInput, Ijk, LocalGrid, Pillar};
 /// Degrees that a cell spans at most: its faces are flat.
 const WIDEST_SECTOR: f64 = 30.0;
 
-/// A grid whose x and y are radii and angles with its cells in space; `main` says which way around they run.
+/// A grid whose x and y are radii and angles with its cells in space.
 pub fn straightened(
     file: &FileGrid<f64>,
     grid: LocalGrid,
     parent: &Grid,
-    main: &Grid,
 ) -> Result<LocalGrid, String> {
-    let sectors = Sectors::of(file, grid.grid.dims())?;
     let outline = Outline::of(parent, &grid.hosts);
-    // Faces are told from their backs by the handedness of the whole model.
-    let is_turned = main.signed_bulk_volume() < 0.0;
+    let sectors = Sectors::of(file, grid.grid.dims(), |cell| {
+        parent.dims().ijk(grid.hosts[cell.0 as usize]).j
+    })?;
     let cells = || (0..sectors.whole.cells() as u32).map(|cell| sectors.of_file(CellIndex(cell)));
     let actnum = cells().map(|cell| i32::from(grid.grid.active_index(cell).is_some()));
     let actnum: Vec<i32> = actnum.collect();
     let shown = Grid::new(&GridInput {
         dims: sectors.whole,
-        coord: &sectors.coord(&outline, is_turned),
+        coord: &sectors.coord(&outline),
         zcorn: &sectors.zcorn(),
         actnum: Some(&actnum),
         map_axes: None,
@@ -36,6 +38,7 @@ pub fn straightened(
         grid: shown.map_err(|e| e.to_string())?,
         layers: None,
         split: sectors.split,
+        is_reversed: sectors.is_reversed,
         hosts: cells().map(|cell| grid.hosts[cell.0 as usize]).collect(),
         ..grid
     })
@@ -48,10 +51,20 @@ struct Sectors<'a> {
     dims: Dims,
     whole: Dims,
     split: usize,
+    /// True where angles run to the side of J -, else to that of J +.
+    is_clockwise: bool,
+    /// True where J runs the other way than in the file: faces are told from their backs by the handedness of the whole
+    /// model.
+    is_reversed: bool,
 }
 
 impl<'a> Sectors<'a> {
-    fn of(file: &'a FileGrid<f64>, dims: Dims) -> Result<Self, String> {
+    /// `host_row` is J of the cell that one lies in.
+    fn of(
+        file: &'a FileGrid<f64>,
+        dims: Dims,
+        host_row: impl Fn(CellIndex) -> usize,
+    ) -> Result<Self, String> {
         let angle = |row: usize| file.coord[6 * (dims.ni + 1) * row + 1];
         let widths = (0..dims.nj).map(|j| (angle(j + 1) - angle(j)).abs());
         let split = (widths.fold(0.0, f64::max) / WIDEST_SECTOR).ceil();
@@ -60,7 +73,16 @@ impl<'a> Sectors<'a> {
         }
         let split = (split as usize).max(1);
         let nj = dims.nj * split;
+        let rows = (0..dims.nj).map(|j| host_row(dims.cell(Ijk { i: 0, j, k: 0 })) as f64);
+        let rows: Vec<f64> = rows.collect();
+        let mean = rows.iter().sum::<f64>() / rows.len() as f64;
+        let side = |j: usize| (0.5 * (angle(j) + angle(j + 1))).to_radians().sin();
+        // Of one column it does not matter, and Eclipse's way is taken.
+        let to_high_j: f64 = (0..dims.nj).map(|j| side(j) * (rows[j] - mean)).sum();
+        let is_clockwise = to_high_j <= 0.0;
         Ok(Self {
+            is_clockwise,
+            is_reversed: is_clockwise == (angle(dims.nj) >= angle(0)),
             file,
             dims,
             whole: Dims { nj, ..dims },
@@ -72,6 +94,11 @@ impl<'a> Sectors<'a> {
     fn of_file(&self, cell: CellIndex) -> CellIndex {
         let own = self.whole.ijk(cell);
         let j = own.j / self.split;
+        let j = if self.is_reversed {
+            self.dims.nj - 1 - j
+        } else {
+            j
+        };
         self.dims.cell(Ijk { j, ..own })
     }
 
@@ -86,16 +113,17 @@ impl<'a> Sectors<'a> {
         }
     }
 
-    fn coord(&self, outline: &Outline, is_turned: bool) -> Vec<f64> {
+    fn coord(&self, outline: &Outline) -> Vec<f64> {
         let Dims { ni, nj, .. } = self.whole;
         let mut coord = Vec::with_capacity(6 * self.whole.pillars());
         for row in 0..=nj {
+            let row = if self.is_reversed { nj - row } else { row };
             for i in 0..=ni {
                 for end in [0, 3] {
                     let [radius, angle, depth] = [0, 1, 2].map(|n| self.value(i, row, end + n));
                     let outermost = self.value(ni, row, end);
                     let way = DVec2::from_angle(angle.to_radians());
-                    let way = if is_turned {
+                    let way = if self.is_clockwise {
                         DVec2::new(way.x, -way.y)
                     } else {
                         way
@@ -115,7 +143,13 @@ impl<'a> Sectors<'a> {
         };
         let mut zcorn = Vec::with_capacity(8 * self.whole.cells());
         for plane in 0..2 * nk {
-            for row in 0..2 * self.whole.nj {
+            let rows = 2 * self.whole.nj;
+            for row in 0..rows {
+                let row = if self.is_reversed {
+                    rows - 1 - row
+                } else {
+                    row
+                };
                 let j = row / 2 / self.split;
                 let part = (row / 2 % self.split + row % 2) as f64 / self.split as f64;
                 zcorn.extend((0..2 * ni).map(|x| {
@@ -150,11 +184,15 @@ impl Outline {
         ])
     }
 
-    /// The place in plan of a point that lies in a direction (of length 1) from the middle, at a radius, where the
-    /// outermost radius is `outermost`: rings near the middle stay circles.
+    /// The place in plan of a point that lies in a direction (of length 1, along I and across it on the side of J +) from
+    /// the middle, at a radius, where the outermost radius is `outermost`: rings near the middle stay circles.
     fn place(&self, way: DVec2, radius: f64, outermost: f64, depth: f64) -> DVec2 {
         let corners = self.0.map(|pillar| pillar.at(depth).truncate());
         let middle = corners.iter().sum::<DVec2>() / 4.0;
+        let [a, b, c, d] = corners;
+        let along = (b + c - a - d).normalize_or(DVec2::X);
+        let across = along.perp() * along.perp_dot(c + d - a - b).signum();
+        let way = way.x * along + way.y * across;
         let reach = (0..4).filter_map(|n| {
             let (from, to) = (corners[n] - middle, corners[(n + 1) % 4] - middle);
             // The middle plus t times the way is from plus s times the side.

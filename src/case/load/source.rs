@@ -81,20 +81,24 @@ impl FileSource {
         self.steps = restarts::merged(fitting, &mut about.notes);
     }
 
-    /// The values of an array at a step, of which `pick` takes those of the main grid's active cells.
+    /// The values of an array at a step, of the matrix or of the fractures.
     fn read(
         &self,
         name: &str,
         step: usize,
-        pick: impl Fn(&[f32]) -> Vec<f32>,
+        is_matrix: bool,
     ) -> Result<Option<Vec<f32>>, CaseError> {
         let arrays = self.arrays(name, step);
         let Some((arrays, entry)) = arrays.and_then(|a| Some((a, a.find(name)?))) else {
             return Ok(None);
         };
-        let values = pick(&arrays.values(entry)?);
+        let values = arrays.values(entry)?;
+        let values = match is_matrix {
+            true => self.cells.pick(&values),
+            false => self.cells.pick_fractures(&values),
+        };
         Ok(Some(match &self.local {
-            Some(places) => places.values(&values, arrays, name)?,
+            Some(places) => places.values(&values, arrays, name, is_matrix)?,
             None => values,
         }))
     }
@@ -108,10 +112,7 @@ impl FileSource {
     ) -> Result<Option<Vec<f32>>, CaseError> {
         let is_matrix = pores == Pores::Matrix;
         let Some(text) = self.text(name) else {
-            return self.read(name, step, |values| match is_matrix {
-                true => self.cells.pick(values),
-                false => self.cells.pick_fractures(values),
-            });
+            return self.read(name, step, is_matrix);
         };
         let values: Vec<f32> = text.values.iter().map(|v| *v as f32).collect();
         let picked = match is_matrix {

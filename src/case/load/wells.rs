@@ -140,6 +140,7 @@ fn well(well: &wells::Well) -> Well {
         is_open: well.status != Status::Shut,
         connections: global.chain(local).collect(),
         path: None,
+        targets: well.targets.iter().map(|t| (t.name, t.value)).collect(),
     }
 }
 

@@ -10,7 +10,7 @@ mod wells;
 use glam::DVec2;
 
 pub use edges::on_screen;
-pub use wells::well_names;
+pub use wells::{WellNames, well_names};
 
 use super::ticks::shortened;
 use super::units::Lengths;

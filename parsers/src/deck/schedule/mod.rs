@@ -1,7 +1,7 @@
 //! The wells of a deck: what its SCHEDULE section says of them, in time.
 //!
-//! Read are WELSPECS, WELSPECL, COMPDAT, COMPDATL, WCONPROD, WCONHIST, WCONINJE, WCONINJH, WCONINJ, WELOPEN and WLIST,
-//! with names that end in `*`, and the time by START, DATES and TSTEP. What a run decides by itself, as by economic
+//! Read are WELSPECS, WELSPECL, COMPDAT, COMPDATL, WCONPROD, WCONHIST, WCONINJE, WCONINJH, WCONINJ, WELTARG, WELOPEN and
+//! WLIST, with names that end in `*`, and the time by START, DATES and TSTEP. What a run decides by itself, as by economic
 //! limits, is not in a deck.
 //!
 //! ```
@@ -37,7 +37,7 @@ use std::path::{Path, PathBuf};
 
 use super::files::{DeckFiles, Folders};
 use crate::error::{ParseError, Warnings};
-use crate::wells::{Completion, Direction, Kind, LocalWell, Status, Well};
+use crate::wells::{Completion, Direction, Kind, LocalWell, Status, Target, Well};
 
 /// What decks say of wells, in time.
 #[derive(Debug, Clone, Default)]
@@ -70,7 +70,13 @@ enum What {
         depth: Option<f32>,
     },
     /// WCONPROD and others like it.
-    Control(Kind, Status),
+    Control {
+        kind: Kind,
+        status: Status,
+        targets: Vec<Target>,
+    },
+    /// WELTARG.
+    Target(Target),
     /// WELOPEN of the well itself.
     Status(Status),
     /// COMPDAT and COMPDATL. I and J of 0 are those of the head.
@@ -196,8 +202,20 @@ impl State {
                     Some(grid) => made.local(grid).head = *head,
                 }
             }
-            What::Control(kind, status) => {
+            What::Control {
+                kind,
+                status,
+                targets,
+            } => {
                 (made.well.kind, made.well.status) = (*kind, *status);
+                made.well.targets.clone_from(targets);
+            }
+            What::Target(target) => {
+                let targets = &mut made.well.targets;
+                match targets.iter_mut().find(|known| known.name == target.name) {
+                    Some(known) => *known = *target,
+                    None => targets.push(*target),
+                }
             }
             What::Status(status) => made.well.status = *status,
             What::Connect { .. } => made.connect(&change.what, self.dims),

@@ -5,7 +5,7 @@ use super::super::lexer::{Item, Mistake, shown};
 use super::What;
 use crate::calendar::days_from;
 use crate::error::ErrorKind;
-use crate::wells::{Direction, Kind, Status};
+use crate::wells::{Direction, Kind, Status, Target};
 
 /// Most layers that a record connects a well to, of which a grid has fewer.
 const MOST_LAYERS: i32 = 1_000_000;
@@ -90,12 +90,20 @@ fn status(word: Option<String>) -> Status {
 }
 
 /// WCONPROD and WCONHIST.
-pub(super) fn producer(items: &[Item]) -> What {
-    What::Control(Kind::Producer, status(text(items, 1)))
+pub(super) fn producer(name: &str, items: &[Item]) -> What {
+    let names: &[&str] = match name {
+        "WCONHIST" => &["ORAT", "WRAT", "GRAT", "", "", "THP", "BHP"],
+        _ => &["ORAT", "WRAT", "GRAT", "LRAT", "RESV", "BHP", "THP"],
+    };
+    What::Control {
+        kind: Kind::Producer,
+        status: status(text(items, 1)),
+        targets: targets(names, items, 3),
+    }
 }
 
 /// WCONINJE, WCONINJH and WCONINJ.
-pub(super) fn injector(items: &[Item]) -> What {
+pub(super) fn injector(name: &str, items: &[Item]) -> What {
     let kind = text(items, 1).unwrap_or_default().to_ascii_uppercase();
     let kind = match kind.as_str() {
         "GAS" => Kind::GasInjector,
@@ -103,7 +111,44 @@ pub(super) fn injector(items: &[Item]) -> What {
         "WATER" | "WAT" => Kind::WaterInjector,
         _ => Kind::Undefined,
     };
-    What::Control(kind, status(text(items, 2)))
+    let (names, first): (&[&str], usize) = match name {
+        "WCONINJH" => (&["RATE", "BHP", "THP"], 3),
+        "WCONINJE" => (&["RATE", "RESV", "BHP", "THP"], 4),
+        _ => (&[], 0),
+    };
+    What::Control {
+        kind,
+        status: status(text(items, 2)),
+        targets: targets(names, items, first),
+    }
+}
+
+/// WELTARG: what of a well is asked otherwise from now on.
+pub(super) fn target(items: &[Item]) -> Option<What> {
+    let asked = text(items, 1)?.to_ascii_uppercase();
+    let name = TARGETS.into_iter().find(|name| **name == *asked)?;
+    let value = items.get(2).and_then(number)?;
+    Some(What::Target(Target { name, value }))
+}
+
+/// Names of what is asked of wells.
+const TARGETS: [&str; 8] = ["ORAT", "WRAT", "GRAT", "LRAT", "RESV", "BHP", "THP", "RATE"];
+
+/// What items from one on ask for, by name; those that are left to their default ask for nothing.
+fn targets(names: &[&str], items: &[Item], first: usize) -> Vec<Target> {
+    let items = items.get(first..).unwrap_or_default().iter();
+    let all = names.iter().zip(items).filter_map(|(name, item)| {
+        let name = TARGETS.into_iter().find(|known| known == name)?;
+        let value = number(item)?;
+        Some(Target { name, value })
+    });
+    all.collect()
+}
+
+/// A number; `None` of what is left to its default, and of the name of a quantity that a run computes (UDQ), which is
+/// told where that is defined.
+fn number(item: &Item) -> Option<f64> {
+    item.text.and_then(|_| real(item).ok())
 }
 
 /// WELOPEN: of the well, or of connections where one of them is named.

@@ -1,18 +1,17 @@
-//! Walks through the files of decks to their SCHEDULE sections, and takes in order what is said of wells there.
+//! Takes in order what the SCHEDULE sections of decks say of wells.
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
 use super::super::files::DeckFiles;
-use super::super::include::{Nesting, included, named_file};
+use super::super::include::named_file;
 use super::super::lexer::{Cursor, Item, Keyword, Mistake, keyword, line_end};
-use super::super::scan::{Flow, skip_region, skip_title};
 use super::super::skip::skip_records;
-use super::super::source::{Places, Source};
+use super::super::source::Source;
+use super::super::walk::{Flow, Visitor, Walk};
 use super::records::{self, is_meant, text};
 use super::{Change, Schedule, What};
-use crate::bytes::FileBytes;
 use crate::error::{ErrorKind, ParseError, Warnings};
 
 /// When time begins where nobody says it.
@@ -23,7 +22,7 @@ const MOST_CHANGES: usize = 3_000_000;
 /// Keywords whose records are read one by one, up to an empty one.
 const LISTS: &[&str] = &[
     "WELSPECS", "WELSPECL", "COMPDAT", "COMPDATL", "WCONPROD", "WCONHIST", "WCONINJE", "WCONINJH",
-    "WCONINJ", "WELOPEN", "WLIST", "DATES",
+    "WCONINJ", "WELOPEN", "WELTARG", "WLIST", "DATES",
 ];
 
 /// Keywords about wells that are not evaluated.
@@ -41,12 +40,9 @@ enum Section {
     Passed(PathBuf),
 }
 
-struct Walk<'a> {
-    files: &'a dyn DeckFiles,
+struct Scan<'a> {
     warnings: &'a mut Warnings,
-    places: Places<'a>,
     section: Section,
-    nesting: Nesting,
     schedule: Schedule,
     now: f64,
     /// TSTEP counts hours.
@@ -73,12 +69,9 @@ pub(super) fn read(
         return Ok(Schedule::default());
     };
     let start = start.or_else(|| crate::calendar::moment(START));
-    let mut walk = Walk {
-        files,
+    let mut scan = Scan {
         warnings,
-        places: Places::new(files, first),
         section: Section::Read,
-        nesting: Nesting::default(),
         schedule: Schedule::default(),
         now: start.unwrap_or_default(),
         is_lab: false,
@@ -89,72 +82,36 @@ pub(super) fn read(
         numbers: HashMap::new(),
     };
     for path in paths {
-        walk.places = Places::new(files, path);
-        walk.section = Section::Read;
-        let file = walk.files.open(path)?;
-        walk.file(file, Vec::new())?;
+        scan.section = Section::Read;
+        Walk::through(files, path, &mut scan)?;
     }
-    for (name, keyword) in &walk.unknown {
+    for (name, keyword) in &scan.unknown {
         let message = format!("{keyword} names the well {name}, which WELSPECS does not");
-        walk.warnings.push(first, crate::error::At::File, message);
+        scan.warnings.push(first, crate::error::At::File, message);
     }
-    let mut schedule = walk.schedule;
-    schedule.end = walk.now;
-    schedule.not_evaluated = walk.not_evaluated.into_iter().collect();
+    let mut schedule = scan.schedule;
+    schedule.end = scan.now;
+    schedule.not_evaluated = scan.not_evaluated.into_iter().collect();
     Ok(schedule)
 }
 
-impl Walk<'_> {
-    fn file(
-        &mut self,
-        file: FileBytes,
-        included_from: Vec<(PathBuf, usize)>,
-    ) -> Result<Flow, ParseError> {
-        let source = Rc::new(Source::new(file, included_from)?);
-        self.nesting.enter(source.path());
-        let flow = self.keywords(&source);
-        self.nesting.leave();
-        flow
-    }
-
-    fn keywords(&mut self, source: &Rc<Source>) -> Result<Flow, ParseError> {
-        let mut cursor = Cursor::new(source.text(), 0);
-        let mut flow = Flow::On;
-        while flow == Flow::On && cursor.skip_blank() {
-            match keyword(cursor.text, cursor.at) {
-                Some(keyword) => {
-                    cursor.at = keyword.end;
-                    flow = self.keyword(source, &mut cursor, &keyword)?;
-                }
-                None => cursor.at = line_end(cursor.text, cursor.at),
-            }
-        }
-        Ok(match flow {
-            Flow::EndOfFile => Flow::On,
-            flow => flow,
-        })
-    }
-
+impl Visitor for Scan<'_> {
     fn keyword(
         &mut self,
+        walk: &mut Walk<'_>,
         source: &Rc<Source>,
         cursor: &mut Cursor,
         keyword: &Keyword,
     ) -> Result<Flow, ParseError> {
         let name = keyword.name.as_str();
         match name {
-            "END" => return Ok(Flow::EndOfDeck),
-            "ENDINC" => return Ok(Flow::EndOfFile),
             "RUNSPEC" | "SCHEDULE" => self.section = Section::Read,
             "GRID" | "EDIT" | "PROPS" | "REGIONS" | "SOLUTION" | "SUMMARY" | "OPTIMIZE"
                 if keyword.alone =>
             {
                 self.section = Section::Passed(source.path().to_owned());
             }
-            "INCLUDE" | "EXTERNAL_FILE" => return self.include(source, cursor, keyword),
-            "PATHS" => self.places.add_aliases(source, cursor)?,
-            "TITLE" => skip_title(cursor),
-            "SKIP" | "SKIP100" | "SKIP300" => skip_region(source, cursor, keyword)?,
+            "INCLUDE" | "EXTERNAL_FILE" => return self.include(walk, source, cursor, keyword),
             "LAB" => self.is_lab = true,
             "START" => {
                 let date = placed(
@@ -187,10 +144,13 @@ impl Walk<'_> {
         }
         Ok(Flow::On)
     }
+}
 
+impl Scan<'_> {
     /// What SCHEDULE includes is read, and what others include where they may not be the only ones.
     fn include(
         &mut self,
+        walk: &mut Walk<'_>,
         source: &Rc<Source>,
         cursor: &mut Cursor,
         keyword: &Keyword,
@@ -199,16 +159,14 @@ impl Walk<'_> {
             named_file(source, cursor, keyword)?;
             return Ok(Flow::On);
         }
-        let found = included(&mut self.places, source, cursor, keyword);
-        match found.and_then(|(at, file)| self.nesting.include(source, keyword, at, file)) {
-            Ok((file, chain)) => self.file(file, chain),
+        match walk.include(self, source, cursor, keyword) {
             Err(error) if error.kind == ErrorKind::NotFound => {
                 let message = format!("wells that stand there are missing: {}", error.message);
                 self.warnings
                     .push(source.path(), source.at(keyword.at), message);
                 Ok(Flow::On)
             }
-            Err(error) => Err(error),
+            read => read,
         }
     }
 
@@ -248,14 +206,22 @@ impl Walk<'_> {
             "WELSPECL" => records::head(items, 3)?,
             "COMPDAT" => records::connect(items, 1)?,
             "COMPDATL" => records::connect(items, 2)?,
-            "WCONPROD" | "WCONHIST" => records::producer(items),
+            "WCONPROD" | "WCONHIST" => records::producer(name, items),
+            "WELTARG" => match records::target(items) {
+                Some(what) => what,
+                None => {
+                    let keyword = "WELTARG of other quantities than rates and pressures";
+                    self.not_evaluated.insert(keyword.to_owned());
+                    return Ok(());
+                }
+            },
             "WELOPEN" if records::is_by_number(items) => {
                 let keyword = "WELOPEN by numbers of completions";
                 self.not_evaluated.insert(keyword.to_owned());
                 return Ok(());
             }
             "WELOPEN" => records::open(items)?,
-            _ => records::injector(items),
+            _ => records::injector(name, items),
         };
         let is_new = matches!(what, What::Head { .. }) && !well.contains(['*', '?']);
         let numbers = match is_new {

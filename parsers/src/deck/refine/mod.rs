@@ -1,26 +1,34 @@
-//! Local grids of a deck: CARFIN names the cells that one refines and how many it has, and from there, or from a later
-//! REFINE, to ENDFIN keywords are for its cells.
+//! Local grids of a deck: CARFIN, RADFIN or RADFIN4 names the cells that one refines and how many it has, and from there, or
+//! from a later REFINE, to ENDFIN keywords are for its cells.
 //!
 //! Cells divide those that they refine evenly, or as NXFIN and HXFIN (and so on) say: along lines between the edges of the
-//! host, as places of a trilinear map. They have the values of their hosts, and then what the deck does to them, in I, J
-//! and K of the local grid.
+//! host, as places of a trilinear map; those of radial grids are rings and sectors ([`rings`]). They have the values of
+//! their hosts, and then what the deck does to them, in I, J and K of the local grid. Of dual porosity the upper half of
+//! their layers is matrix and the lower one fractures, as in the main grid.
+
+mod corners;
+mod rings;
 
 use std::ops::Range;
 use std::rc::Rc;
 
 use super::DeckLocalGrid;
 use super::array::Rule;
-use super::assemble::{MOST_CELLS_PER_BYTE, array};
+use super::assemble::{MOST_CELLS_PER_BYTE, array, matrix_and_fractures};
 use super::cells::{CellArrays, MOST_VALUES, is_size};
 use super::edit::{CellBox, Edit, Place};
-use super::header::{name, positive};
-use super::lexer::{Cursor, Keyword, Mistake};
+use super::header::{name, positive, real};
+use super::lexer::{Cursor, Item, Keyword, Mistake};
 use super::scan::{Block, Scan, product_text};
 use super::skip::skip_records;
 use super::source::Source;
 use crate::egrid::LocalGrid;
 use crate::error::{ParseError, Warnings};
 use crate::geometry::Lengths;
+use corners::Share;
+use rings::Rings;
+
+pub(super) use corners::Corners;
 
 /// Sizes of cells where none are given: all the same.
 const RATIO: Rule = Rule {
@@ -31,10 +39,8 @@ const RATIO: Rule = Rule {
 /// Keywords that say how many cells divide each host along an axis, and how large these are beside each other.
 const DIVISIONS: [[&str; 2]; 3] = [["NXFIN", "HXFIN"], ["NYFIN", "HYFIN"], ["NZFIN", "HZFIN"]];
 
-/// True of the keywords that say how hosts are divided.
-pub(super) fn is_division(name: &str) -> bool {
-    DIVISIONS.as_flattened().contains(&name)
-}
+/// Keywords that say where the rings and sectors of a radial local grid are.
+const OF_RINGS: [&str; 6] = ["INRAD", "OUTRAD", "DRV", "DTHETAV", "DR", "DTHETA"];
 
 /// A local grid as the deck describes it.
 pub(super) struct Refinement {
@@ -44,8 +50,10 @@ pub(super) struct Refinement {
     parent: Option<String>,
     /// The cells that it refines.
     hosts: CellBox,
-    /// Its cells along i, j and k.
+    /// Its cells along i, j and k, or along radius, angle and k; with dual porosity k counts those of the fractures too.
     dims: [usize; 3],
+    /// Of a radial grid the inner and the outer radius, as far as its record has them.
+    radii: Option<[Option<f64>; 2]>,
     /// How it divides them.
     divisions: Vec<Block>,
     /// What is done to its arrays, in order.
@@ -63,7 +71,7 @@ pub(super) enum Target {
 }
 
 impl Scan<'_> {
-    /// CARFIN, REFINE, ENDFIN, and the kinds of local grids that are not read.
+    /// CARFIN, RADFIN, RADFIN4, REFINE and ENDFIN.
     pub(super) fn refine(
         &mut self,
         source: &Rc<Source>,
@@ -73,7 +81,7 @@ impl Scan<'_> {
         let placed = |mistake| source.mistake(&keyword.name, mistake);
         self.input_box = CellBox::default();
         self.target = match keyword.name.as_str() {
-            "CARFIN" => {
+            "CARFIN" | "RADFIN" | "RADFIN4" => {
                 let place = Place {
                     source: Rc::clone(source),
                     at: keyword.at,
@@ -89,7 +97,7 @@ impl Scan<'_> {
                     Some(number) => Target::Local(number),
                     None => {
                         let message = format!(
-                            "REFINE: no CARFIN before it is called '{named}'; what is for its cells is left out"
+                            "REFINE: no local grid before it is called '{named}'; what is for its cells is left out"
                         );
                         self.warn(source, keyword.at, &message);
                         Target::Nothing
@@ -98,31 +106,24 @@ impl Scan<'_> {
             }
             other => {
                 skip_records(cursor, other).map_err(placed)?;
-                if other == "ENDFIN" {
-                    Target::Main
-                } else {
-                    let message = format!(
-                        "{other}: radial local grids are not read from text; run the simulator and open the EGRID to see them"
-                    );
-                    self.warn(source, keyword.at, &message);
-                    Target::Nothing
-                }
+                Target::Main
             }
         };
         Ok(())
     }
 
-    /// The record of CARFIN: name, first and last host along i, j and k, cells along them, most wells, and the parent.
+    /// The record of a local grid.
     fn begin(&mut self, place: Place, cursor: &mut Cursor) -> Result<Target, Mistake> {
         let items = cursor.record()?;
-        let numbers = items.get(1..10).unwrap_or_default();
-        let grid = name(&items, 0);
-        let is_whole = numbers.len() == 9 && numbers.iter().all(|item| item.text.is_some());
-        let (Some(named), true) = (grid, is_whole) else {
-            let message = "CARFIN needs a name, the first and the last cell along I, J and K, and numbers of cells: this local grid is left out";
+        let Some(record) = Record::of(&place.keyword, &items) else {
+            let message = format!(
+                "{} needs a name, the first and the last cell along I, J and K, and numbers of cells: this local grid is left out",
+                place.keyword
+            );
             place.warn(self.warnings, message);
             return Ok(Target::Nothing);
         };
+        let named = record.name;
         let known = &self.found.refinements;
         if known.iter().any(|grid| grid.name == named) {
             let message = format!("there is a local grid '{named}' already: this one is left out");
@@ -130,17 +131,23 @@ impl Scan<'_> {
             return Ok(Target::Nothing);
         }
         let mut dims = [0; 3];
-        for (dim, item) in dims.iter_mut().zip(&numbers[6..]) {
+        for (dim, item) in dims.iter_mut().zip(&record.dims) {
             *dim = positive(item)?;
         }
-        let hosts = CellBox::read(&numbers[..6])?.unwrap_or_default();
-        let parent = name(&items, 11).filter(|parent| parent != "GLOBAL");
+        let hosts = CellBox::read(&record.hosts)?.unwrap_or_default();
+        let parent = record.parent.filter(|parent| parent != "GLOBAL");
+        let radius = |item: &Option<Item>| item.as_ref().map(real).transpose();
+        let radii = match &record.radii {
+            Some([inner, outer]) => Some([radius(inner)?, radius(outer)?]),
+            None => None,
+        };
         self.found.refinements.push(Refinement {
             place,
             name: named,
             parent,
             hosts,
             dims,
+            radii,
             divisions: Vec::new(),
             edits: Vec::new(),
         });
@@ -159,6 +166,18 @@ impl Scan<'_> {
         }
     }
 
+    /// True of a keyword that says how the local grid at hand divides its hosts.
+    pub(super) fn is_division(&self, name: &str) -> bool {
+        let is_radial = match self.target {
+            Target::Local(number) => {
+                let grid = self.found.refinements.get(number);
+                grid.is_some_and(|grid| grid.radii.is_some())
+            }
+            Target::Main | Target::Nothing => false,
+        };
+        DIVISIONS.as_flattened().contains(&name) || is_radial && OF_RINGS.contains(&name)
+    }
+
     /// Keeps a block with how a local grid divides its hosts.
     pub(super) fn division(&mut self, block: Block) {
         if let Target::Local(number) = self.target
@@ -169,18 +188,40 @@ impl Scan<'_> {
     }
 }
 
-/// A part of a host along an axis.
-#[derive(Clone, Copy)]
-pub(super) struct Share {
-    /// Number of the host along the axis.
-    host: usize,
-    /// Where in the host it begins and ends, from 0 to 1.
-    ends: [f64; 2],
+/// The items of the record of a local grid.
+struct Record<'a> {
+    name: String,
+    /// First and last host along i, j and k.
+    hosts: [Item<'a>; 6],
+    /// Numbers of cells.
+    dims: [Item<'a>; 3],
+    parent: Option<String>,
+    /// Of a radial grid, the inner and the outer radius.
+    radii: Option<[Option<Item<'a>>; 2]>,
 }
 
-impl Share {
-    fn size(self) -> f64 {
-        self.ends[1] - self.ends[0]
+impl<'a> Record<'a> {
+    /// Behind the numbers of cells stands the most wells that there may be, and behind that the parent (CARFIN) or the
+    /// radii (RADFIN). RADFIN refines one column, by its I and J. `None` where items are missing.
+    fn of(keyword: &str, items: &[Item<'a>]) -> Option<Self> {
+        let item = |at: usize| items.get(at).copied().filter(|item| item.text.is_some());
+        let places = match keyword {
+            "RADFIN" => [1, 1, 2, 2, 3, 4, 5, 6, 7],
+            _ => [1, 2, 3, 4, 5, 6, 7, 8, 9],
+        };
+        let numbers: Vec<Item> = places.into_iter().map_while(item).collect();
+        let (hosts, dims) = numbers.split_at_checked(6)?;
+        Some(Self {
+            name: name(items, 0)?,
+            hosts: hosts.try_into().ok()?,
+            dims: dims.try_into().ok()?,
+            parent: name(items, 11).filter(|_| keyword == "CARFIN"),
+            radii: match keyword {
+                "CARFIN" => None,
+                "RADFIN" => Some([item(9), item(10)]),
+                _ => Some([None, None]),
+            },
+        })
     }
 }
 
@@ -190,11 +231,59 @@ pub(super) struct Refined {
     /// Its number among the refined ones; none for the main grid.
     parent: Option<usize>,
     ranges: [Range<usize>; 3],
-    /// By cell along each axis.
-    shares: [Vec<Share>; 3],
-    /// The number of the host of each cell, from 0.
+    /// Its cells in space: with dual porosity half of its layers.
+    dims: [usize; 3],
+    cells: Cells,
+    /// The number of the host of each of these cells, from 0.
     hosts: Vec<usize>,
     arrays: CellArrays,
+}
+
+/// How the cells of a local grid divide their hosts.
+enum Cells {
+    /// By cell along each axis.
+    Boxes([Vec<Share>; 3]),
+    Rings(Rings),
+}
+
+impl Cells {
+    fn of(
+        refinement: &Refinement,
+        dims: [usize; 3],
+        ranges: &[Range<usize>; 3],
+        warnings: &mut Warnings,
+    ) -> Result<Self, String> {
+        let along = |axis: usize| refinement.shares(axis, dims[axis], ranges[axis].clone());
+        Ok(match refinement.radii {
+            None => Self::Boxes([along(0)?, along(1)?, along(2)?]),
+            Some(_) => Self::Rings(Rings::of(refinement, dims, ranges, along(2)?, warnings)?),
+        })
+    }
+
+    /// The number of the host of each cell, in a parent `ni` by `nj` cells wide.
+    fn hosts(&self, [ni, nj, _]: [usize; 3]) -> Vec<usize> {
+        let [along_i, along_j, along_k] = match self {
+            Self::Boxes(shares) => shares,
+            Self::Rings(rings) => return rings.hosts([ni, nj]),
+        };
+        let mut hosts = Vec::with_capacity(along_i.len() * along_j.len() * along_k.len());
+        for k in along_k {
+            for j in along_j {
+                let row = ni * (j.host + nj * k.host);
+                hosts.extend(along_i.iter().map(|i| i.host + row));
+            }
+        }
+        hosts
+    }
+
+    /// How much of its host the cell at a place along an axis is; radial cells are no part of their hosts' width.
+    fn size(&self, axis: usize, at: usize) -> f64 {
+        match self {
+            Self::Boxes(shares) => shares[axis][at].size(),
+            Self::Rings(rings) if axis == 2 => rings.along_k[at].size(),
+            Self::Rings(_) => f64::NAN,
+        }
+    }
 }
 
 /// The local grids of a deck with their arrays, begun with those of `main`; why one is left out goes to `warnings`.
@@ -214,17 +303,12 @@ pub(super) fn refined(
     for refinement in refinements {
         let place = refinement.place.clone();
         let named = refinement.name.clone();
-        match plan(refinement, &made, main, &mut room) {
+        match plan(refinement, &made, main, &mut room, warnings) {
             Ok(mut grid) => {
                 grid.play(warnings)?;
                 made.push(grid);
             }
-            Err(why) => place.warn(
-                warnings,
-                format!(
-                    "local grid {named} is left out, and its place shows the host cells: {why}"
-                ),
-            ),
+            Err(why) => place.warn(warnings, left_out(&named, &why)),
         }
     }
     for grid in &mut made {
@@ -256,10 +340,8 @@ fn plan(
     made: &[Refined],
     main: &CellArrays,
     room: &mut Room,
+    warnings: &mut Warnings,
 ) -> Result<Refined, String> {
-    if main.is_dual() {
-        return Err("local grids of dual porosity are not read from text".into());
-    }
     let parent = match &refinement.parent {
         None => None,
         Some(parent) => {
@@ -267,9 +349,14 @@ fn plan(
             Some(known.ok_or_else(|| format!("there is no grid {parent} before it"))?)
         }
     };
+    if parent.is_some_and(|number| made[number].refinement.radii.is_some()) {
+        return Err("it refines a radial grid, of which no cell is divided".into());
+    }
     let arrays = parent.map_or(main, |number| &made[number].arrays);
-    let ranges = refinement.hosts.ranges(arrays.dims());
-    let ranges = ranges.ok_or("its box is outside the grid that it refines")?;
+    let halves = if main.is_dual() { 2 } else { 1 };
+    let shown = |[ni, nj, nk]: [usize; 3]| [ni, nj, nk / halves];
+    let ranges = refinement.hosts.ranges(shown(arrays.dims()));
+    let ranges = ranges.ok_or_else(|| outside(halves > 1))?;
     let meets = |a: &Range<usize>, b: &Range<usize>| a.start < b.end && b.start < a.end;
     let beside = made.iter().filter(|grid| grid.parent == parent);
     for grid in beside {
@@ -278,51 +365,59 @@ fn plan(
             return Err(format!("it refines cells that {other} refines"));
         }
     }
-    let dims = refinement.dims;
-    let Some(lengths) = Lengths::of(dims) else {
-        return Err(format!("{} cells are too many", product_text(dims)));
+    let all = refinement.dims;
+    let Some(lengths) = Lengths::of(all) else {
+        return Err(format!("{} cells are too many", product_text(all)));
     };
-    room.take(lengths.cells, arrays.count() + refinement.edits.len())?;
-    let mut shares = [const { Vec::new() }; 3];
-    for (axis, shares) in shares.iter_mut().enumerate() {
-        *shares = refinement.shares(axis, ranges[axis].clone())?;
+    if !all[2].is_multiple_of(halves) {
+        return Err(format!(
+            "{} layers of dual porosity: there must be an even number, half of them matrix and half fractures",
+            all[2]
+        ));
     }
-    let hosts = hosts(&shares, arrays.dims());
+    room.take(lengths.cells, arrays.count() + refinement.edits.len())?;
+    let dims = shown(all);
+    let cells = Cells::of(&refinement, dims, &ranges, warnings)?;
+    let hosts = cells.hosts(arrays.dims());
+    let below = arrays.dims().iter().product::<usize>() / halves;
+    let of_half = |half: usize| hosts.iter().map(move |host| host + half * below);
+    let of_all: Vec<usize> = (0..halves).flat_map(of_half).collect();
     let size = |cell: usize, axis: usize| {
-        let [ni, nj, _] = dims;
-        shares[axis][[cell % ni, cell / ni % nj, cell / (ni * nj)][axis]].size()
+        let [ni, nj, nk] = dims;
+        let place = [cell % ni, cell / ni % nj, cell / (ni * nj) % nk];
+        cells.size(axis, place[axis])
     };
     Ok(Refined {
-        arrays: arrays.of_hosts(dims, &hosts, size),
+        arrays: arrays.of_hosts(all, &of_all, size),
         refinement,
         parent,
         ranges,
-        shares,
+        dims,
+        cells,
         hosts,
     })
 }
 
-/// The number of the host of each cell.
-fn hosts([along_i, along_j, along_k]: &[Vec<Share>; 3], [ni, nj, _]: [usize; 3]) -> Vec<usize> {
-    let mut hosts = Vec::with_capacity(along_i.len() * along_j.len() * along_k.len());
-    for k in along_k {
-        for j in along_j {
-            let row = ni * (j.host + nj * k.host);
-            hosts.extend(along_i.iter().map(|i| i.host + row));
-        }
+fn outside(is_dual: bool) -> String {
+    match is_dual {
+        true => "its box is outside the matrix of the grid that it refines, which is the upper half of the layers",
+        false => "its box is outside the grid that it refines",
     }
-    hosts
+    .into()
 }
 
 impl Refinement {
-    /// How the hosts of a range along an axis are divided.
-    fn shares(&self, axis: usize, hosts: Range<usize>) -> Result<Vec<Share>, String> {
-        let (cells, [counts_name, sizes_name]) = (self.dims[axis], DIVISIONS[axis]);
-        let read = |keyword: &str, count: usize| {
-            let block = self.divisions.iter().rev().find(|b| b.name == keyword)?;
-            let values = array(block, RATIO, &[count]);
-            Some(values.map_err(|error| format!("{keyword}: {}", error.message)))
-        };
+    /// The numbers behind a keyword that says how hosts are divided.
+    fn read(&self, keyword: &str, count: usize) -> Option<Result<Vec<f64>, String>> {
+        let block = self.divisions.iter().rev().find(|b| b.name == keyword)?;
+        let values = array(block, RATIO, &[count]);
+        Some(values.map_err(|error| format!("{keyword}: {}", error.message)))
+    }
+
+    /// How the hosts of a range along an axis are divided into cells.
+    fn shares(&self, axis: usize, cells: usize, hosts: Range<usize>) -> Result<Vec<Share>, String> {
+        let [counts_name, sizes_name] = DIVISIONS[axis];
+        let read = |keyword: &str, count: usize| self.read(keyword, count);
         let counts = match read(counts_name, hosts.len()).transpose()? {
             None if cells.is_multiple_of(hosts.len()) => vec![cells / hosts.len(); hosts.len()],
             None => {
@@ -393,47 +488,82 @@ impl Refined {
         };
         let (places, edits): (Vec<_>, Vec<_>) = edits.into_iter().partition(is_place);
         if let Some(edit) = places.first() {
-            let message = format!(
-                "{} of local grid {named} is not read: its cells divide those that it refines evenly, or by NXFIN and HXFIN and so on",
-                edit.target()
-            );
+            let how = match self.cells {
+                Cells::Boxes(_) => {
+                    "its cells divide those that it refines evenly, or by NXFIN and HXFIN and so on"
+                }
+                Cells::Rings(_) => {
+                    "its rings are by INRAD with DRV or OUTRAD, its sectors by DTHETAV, its layers even or by NZFIN and HZFIN"
+                }
+            };
+            let message = format!("{} of local grid {named} is not read: {how}", edit.target());
             edit.place().warn(warnings, message);
+        }
+        if self.arrays.is_dual() {
+            let half = self.dims[2];
+            let message = format!(
+                "the {} layers of local grid {named} are taken for {half} of matrix and {half} of fractures",
+                2 * half
+            );
+            place.warn(warnings, message);
         }
         self.arrays.play(edits, warnings)
     }
 
-    /// The grid of cells that divide those of its parent.
-    fn grid(self, number: usize, parent: &Corners<'_>, parent_name: String) -> DeckLocalGrid {
-        let dims = self.refinement.dims;
+    /// The grid of cells that divide those of its parent, or why there is none.
+    fn grid(
+        self,
+        number: usize,
+        parent: &Corners<'_>,
+        parent_name: String,
+    ) -> Result<DeckLocalGrid, String> {
+        let dims = self.dims;
         let mut arrays = self.arrays;
         let actnum = arrays.take("ACTNUM").map(|array| {
             let active = array.values.iter().map(|value| i32::from(*value != 0.0));
             active.collect()
         });
+        let actnum = match arrays.is_dual() {
+            true => Some(matrix_and_fractures(actnum, self.hosts.len())),
+            false => actnum,
+        };
+        arrays.show(dims);
         let number_of = |n: usize| i32::try_from(n).unwrap_or(i32::MAX);
-        DeckLocalGrid {
+        let [coord, zcorn] = match &self.cells {
+            Cells::Boxes(shares) => [parent.coord_of(shares), parent.zcorn_of(shares)],
+            Cells::Rings(rings) => rings.corners(parent)?,
+        };
+        Ok(DeckLocalGrid {
             grid: LocalGrid {
                 name: self.refinement.name,
                 parent: parent_name,
                 number: number_of(number + 1),
                 dims,
-                coord: parent.coord_of(&self.shares),
-                zcorn: parent.zcorn_of(&self.shares),
+                coord,
+                zcorn,
                 actnum,
                 host: self.hosts.iter().map(|host| number_of(host + 1)).collect(),
+                is_radial: self.refinement.radii.is_some(),
                 ..LocalGrid::default()
             },
             properties: arrays.into_properties(),
-        }
+        })
     }
 }
 
-/// The cells of local grids, whose main grid has these corners.
-pub(super) fn grids(made: Vec<Refined>, main: &Corners<'_>) -> Vec<DeckLocalGrid> {
-    let mut grids: Vec<DeckLocalGrid> = Vec::with_capacity(made.len());
+/// The cells of local grids, whose main grid has these corners; why one is left out goes to `warnings`.
+pub(super) fn grids(
+    made: Vec<Refined>,
+    main: &Corners<'_>,
+    warnings: &mut Warnings,
+) -> Vec<DeckLocalGrid> {
+    // Those that are left out are radial, which no other one refines.
+    let mut grids: Vec<Option<DeckLocalGrid>> = Vec::with_capacity(made.len());
     for (number, grid) in made.into_iter().enumerate() {
-        let parent = grid.parent.and_then(|parent| grids.get(parent));
-        let grid = match parent.map(|parent| &parent.grid) {
+        let parent = grid.parent.and_then(|parent| grids.get(parent)?.as_ref());
+        let place = grid.refinement.place.clone();
+        let named = grid.refinement.name.clone();
+        let made = match parent.map(|parent| &parent.grid) {
             None => grid.grid(number, main, String::new()),
             Some(parent) => {
                 let corners = Corners {
@@ -444,117 +574,14 @@ pub(super) fn grids(made: Vec<Refined>, main: &Corners<'_>) -> Vec<DeckLocalGrid
                 grid.grid(number, &corners, parent.name.clone())
             }
         };
-        grids.push(grid);
+        if let Err(why) = &made {
+            place.warn(warnings, left_out(&named, why));
+        }
+        grids.push(made.ok());
     }
-    grids
+    grids.into_iter().flatten().collect()
 }
 
-/// Pillars and depths of a grid.
-pub(super) struct Corners<'a> {
-    pub(super) dims: [usize; 3],
-    pub(super) coord: &'a [f64],
-    pub(super) zcorn: &'a [f64],
-}
-
-/// A host along an axis, and a place in it from 0 to 1.
-type Within = (usize, f64);
-
-impl Corners<'_> {
-    /// Depth of a corner of a cell, numbered along i first, then j, then k.
-    fn depth(&self, [i, j, k]: [usize; 3], corner: usize) -> f64 {
-        let [ni, nj, _] = self.dims;
-        let (x, y, z) = (
-            2 * i + (corner & 1),
-            2 * j + (corner >> 1 & 1),
-            2 * k + (corner >> 2),
-        );
-        self.zcorn[x + 2 * ni * (y + 2 * nj * z)]
-    }
-
-    fn ends(&self, i: usize, j: usize) -> &[f64] {
-        let pillar = 6 * (i + (self.dims[0] + 1) * j);
-        &self.coord[pillar..pillar + 6]
-    }
-
-    /// The pillar through a place in a column, between the pillars of the column, from the top of a layer to the bottom of
-    /// another one.
-    fn pillar(&self, (i, u): Within, (j, v): Within, layers: [usize; 2]) -> [f64; 6] {
-        let corners = || (0..4).map(|c| (c, part(u, c & 1) * part(v, c >> 1)));
-        let mut line = [0.0; 6];
-        for (half, corner) in [(0, 0), (1, 4)] {
-            for (c, weight) in corners() {
-                let depth = self.depth([i, j, layers[half]], c + corner);
-                let [x, y] = place_at(self.ends(i + (c & 1), j + (c >> 1)), depth);
-                for (sum, value) in line[3 * half..].iter_mut().zip([x, y, depth]) {
-                    *sum += weight * value;
-                }
-            }
-        }
-        if line[2] < line[5] {
-            return line;
-        }
-        // Without thickness between them the ends say where the pillar goes.
-        let mut line = [0.0; 6];
-        for (c, weight) in corners() {
-            let ends = self.ends(i + (c & 1), j + (c >> 1));
-            for (sum, value) in line.iter_mut().zip(ends) {
-                *sum += weight * value;
-            }
-        }
-        line
-    }
-
-    fn coord_of(&self, [along_i, along_j, along_k]: &[Vec<Share>; 3]) -> Vec<f64> {
-        let layers = [along_k.first(), along_k.last()].map(|share| share.map_or(0, |s| s.host));
-        let mut coord = Vec::with_capacity(6 * (along_i.len() + 1) * (along_j.len() + 1));
-        for j in edges(along_j) {
-            for i in edges(along_i) {
-                coord.extend(self.pillar(i, j, layers));
-            }
-        }
-        coord
-    }
-
-    fn zcorn_of(&self, [along_i, along_j, along_k]: &[Vec<Share>; 3]) -> Vec<f64> {
-        let both = |shares: &[Share]| -> Vec<Within> {
-            let both = |share: &Share| share.ends.map(|end| (share.host, end));
-            shares.iter().flat_map(both).collect()
-        };
-        let [along_i, along_j, along_k] = [along_i, along_j, along_k].map(|shares| both(shares));
-        let mut zcorn = Vec::with_capacity(along_i.len() * along_j.len() * along_k.len());
-        for (k, w) in along_k {
-            for &(j, v) in &along_j {
-                zcorn.extend(along_i.iter().map(|&(i, u)| {
-                    let of_corner = |c: usize| {
-                        let weight = part(u, c & 1) * part(v, c >> 1 & 1) * part(w, c >> 2);
-                        weight * self.depth([i, j, k], c)
-                    };
-                    (0..8).map(of_corner).sum::<f64>()
-                }));
-            }
-        }
-        zcorn
-    }
-}
-
-/// How much an end, 0 or 1, counts at a place between them.
-fn part(place: f64, end: usize) -> f64 {
-    if end == 0 { 1.0 - place } else { place }
-}
-
-/// x and y of a pillar at a depth.
-fn place_at(ends: &[f64], depth: f64) -> [f64; 2] {
-    let length = ends[5] - ends[2];
-    let along = if length == 0.0 {
-        0.0
-    } else {
-        (depth - ends[2]) / length
-    };
-    [0, 1].map(|n| ends[n] + along * (ends[n + 3] - ends[n]))
-}
-
-/// Where the pillars of cells stand along an axis.
-fn edges(shares: &[Share]) -> impl Iterator<Item = Within> {
-    let starts = shares.iter().map(|share| (share.host, share.ends[0]));
-    starts.chain(shares.last().map(|share| (share.host, share.ends[1])))
+fn left_out(named: &str, why: &str) -> String {
+    format!("local grid {named} is left out, and its place shows the host cells: {why}")
 }
