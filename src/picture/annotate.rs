@@ -339,6 +339,7 @@ pub(super) mod tests {
                 connections: std::sync::Arc::default(),
                 named_faults: std::sync::Arc::default(),
                 chosen_faults: None,
+                cube: None,
                 clip: Vec::new(),
             },
             notes: Notes {

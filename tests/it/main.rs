@@ -31,6 +31,7 @@ mod films;
 mod filters;
 mod first_pictures;
 mod framing;
+mod hybrid;
 mod layout;
 mod libc;
 mod light_updates;

@@ -349,6 +349,7 @@ fn count(stats: &mut FrameStats, words: &[u32]) {
     stats.point_locations = stats.grid_fallbacks + count(layout::COUNT_SECTIONS);
     stats.cell_crossings = count(layout::COUNT_CROSSINGS);
     stats.lost_samples = count(layout::COUNT_LOST_SAMPLES);
+    stats.cube_samples = count(layout::COUNT_CUBE);
     stats.finished_rays = count(layout::COUNT_FINISHED);
     stats.work = count(layout::COUNT_WORK);
     stats.peels = count(layout::COUNT_PEELS);

@@ -6,6 +6,7 @@ use std::time::Instant;
 use glam::DVec3;
 
 use crate::model::Grid;
+use crate::render::gpu::cube::GpuCube;
 use crate::render::gpu::faces::BoundaryFaces;
 use crate::render::gpu::illumination::Illumination;
 use crate::render::gpu::probe::Probe;
@@ -29,6 +30,7 @@ pub struct GpuRenderer {
     grid: GpuGrid,
     frames: FrameRenderer,
     tables: Option<TransferTables>,
+    cube: GpuCube,
     light: Illumination,
     faces: BoundaryFaces,
     /// Made when surfaces are first shown.
@@ -62,6 +64,7 @@ impl GpuRenderer {
             grid: on_device,
             light,
             tables: None,
+            cube: GpuCube::none(&gpu)?,
             faces: BoundaryFaces::default(),
             surfaces: None,
             gpu,
@@ -94,6 +97,7 @@ impl GpuRenderer {
             grid: on_device,
             frames,
             tables,
+            cube,
             light,
             faces,
             surfaces,
@@ -101,10 +105,12 @@ impl GpuRenderer {
         } = self;
         let (of_case, (grid, drawn)) = (&**model, view.shown.cells.in_grid(model));
         let revisions = on_device.revisions;
+        cube.update(gpu, &on_device.facts, view, revisions)?;
         let tables = match tables.take().filter(|t| t.revision == revisions.transfer) {
             Some(known) => tables.insert(known),
-            None => tables.insert(TransferTables::new(gpu, view, revisions.transfer)?),
+            None => tables.insert(TransferTables::new(gpu, view, cube, revisions.transfer)?),
         };
+        tables.cube = cube.views();
         // What is made for light is of all drawn cells.
         on_device.meet_all(gpu, true);
         light
@@ -160,6 +166,7 @@ impl GpuRenderer {
                     geometry: faces.bytes() + lists,
                     targets: stats.target_bytes,
                     lighting: light.bytes(),
+                    cube: cube.bytes(),
                     ..DeviceBytes::default()
                 },
         })
