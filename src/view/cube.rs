@@ -8,10 +8,10 @@ use super::colors;
 use super::error::{SceneError, positive, wrong};
 use crate::case::load;
 use crate::case::{Case, Cube, CubeFile, Quantiles, VerticalAxis};
-use crate::model::Spaces;
+use crate::model::{Space, Spaces};
 use crate::scene::{
-    ColorSpec, Coloring, CropSpec, Integration, OpacitySpec, ScaleSpec, Scene, TransferSpec,
-    VerticalSpec, VolumeSpec,
+    ColorSpec, Coloring, CropSpec, OpacitySpec, ScaleSpec, Scene, TransferSpec, VerticalSpec,
+    VolumeSpec,
 };
 use crate::transfer::{Scale, TransferFunction};
 
@@ -63,13 +63,36 @@ impl ShownCube {
         f64::from(self.stride) * lattice
     }
 
-    /// Value and presence at a place in numbers of samples; `None` outside of the crop.
-    pub fn at(&self, sample: DVec3) -> Option<(f64, f64)> {
-        let [low, high] = self.crop;
-        let inside = sample.cmpge(low).all() && sample.cmple(high).all();
-        inside.then(|| self.interpolated(sample))
+    /// The samples that a ray of world space takes, given the step of the lattice: distance, value and presence of those
+    /// with a value.
+    pub fn along(
+        &self,
+        origin: DVec3,
+        direction: DVec3,
+        lattice: f64,
+    ) -> impl Iterator<Item = (f64, f64, f64)> {
+        let step = self.step(lattice);
+        let sample_from_world = self.world_from_sample.inverse();
+        let from = sample_from_world.transform_point3(origin);
+        let along = sample_from_world.transform_vector3(direction);
+        let [low, high] = self.crop.map(|corner| (corner - from) / along);
+        // A ray along a side gives 0 / 0, which `min` and `max` pass over.
+        let enter = low.min(high).to_array().into_iter().fold(0.0, f64::max);
+        let leave = low.max(high).to_array();
+        let leave = leave.into_iter().fold(f64::INFINITY, f64::min);
+        let last = match leave.is_finite() {
+            true => (leave / step).floor().max(0.0) as u64,
+            false => 0,
+        };
+        let first = ((enter / step).ceil() as u64).max(1);
+        (first..=last).filter_map(move |n| {
+            let distance = n as f64 * step;
+            let (value, presence) = self.interpolated(from + distance * along);
+            (presence > 0.0).then_some((distance, value, presence))
+        })
     }
 
+    /// Value and presence at a place in numbers of samples.
     fn interpolated(&self, sample: DVec3) -> (f64, f64) {
         let size = self.cube.size;
         let last = DVec3::from_array(size.map(|n| n as f64 - 1.0));
@@ -104,18 +127,13 @@ pub fn warnings(scene: &Scene, case: &Case) -> Result<Vec<String>, SceneError> {
     let Some(spec) = asked(scene)? else {
         return Ok(Vec::new());
     };
-    if !case.grid.space().is_map() {
+    if !Space::from(scene.space).is_map() {
         return Ok(vec![format!(
             "{} is not drawn by I, J and K: it has no place there",
             spec.file.display()
         )]);
     }
-    let mut warnings = read(spec, case)?.notes.clone();
-    let by_segments = [scene.libc.integration, scene.plts.integration];
-    if by_segments.contains(&Integration::Segments) {
-        warnings.push("beside a volume rays take samples of cells, no segments".to_owned());
-    }
-    Ok(warnings)
+    Ok(read(spec, case)?.notes.clone())
 }
 
 /// The one volume that is drawn.
@@ -250,7 +268,7 @@ fn transfer(
         // Strong values of both signs are what one looks for.
         (None, true) => look(
             "redblue",
-            &[[0.0, 0.3], [0.35, 0.0], [0.65, 0.0], [1.0, 0.3]],
+            &[[0.0, 0.2], [0.15, 0.0], [0.85, 0.0], [1.0, 0.2]],
         ),
         (None, false) => look("gray", &[[0.0, 0.0], [0.5, 0.02], [1.0, 0.2]]),
     };
@@ -294,5 +312,47 @@ fn look(color: &str, opacity: &[[f64; 2]]) -> TransferSpec {
         color: ColorSpec::Name(color.into()),
         opacity: Some(OpacitySpec::Points(opacity.to_vec())),
         ..TransferSpec::default()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    /// How much of the light the cells add where two even media of optical depth 2 lie in one place, in so many steps.
+    /// Samples of the cube lie between those of the cells, or with them.
+    fn of_cells(steps: usize, alternate: bool) -> f64 {
+        let depth = 2.0 / steps as f64;
+        let (mut transmittance, mut cells) = (1.0, 0.0);
+        let mut pass = |depth: f64, is_cell: bool| {
+            let opacity = 1.0 - (-depth).exp();
+            if is_cell {
+                cells += transmittance * opacity;
+            }
+            transmittance *= 1.0 - opacity;
+        };
+        for n in 0..steps {
+            if alternate {
+                // Half of the first one lies before the media, as half of the last one behind them.
+                pass(if n == 0 { 0.5 * depth } else { depth }, false);
+                pass(depth, true);
+            } else {
+                pass(depth, true);
+                pass(depth, false);
+            }
+        }
+        cells
+    }
+
+    #[test]
+    fn alternate_samples_are_wrong_by_the_square_of_a_step() {
+        // Of even media each adds its part of the optical depth.
+        let exact = 0.5 * (1.0 - (-4.0f64).exp());
+        let error = |steps, alternate| (of_cells(steps, alternate) - exact).abs();
+        for steps in [5, 10, 20, 40] {
+            let [fine, coarse] = [2 * steps, steps].map(|n| error(n, true));
+            let twins = [2 * steps, steps].map(|n| error(n, false));
+            println!("{:.2} {coarse:.5} {:.5}", 4.0 / steps as f64, twins[1]);
+            assert!((coarse / fine - 4.0).abs() < 0.1, "{coarse} {fine}");
+            assert!((twins[1] / twins[0] - 2.0).abs() < 0.1, "{twins:?}");
+        }
     }
 }

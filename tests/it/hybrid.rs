@@ -10,6 +10,7 @@ use crate::common;
 use strataray::case::{Case, load};
 use strataray::image::Image;
 use strataray::image::metrics::psnr_8bit;
+use strataray::picking;
 use strataray::reference;
 use strataray::render::cpu::CpuExecutor;
 use strataray::render::gpu::GpuExecutor;
@@ -154,7 +155,11 @@ fn volume(dims: [usize; 3], out: f64, is_askew: bool, field: impl Fn(DVec3) -> f
 
 #[test]
 fn every_strategy_has_the_reference_s_volume() {
-    let Volume { case, file, .. } = volume([24, 20, 22], 0.15, true, layers);
+    let Volume {
+        case,
+        file,
+        _folder,
+    } = volume([24, 20, 22], 0.15, true, layers);
     let middle = opened(&case, &json!({})).world.bounds;
     let middle = (0.5 * (middle[0] + middle[1])).to_array();
     let plane = json!([{"point": middle, "normal": [0.3, 1, 0], "face": "open"}]);
@@ -202,4 +207,206 @@ fn every_strategy_has_the_reference_s_volume() {
             }
         }
     }
+}
+
+/// A cube of one value with an opacity per length is what Beer and Lambert say, wherever rays miss the model.
+#[test]
+fn an_even_volume_absorbs_as_beer_and_lambert_say() {
+    let Volume {
+        case,
+        file,
+        _folder,
+    } = volume([8, 8, 8], 1.0, true, |_| 1.0);
+    let opacity = |part: f64| json!({"transfer": {"opacity": [[0, part], [1, part]], "color": [[0, "#ff0000"]]}});
+    let written = |part: f64| {
+        let mut written = beside(
+            &file,
+            &json!({"early_termination": 0.0, "filter": {"i": [1, 1], "j": [1, 1]}}),
+        );
+        let volume = written["volumes"][0].as_object_mut().unwrap();
+        volume.extend(opacity(part).as_object().unwrap().clone());
+        volume.insert("range".into(), json!([0, 2]));
+        opened(&case, &written)
+    };
+    let (view, twin) = (written(0.3), written(0.35));
+    let shown = view.shown.cube.clone().unwrap();
+    let tau = shown.transfer.extinction(0.5);
+    let step = shown.step(view.sampling.step);
+    // What rays pass of the parallelepiped, and where they meet the model's box.
+    let chord = |x: u32, y: u32| {
+        let ray = reference::Ray::through_pixel(&view, x, y);
+        let inside = |p: DVec3| shown.world_from_sample.inverse().transform_point3(p);
+        let (from, to) = (inside(ray.origin), inside(ray.origin + ray.direction));
+        let within = |from: DVec3, along: DVec3, [low, high]: [DVec3; 2]| {
+            let [a, b] = [low, high].map(|corner| (corner - from) / along);
+            [a.min(b).max_element().max(0.0), a.max(b).min_element()]
+        };
+        let [enter, leave] = within(from, to - from, shown.crop);
+        let [first, last] = within(ray.origin, ray.direction, view.world.bounds);
+        (last <= first).then_some((leave - enter).max(0.0))
+    };
+    for executor in executors() {
+        let mut renderer = executor.renderer(&case.grid).unwrap();
+        for strategy in StrategyKind::ALL {
+            let mut worst = |view: &View| {
+                let (image, _) = render(&mut *renderer, &view.by(strategy));
+                let mut worst = (0, 0.0f64);
+                for (n, pixel) in (0..).zip(&image.pixels) {
+                    let Some(length) = chord(n % view.size[0], n / view.size[0]) else {
+                        continue;
+                    };
+                    let alpha = 1.0 - (-tau * length).exp();
+                    // One sample more or less.
+                    let slack = (tau * step).exp_m1() * (-tau * length).exp();
+                    let over = (f64::from(pixel[3]) - alpha).abs() - slack;
+                    worst = (worst.0 + u32::from(length > 0.0), worst.1.max(over));
+                }
+                worst
+            };
+            let (count, own) = worst(&view);
+            let (_, other) = worst(&twin);
+            let place = format!(
+                "{} {}: {count} pixels, {own:.2e}, twin {other:.2e}",
+                executor.info().executor,
+                strategy.name()
+            );
+            println!("{place}");
+            assert!(count > 500 && own < 1e-4 && other > 0.01, "{place}");
+        }
+    }
+}
+
+#[test]
+fn a_volume_without_opacity_changes_no_bit() {
+    let Volume {
+        case,
+        file,
+        _folder,
+    } = volume([12, 12, 12], 0.2, true, layers);
+    let mut written = beside(&file, &json!({"show": {"hull": "faint", "faults": true}}));
+    let with = |written: &mut Value, opacity: f64| {
+        written["volumes"][0]["transfer"] = json!({"opacity": [[0, opacity], [1, opacity]]});
+        opened(&case, written)
+    };
+    let (none, some) = (with(&mut written, 0.0), with(&mut written, 0.01));
+    for executor in executors() {
+        let mut renderer = executor.renderer(&case.grid).unwrap();
+        for strategy in StrategyKind::ALL {
+            let mut image = |view: &View| render(&mut *renderer, &view.by(strategy)).0;
+            let plain = image(&without(&none));
+            let place = format!("{} {}", executor.info().executor, strategy.name());
+            assert!(image(&none).pixels == plain.pixels, "{place}");
+            assert!(image(&some).pixels != plain.pixels, "{place}");
+        }
+    }
+}
+
+/// The same field on a turned and sheared lattice and on a straight one.
+#[test]
+fn a_turned_lattice_shows_the_same_field() {
+    let case = sample();
+    let folder = tempfile::tempdir().unwrap();
+    let ball = |lattice: Lattice, shift: f64| {
+        let view = opened(&case, &json!({}));
+        let [low, high] = view
+            .world
+            .bounds
+            .map(|p| view.world.spaces.map_from_world(p));
+        let (center, size) = (0.5 * (low + high), (high - low).abs());
+        let name = format!("{:?}{shift}.nrrd", lattice.edges[0][1]);
+        let file = folder.path().join(name);
+        let [ni, nj, nk] = lattice.dims.map(|n| n as f64);
+        write(&file, lattice, |part| {
+            let at = part * DVec3::new(ni, nj, nk) - 0.5;
+            let place =
+                DVec3::from_array(lattice.place(at.to_array())) * DVec3::new(1.0, 1.0, -1.0);
+            let away = (place - center - shift * size.x * DVec3::X) / size;
+            (-12.0 * away.length_squared()).exp()
+        });
+        let mut written = beside(&file, &json!({}));
+        written["volumes"][0]["range"] = json!([0, 1]);
+        written["volumes"][0]["transfer"] =
+            json!({"opacity": [[0, 0], [0.2, 0], [1, 0.4]], "reference_length": 100});
+        opened(&case, &written)
+    };
+    let straight = ball(around(&case, [48; 3], 0.4, false), 0.0);
+    let turned = ball(around(&case, [64; 3], 0.6, true), 0.0);
+    let aside = ball(around(&case, [64; 3], 0.6, true), 0.06);
+    let mut renderer = CpuExecutor::default().renderer(&case.grid).unwrap();
+    let [straight_image, turned_image, aside_image] =
+        [&straight, &turned, &aside].map(|view| render(&mut *renderer, view).0);
+    let own = psnr(&turned_image, &straight_image, &straight);
+    let twin = psnr(&aside_image, &straight_image, &straight);
+    println!("{own:.1} dB, aside {twin:.1} dB");
+    assert!(own > 60.0 && twin < 42.0, "{own} {twin}");
+}
+
+#[test]
+fn files_that_cannot_be_shown_are_told() {
+    let Volume {
+        case,
+        file,
+        _folder,
+    } = volume([4, 4, 4], 0.0, false, |at| at.x);
+    let refused = |written: &Value| {
+        let scene = view::look::opening(&case, written).unwrap();
+        view::resolve(&scene, &case).err().unwrap().to_string()
+    };
+    let cut = file.with_file_name("cut.nrrd");
+    let bytes = std::fs::read(&file).unwrap();
+    std::fs::write(&cut, &bytes[..bytes.len() - 9]).unwrap();
+    let missing = file.with_file_name("missing.segy");
+    for (path, words) in [(&cut, "the file is cut"), (&missing, "missing.segy")] {
+        let told = refused(&beside(path, &json!({})));
+        assert!(
+            told.contains(words) && told.contains(path.to_str().unwrap()),
+            "{told}"
+        );
+    }
+    let with = |key: &str, value: Value| {
+        let mut written = beside(&file, &json!({}));
+        written["volumes"][0][key] = value;
+        refused(&written)
+    };
+    assert!(with("crop", json!({"i": [0, 9]})).contains("volumes.crop.i"));
+    assert!(with("velocity", json!(-3)).contains("volumes.velocity"));
+    assert!(with("range", json!([1, 0])).contains("volumes.range"));
+    let log = json!({"scale": "log"});
+    assert!(with("transfer", log).contains("volumes.transfer.scale"));
+    let mut two = beside(&file, &json!({}));
+    let first = two["volumes"][0].clone();
+    two["volumes"].as_array_mut().unwrap().push(first);
+    assert!(refused(&two).contains("one volume at a time"));
+    let unknown = json!({"volumes": [{"file": file, "opacity": 1}]});
+    assert!(view::look::opening(&case, &unknown).is_err());
+    // The twin: what is right is shown.
+    assert!(
+        opened(&case, &beside(&file, &json!({})))
+            .shown
+            .cube
+            .is_some()
+    );
+}
+
+/// What is seen of a volume is told, and no cell behind it.
+#[test]
+fn a_pick_tells_the_volume_that_hides_the_cells() {
+    let Volume {
+        case,
+        file,
+        _folder,
+    } = volume([8, 8, 8], 0.3, false, |at| 1.0 + at.x);
+    let with = |opacity: f64| {
+        let mut written = beside(&file, &json!({}));
+        written["volumes"][0]["transfer"] = json!({"opacity": [[0, opacity], [1, opacity]]});
+        opened(&case, &written)
+    };
+    let mut renderer = CpuExecutor::default().renderer(&case.grid).unwrap();
+    let middle = glam::DVec2::splat(0.5);
+    let hidden = picking::pick(&mut *renderer, &case, &with(0.99), middle).unwrap();
+    let cube = hidden.cube.unwrap();
+    assert!(hidden.hit.is_none() && cube.name == "AMPLITUDE");
+    assert!((1.0..=2.0).contains(&cube.value), "{cube:?}");
+    let seen = picking::pick(&mut *renderer, &case, &with(0.0), middle).unwrap();
+    assert!(seen.cube.is_none() && !seen.cells.is_empty());
 }

@@ -16,8 +16,9 @@ pub struct GpuCube {
     voxels: wgpu::TextureView,
     /// Its transfer function and its numbers.
     table: wgpu::TextureView,
-    /// Of the voxels, where they are of a cube, and bytes of these.
+    /// Of the voxels and the table, where they are of a cube, and bytes of the voxels.
     held: Option<u64>,
+    look: Option<u64>,
     bytes: u64,
 }
 
@@ -29,8 +30,9 @@ impl GpuCube {
     pub fn none(gpu: &Gpu) -> Result<Self, RenderError> {
         Ok(Self {
             voxels: voxels(gpu, [1; 3], &[[0; 2]]),
-            table: gpu.table("cube", TABLE, &[[0.0; 4]])?,
+            table: gpu.table("cube", TABLE, &[[0.0f32; 4]])?,
             held: None,
+            look: None,
             bytes: 0,
         })
     }
@@ -59,16 +61,18 @@ impl GpuCube {
             let limit = u64::from(gpu.device.limits().max_texture_dimension_3d);
             let longest = shown.cube.size.iter().max().copied().unwrap_or(0) as u64;
             if longest > limit {
-                return Err(RenderError::TooLarge {
-                    what: "samples of the volume along an axis",
-                    needed: longest,
-                    limit,
+                return Err(RenderError::Unsuitable {
+                    adapter: gpu.info.name.clone(),
+                    reason: format!("volumes are limited to {limit} samples along an axis"),
                 });
             }
             let halves = halves(&shown.cube, stored);
             self.voxels = voxels(gpu, shown.cube.size.map(|n| n as u32), &halves);
             self.bytes = size_of_val(&halves[..]) as u64;
             self.held = Some(revisions.cube);
+        }
+        if self.look == Some(revisions.cube_look) {
+            return Ok(());
         }
         let numbers = CubeNumbers::new(grid, view, shown, stored);
         let corner = |[x, y, z]: [f32; 3], more: f32| [x, y, z, more];
@@ -81,6 +85,7 @@ impl GpuCube {
             [offset, factor, 0.0, 0.0],
         ]);
         self.table = gpu.table("cube", TABLE, &texels)?;
+        self.look = Some(revisions.cube_look);
         Ok(())
     }
 
