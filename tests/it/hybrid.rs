@@ -197,13 +197,16 @@ fn every_strategy_has_the_reference_s_volume() {
                     strategy.name()
                 );
                 println!("{place}");
+                let on_gpu = executor.info().executor == "gpu";
                 let least = match strategy {
-                    StrategyKind::Srg => 38.0,
-                    StrategyKind::Libc => 48.0,
-                    StrategyKind::Plts => 50.0,
+                    // On the GPU single pixels differ at the rims of faces.
+                    _ if on_gpu && view.style.surfaces.are_shown() => 45.0,
+                    StrategyKind::Srg => 44.0,
+                    StrategyKind::Libc => 52.0,
+                    StrategyKind::Plts => 60.0,
                 };
                 assert!(samples > 10_000 && own > least, "{place}");
-                assert!(moved < 36.0 && none < 36.0, "{place}");
+                assert!(moved < 40.0 && none < 30.0, "{place}");
             }
         }
     }
