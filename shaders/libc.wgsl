@@ -192,7 +192,7 @@ fn begin(@builtin(global_invocation_id) id: vec3u) {
     let number = id.y * tile.size.x + id.x;
     let pixel = tile.origin + id.xy;
     let whole = ray_of(pixel);
-    let layers = layers_of(pixel, 0u);
+    let layers = layers_of(pixel, 0u, 0.0);
     let ray = before_opaque(whole, layers);
     var walk: Walk;
     var tally: Tally;
@@ -244,8 +244,9 @@ fn walk(@builtin(global_invocation_id) id: vec3u) {
     let number = rays.numbers[stage.z + id.x];
     var walk = load_walk(number);
     let place = in_tile(number);
-    var layers = layers_of(tile.origin + place, walk.passed);
-    let ray = before_opaque(ray_of(tile.origin + place), layers);
+    let whole = ray_of(tile.origin + place);
+    var layers = layers_of(tile.origin + place, walk.passed, distance_of(whole, walk.n));
+    let ray = before_opaque(whole, layers);
     let r = frame_of(ray);
     let sums = bitcast<vec4f>(ray_states[LIBC_STATE * number]);
     var sum = Accumulated(sums.rgb, sums.a);
@@ -286,6 +287,11 @@ fn walk(@builtin(global_invocation_id) id: vec3u) {
     finish(number, walk, sum, layers, tally);
 }
 
+// Distance of a sample.
+fn distance_of(ray: Ray, n: f32) -> f32 {
+    return (ray.first + n + 0.5) * frame.step;
+}
+
 fn in_tile(number: u32) -> vec2u {
     return vec2u(number % tile.size.x, number / tile.size.x);
 }
@@ -298,14 +304,23 @@ fn finish(number: u32, walk: Walk, sum: Accumulated, layers: Layers, tally: Tall
         var whole = sum;
         var rest = layers;
         while blend_layer(&rest, &whole, BEYOND_LAYERS) {}
+        count_cube(rest);
         textureStore(target_image, vec2i(pixel), vec4f(whole.color, 1.0 - whole.transmittance));
         count(COUNT_FINISHED, 1u);
         count(COUNT_LOST, select(0u, 1u, is_lost));
         atomicMax(&counters[2u * COUNT_PEELS], walk.peels);
     } else {
-        ray_states[LIBC_STATE * number] = bitcast<vec4u>(vec4f(sum.color, sum.transmittance));
+        var whole = sum;
+        var before = layers;
+        if CUBE {
+            // The march begins at the next sample where the ray goes on.
+            let next = distance_of(ray_of(tile.origin + in_tile(number)), walk.n);
+            while blend_layer(&before, &whole, next) {}
+            count_cube(before);
+        }
+        ray_states[LIBC_STATE * number] = bitcast<vec4u>(vec4f(whole.color, whole.transmittance));
         var state = walk;
-        state.passed = layers.passed;
+        state.passed = before.passed;
         store_walk(number, state);
         rays.numbers[stage.w + atomicAdd(&rays.left, 1u)] = number;
         count(COUNT_PAUSED, select(0u, 1u, walk.phase != NEEDS_ENTRY));
@@ -506,7 +521,7 @@ fn segment_value(s: Segment, t: f32) -> f32 {
 // opaque ends the ray.
 fn integrate(walk: ptr<function, Walk>, sum: ptr<function, Accumulated>, layers: ptr<function, Layers>, ray: Ray,
     t: f32, uvw: vec3f, tally: ptr<function, Tally>) -> bool {
-    while blend_layer(layers, sum, 0.5 * ((*walk).t + min(t, ray.leave))) {}
+    while blend_surface(layers, sum, 0.5 * ((*walk).t + min(t, ray.leave))) {}
     var s: Segment;
     s.t = (*walk).t;
     s.length = max(t - s.t, 1e-20);
@@ -537,7 +552,7 @@ fn integrate(walk: ptr<function, Walk>, sum: ptr<function, Accumulated>, layers:
     let end = min(ceil(t / frame.step - 0.5) - ray.first, ray.count);
     var n = max((*walk).n, first);
     let count = max(0.0, end - n);
-    if !LIT && (!BY_VERTEX || is_ghost) {
+    if !LIT && !CUBE && (!BY_VERTEX || is_ghost) {
         var entry = transfer(s.top.x);
         if is_ghost {
             entry = frame.ghost;
@@ -552,12 +567,16 @@ fn integrate(walk: ptr<function, Walk>, sum: ptr<function, Accumulated>, layers:
     }
     // Shaded samples may be so dear that a ray pauses within a cell.
     while n < end && is_open(*sum) && (!LIT || (*tally).work < tile.work_limit) {
-        let at = (ray.first + n + 0.5) * frame.step;
+        let at = distance_of(ray, n);
+        if CUBE {
+            // Surfaces behind the middle of the cell lie at its exit.
+            blend_cube_until(layers, sum, at);
+        }
         var entry = transfer(segment_value(s, at));
+        if (LIT || CUBE) && is_ghost {
+            entry = frame.ghost;
+        }
         if LIT {
-            if is_ghost {
-                entry = frame.ghost;
-            }
             entry = lit(entry, ray, at, is_ghost, tally);
         }
         *sum = accumulate(*sum, entry);

@@ -66,7 +66,8 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         let section = section_color(whole);
         sum = Accumulated(section.rgb, 1.0 - section.a);
     }
-    var layers = layers_of(pixel, passed);
+    let behind = select(0.0, distance_of(whole, n), tile.resume == 1u);
+    var layers = layers_of(pixel, passed, behind);
     let ray = before_opaque(whole, layers);
     let end = select(ray.count, place_of(ray, ray.leave), BY_SEGMENT);
     var samples = 0u;
@@ -110,6 +111,10 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
             follow(&track, ray.base + n * ray.advance, ray.advance, frame.interpolation);
         }
     }
+    if CUBE && n < end {
+        // The march begins here where the ray goes on.
+        while blend_layer(&layers, &sum, distance_of(ray, n)) {}
+    }
     if n < end && is_open(sum) {
         ray_states[state] = bitcast<vec4u>(vec4f(sum.color, sum.transmittance));
         let gap = u32(min(track.gap, MOST_GAP));
@@ -131,6 +136,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     count(COUNT_ENTRIES, track.entries);
     count(COUNT_CROSSINGS, track.crossings);
     count(COUNT_LOST_SAMPLES, track.lost);
+    count_cube(layers);
 }
 
 // The place on a ray at a distance from its origin, and the distance of a place.
@@ -187,7 +193,7 @@ fn integrate(track: ptr<function, Track>, layers: ptr<function, Layers>, sum: pt
     way: Way, to_place: f32) -> u32 {
     let from_place = way.first;
     let middle = distance_of(ray, 0.5 * (from_place + to_place));
-    while blend_layer(layers, sum, middle) {}
+    while blend_surface(layers, sum, middle) {}
     if to_place <= from_place {
         return 0u;
     }

@@ -19,8 +19,9 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         section = section_color(ray_of(pixel));
     }
     var sum = Accumulated(section.rgb, 1.0 - section.a);
-    var layers = layers_of(pixel, 0u);
+    var layers = layers_of(pixel, 0u, 0.0);
     while blend_layer(&layers, &sum, BEYOND_LAYERS) {}
+    count_cube(layers);
     textureStore(target_image, vec2i(pixel), vec4f(sum.color, 1.0 - sum.transmittance));
     count(COUNT_FINISHED, 1u);
     count(COUNT_WORK, 1u);

@@ -47,7 +47,7 @@ fn begin(@builtin(global_invocation_id) id: vec3u) {
     }
     let pixel = tile.origin + id.xy;
     let whole = ray_of(pixel);
-    let ray = before_opaque(whole, layers_of(pixel, 0u));
+    let ray = before_opaque(whole, layers_of(pixel, 0u, 0.0));
     let entry = textureLoad(entries, vec2i(id.xy), 0).xy;
     let exit = textureLoad(exits, vec2i(id.xy), 0).xy;
     let enter = select(bitcast<f32>(entry.y), ray.enter, ray.starts_inside);
@@ -79,7 +79,7 @@ fn march(@builtin(global_invocation_id) id: vec3u) {
     let sums = bitcast<vec4f>(ray_states[state]);
     var sum = Accumulated(sums.rgb, sums.a);
     let ray = ray_of(pixel);
-    var layers = layers_of(pixel, ray_states[state + 1u].z);
+    var layers = layers_of(pixel, ray_states[state + 1u].z, select((ray.first + n + 0.5) * frame.step, 0.0, ray_states[state + 1u].w == 0u));
     let base = (ray.base - volume.box_low) / volume.box_extent;
     let advance = ray.advance / volume.box_extent;
     var samples = 0u;
@@ -117,10 +117,15 @@ fn march(@builtin(global_invocation_id) id: vec3u) {
             sum.transmittance = select(0.0, ROULETTE, survives);
         }
     }
+    if CUBE && n < span.y {
+        // The march begins here where the ray goes on.
+        while blend_layer(&layers, &sum, (ray.first + n + 0.5) * frame.step) {}
+    }
     if n < span.y && is_open(sum) {
         ray_states[state] = bitcast<vec4u>(vec4f(sum.color, sum.transmittance));
         ray_states[state + 1u].x = bitcast<u32>(n);
         ray_states[state + 1u].z = layers.passed;
+        ray_states[state + 1u].w = 1u;
         count(COUNT_PAUSED, 1u);
     } else {
         while blend_layer(&layers, &sum, BEYOND_LAYERS) {}
@@ -130,6 +135,7 @@ fn march(@builtin(global_invocation_id) id: vec3u) {
     }
     count(COUNT_SAMPLES, samples);
     count(COUNT_WORK, work);
+    count_cube(layers);
 }
 
 // Adds a sample that stands for `taken` of them; its opacity is multiplied by presence.

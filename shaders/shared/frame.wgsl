@@ -79,6 +79,33 @@ fn is_kept(point: vec3f) -> bool {
     return true;
 }
 
+// The stretch of a ray between clip planes.
+struct Clipped {
+    enter: f32,
+    leave: f32,
+    // The plane through which it enters, or NO_CUT.
+    cut: u32,
+}
+
+// What clip planes leave of a ray.
+fn clipped(origin: vec3f, direction: vec3f) -> Clipped {
+    var clip = Clipped(0.0, 1e30, NO_CUT);
+    for (var n = 0u; n < frame.clip_count; n++) {
+        let plane = frame.clip_planes[n];
+        let height = dot(plane.xyz, origin) + plane.w;
+        let rate = dot(plane.xyz, direction);
+        if abs(rate) < 1e-12 {
+            clip.leave = select(clip.leave, -1.0, height < 0.0);
+        } else if rate < 0.0 {
+            clip.leave = min(clip.leave, -height / rate);
+        } else if -height / rate > clip.enter {
+            clip.enter = -height / rate;
+            clip.cut = n;
+        }
+    }
+    return clip;
+}
+
 // The ray of a pixel, cut to the model's box and the clip planes.
 fn ray_of(pixel: vec2u) -> Ray {
     let through = pixel_ray(pixel);
@@ -91,22 +118,10 @@ fn ray_of(pixel: vec2u) -> Ray {
     let far = max(a, b);
     let box_enter = max(near.x, max(near.y, near.z));
     let box_leave = min(min(far.x, far.y), far.z);
-    var clip_enter = 0.0;
-    var clip_leave = 1e30;
-    var cut = NO_CUT;
-    for (var n = 0u; n < frame.clip_count; n++) {
-        let plane = frame.clip_planes[n];
-        let height = dot(plane.xyz, origin) + plane.w;
-        let rate = dot(plane.xyz, direction);
-        if abs(rate) < 1e-12 {
-            clip_leave = select(clip_leave, -1.0, height < 0.0);
-        } else if rate < 0.0 {
-            clip_leave = min(clip_leave, -height / rate);
-        } else if -height / rate > clip_enter {
-            clip_enter = -height / rate;
-            cut = n;
-        }
-    }
+    let clip = clipped(origin, direction);
+    let clip_enter = clip.enter;
+    let clip_leave = clip.leave;
+    let cut = clip.cut;
     var ray: Ray;
     ray.origin = origin;
     ray.direction = direction;

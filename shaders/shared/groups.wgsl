@@ -4,3 +4,4 @@
 #import grid
 #import transfer
 #import light
+#import cube

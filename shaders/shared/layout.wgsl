@@ -328,7 +328,7 @@ const WORK_VALUES: u32 = 0u;
 const WORK_GAUSSIAN: u32 = 1u;
 const WORK_MEAN: u32 = 2u;
 // Counters, each of a low and a high word.
-const COUNTERS: u32 = 14u;
+const COUNTERS: u32 = 15u;
 const COUNT_SAMPLES: u32 = 0u;
 const COUNT_ITERATIONS: u32 = 1u;
 const COUNT_STEPS: u32 = 2u;
@@ -343,3 +343,4 @@ const COUNT_ENTRIES: u32 = 10u;
 const COUNT_SECTIONS: u32 = 11u;
 const COUNT_CROSSINGS: u32 = 12u;
 const COUNT_LOST_SAMPLES: u32 = 13u;
+const COUNT_CUBE: u32 = 14u;

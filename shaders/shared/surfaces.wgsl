@@ -1,6 +1,7 @@
 // Layers of surface points that rays meet, blended between the samples. They lie behind the states of the
 // rays, nearest first, for each pixel of the part of the picture that the tile lies in (`Surfaces` in
 // view/surfaces.rs says what is seen).
+#import cube
 #import frame
 #import grid
 #import transfer
@@ -43,7 +44,7 @@ fn store_layer(place: u32, layer: Layer) {
     ray_states[place] = vec4u(bitcast<u32>(layer.distance), color | high << vec3u(24u));
 }
 
-// The layers of a ray.
+// The layers of a ray, and the samples of a cube, which lie between them and those of the cells.
 struct Layers {
     // Position of the first.
     first: u32,
@@ -51,6 +52,7 @@ struct Layers {
     passed: u32,
     // Distance of the next.
     distance: f32,
+    march: March,
 }
 
 // Position of a pixel's first layer, by its place in the part.
@@ -65,19 +67,46 @@ fn layer_distance(first: u32, number: u32) -> f32 {
     return bitcast<f32>(ray_states[first + number].x);
 }
 
-// The layers of a pixel's ray, of which some are blended.
-fn layers_of(pixel: vec2u, passed: u32) -> Layers {
-    if !SURFACES {
-        return Layers(0u, 0u, NO_LAYER);
+// The layers of a pixel's ray, of which some are blended, and of a cube the samples up to a distance.
+fn layers_of(pixel: vec2u, passed: u32, distance: f32) -> Layers {
+    var layers: Layers;
+    layers.distance = NO_LAYER;
+    if SURFACES {
+        layers.first = first_layer(pixel - tile.part_origin);
+        layers.passed = passed;
+        layers.distance = layer_distance(layers.first, passed);
     }
-    let first = first_layer(pixel - tile.part_origin);
-    return Layers(first, passed, layer_distance(first, passed));
+    if CUBE {
+        layers.march = march_of(pixel, distance);
+    }
+    return layers;
 }
 
-// Blends the next layer if it lies in front of a distance; true where it does.
+// Blends the next layer if it lies in front of a distance; true where it does. Otherwise samples of a cube up to there.
 fn blend_layer(layers: ptr<function, Layers>, sum: ptr<function, Accumulated>, distance: f32) -> bool {
+    if blend_surface(layers, sum, distance) {
+        return true;
+    }
+    if CUBE {
+        blend_cube_until(layers, sum, distance);
+    }
+    return false;
+}
+
+// Blends the samples of a cube up to a distance.
+fn blend_cube_until(layers: ptr<function, Layers>, sum: ptr<function, Accumulated>, distance: f32) {
+    var march = (*layers).march;
+    blend_cube(&march, sum, distance);
+    (*layers).march = march;
+}
+
+// Blends the next layer if it lies in front of a distance, with the samples of a cube before it; true where it does.
+fn blend_surface(layers: ptr<function, Layers>, sum: ptr<function, Accumulated>, distance: f32) -> bool {
     if !SURFACES || (*layers).distance > distance {
         return false;
+    }
+    if CUBE {
+        blend_cube_until(layers, sum, (*layers).distance);
     }
     let layer = load_layer((*layers).first + (*layers).passed);
     let transmittance = (*sum).transmittance;
@@ -86,6 +115,14 @@ fn blend_layer(layers: ptr<function, Layers>, sum: ptr<function, Accumulated>, d
     (*layers).passed += 1u;
     (*layers).distance = layer_distance((*layers).first, (*layers).passed);
     return true;
+}
+
+// Counts the samples of a cube that a ray has taken since it began or went on.
+fn count_cube(layers: Layers) {
+    if CUBE {
+        count(COUNT_CUBE, layers.march.samples);
+        count(COUNT_WORK, layers.march.samples);
+    }
 }
 
 // A ray up to the first opaque layer, which ends it. Nothing of it is left where that is the hull and nothing can be in

@@ -1,6 +1,7 @@
 //! A case: one grid, its properties and time steps. Values come through [`Source`], on demand.
 
 mod cache;
+mod cube;
 mod difference;
 mod ensemble;
 pub mod load;
@@ -18,6 +19,7 @@ mod wells;
 use std::sync::Arc;
 
 pub use cache::FieldCache;
+pub use cube::{Cube, CubeFile, Cubes, Quantiles, VerticalAxis};
 use strataray_parsers::calendar;
 pub use strataray_parsers::calendar::{date_of, days_from};
 
@@ -276,6 +278,8 @@ pub struct Case {
     pub ensemble: Option<Ensemble>,
     /// The same case in index space.
     pub simbox: Simbox,
+    /// Regular volumes that are shown with it, once read.
+    pub cubes: Arc<Cubes>,
 }
 
 impl Case {
@@ -349,6 +353,7 @@ impl Case {
             minus: Vec::new(),
             ensemble: self.ensemble.clone(),
             simbox: self.simbox.of_same_grid(),
+            cubes: self.cubes.clone(),
         }
     }
 

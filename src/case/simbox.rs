@@ -67,6 +67,7 @@ impl Case {
             over_steps: self.over_steps.clone(),
             minus: self.minus.clone(),
             simbox: Simbox::default(),
+            cubes: self.cubes.clone(),
             ..self.derived_case()
         }
     }

@@ -132,6 +132,12 @@ impl Told<'_> {
             "well": pick.well.as_ref().map(|well| {
                 json!({"name": well.name, "type": well.kind.name(), "open": well.is_open})
             }),
+            "volume": pick.cube.as_ref().map(|cube| json!({
+                "name": cube.name,
+                "unit": cube.unit,
+                "value": cube.value,
+                "map": self.lengths.shown(cube.map.to_array()),
+            })),
             "ray": pick.cells.iter().map(|cell| self.fact_of_cell(cell)).collect::<Vec<_>>(),
             "before": before,
             "behind": behind,
@@ -194,6 +200,11 @@ impl Told<'_> {
         let pick = self.pick;
         if let Some(well) = &pick.well {
             return well.in_words() + "\n";
+        }
+        if let Some(cube) = &pick.cube {
+            let value = format!("{} {} {}", cube.name, cube.value as f32, cube.unit);
+            let place = self.lengths.place(cube.map.to_array());
+            return format!("Volume   {}\n{place}\n", value.trim_end());
         }
         let Some(hit) = &pick.hit else {
             return match pick.cells.len() {

@@ -167,6 +167,7 @@ fn statistics(
         "longest_submission_ms": ms(stats.longest_submission),
         "submissions": stats.submissions,
         "samples": stats.samples,
+        "volume_samples": stats.cube_samples,
         "newton_iterations": stats.newton_iterations,
         "topological_steps": stats.topological_steps,
         "grid_fallbacks": stats.grid_fallbacks,

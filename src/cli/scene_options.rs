@@ -11,9 +11,9 @@ use strataray::scene::lighting::{OcclusionMethod, PRESETS};
 use strataray::scene::read_text;
 use strataray::scene::{
     CameraSpec, FramingCamera, Interpolation, LightMode, LightingSpec, Mode, Projection, Scene,
-    Space, StepSpec, Storage, StrategyKind, Units,
+    Space, StepSpec, Storage, StrategyKind, Units, VolumeSpec,
 };
-use strataray::view::{look, wells};
+use strataray::view::{self, look};
 
 use super::choice::{
     INTERPOLATIONS, LIGHT_MODES, MODES, OCCLUSION_METHODS, SPACES, STORAGES, STRATEGIES, UNITS,
@@ -72,6 +72,10 @@ pub struct SceneOptions {
     /// Vertical exaggeration.
     #[arg(long)]
     exaggeration: Option<f64>,
+    /// A regular volume to draw together with the model, such as seismic: SEG-Y, NRRD, MetaImage, VTK ImageData or raw; in
+    /// place of those of the scene.
+    #[arg(long, value_name = "FILE")]
+    volume: Option<PathBuf>,
     /// Rays along each axis of a pixel, 1 to 8: 2 makes edges smooth and takes four times as long.
     #[arg(long, value_name = "N")]
     supersample: Option<u32>,
@@ -122,7 +126,7 @@ impl SceneOptions {
             written.insert("mode".into(), serde_json::to_value(mode)?);
         }
         let scene = self.over(look::opening(case, &written.into())?)?;
-        for warning in wells::warnings(&scene, case)? {
+        for warning in view::warnings(&scene, case)? {
             reporter.note(&warning);
         }
         Ok(scene)
@@ -180,6 +184,11 @@ impl SceneOptions {
             });
         }
         scene.supersample = self.supersample.unwrap_or(scene.supersample);
+        if let Some(volume) = &self.volume {
+            // The paths of scenes begin at the case, those of options where one is.
+            let path = std::path::absolute(volume)?;
+            scene.volumes = vec![VolumeSpec::of(path)];
+        }
         if self.exaggeration.is_some() {
             scene.vertical_exaggeration = self.exaggeration;
         }

@@ -121,8 +121,17 @@ impl Spaces {
 
     /// The point in world space of an easting, a northing and a depth.
     pub fn world_from_map(&self, map: DVec3) -> DVec3 {
+        map * self.map_scale()
+    }
+
+    /// From eastings, northings and depths to world space.
+    pub fn map_to_world(&self) -> DAffine3 {
+        DAffine3::from_scale(self.map_scale())
+    }
+
+    fn map_scale(&self) -> DVec3 {
         let unit = self.map_unit.map_or(1.0, |unit| unit.length);
-        (map.truncate() * unit).extend(-map.z * self.vertical_exaggeration)
+        DVec3::new(unit, unit, -self.vertical_exaggeration)
     }
 }
 

@@ -13,7 +13,7 @@ const OWN_LIKE: f64 = 20.0;
 /// How much colors count at least: where none is like the pixel's, contributions decide.
 const UNLIKE: f64 = 1e-4;
 
-/// What is seen: a cell, a sheet or a well.
+/// What is seen: a cell, a sheet, a well or a volume beside the model.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 enum Thing {
     Cell(Ijk),
@@ -21,6 +21,8 @@ enum Thing {
     Sheet(usize),
     /// The piece that it is.
     Well(usize),
+    /// A volume beside the model.
+    Cube,
 }
 
 /// How much a thing adds to the color that is seen.
@@ -48,6 +50,7 @@ pub(super) fn seen(
             PieceSource::Cell { ijk, .. } => (Thing::Cell(*ijk), own_color(*ijk)),
             PieceSource::Sheet(_) => (Thing::Sheet(n), None),
             PieceSource::Well(_) => (Thing::Well(n), None),
+            PieceSource::Cube(_) => (Thing::Cube, Some(piece.color)),
             PieceSource::Ghost => continue,
         };
         if *contribution <= 0.0 {

@@ -34,6 +34,8 @@ pub(super) enum PieceSource {
     Ghost,
     /// A well, by its number in the view.
     Well(usize),
+    /// A volume beside the model, with its value there.
+    Cube(f64),
 }
 
 /// What a ray has passed, and the color of its pixel without light and background.
@@ -97,7 +99,7 @@ impl Gathered {
                 PieceSource::Cell { ijk, .. } => (*ijk, *contribution),
                 // It has its own color, but lies on a face of that cell.
                 PieceSource::Sheet(hit) => (hit.cell, 0.0),
-                PieceSource::Ghost | PieceSource::Well(_) => continue,
+                PieceSource::Ghost | PieceSource::Well(_) | PieceSource::Cube(_) => continue,
             };
             let place = *places.entry(ijk).or_insert(cells.len());
             match cells.get_mut(place) {

@@ -11,7 +11,8 @@
 //! `max(exp(-(d / 8)^2 - (e / 20)^2), 0.0001)`, `d` being the CIEDE2000 difference between the color of the sample
 //! and that of the pixel, and `e` the one between the color of the cell's own value and the pixel's. Taken is the
 //! cell that adds most, at the sample that adds most of it. An opaque face or section adds everything, so that it
-//! is taken wherever nothing is before it. A fault's sheet or a well is taken where it adds more than every cell.
+//! is taken wherever nothing is before it. A fault's sheet, a well or a volume beside the model is taken where it adds
+//! more than every cell.
 //!
 //! The cell that contributes most is not always the one that is seen: a pixel of orange has faint blue before
 //! thin orange layers, of which each one adds less than the blue does. Nor is it enough that a color is near:
@@ -28,12 +29,13 @@ use glam::{DVec2, DVec3};
 use crate::case::{Case, CaseError, Measure};
 use crate::model::topology::{Behind, Face};
 use crate::model::{FaceHit, Grid, Ijk, Spaces};
-use crate::render::{RenderError, Renderer, tube_at};
+use crate::render::line_of_sight::Ray;
+use crate::render::{RenderError, Renderer, TubePoint, tube_at};
 use crate::view::View;
 use crate::view::wells::Head;
 
 use gather::{Gathered, Passed, Piece, PieceSource};
-use sight::Sight;
+use sight::{Sight, cube_pieces};
 
 /// Opacity below which a pixel shows nothing but background.
 const LEAST_OPACITY: f64 = 0.02;
@@ -55,6 +57,36 @@ pub struct Pick {
     pub fault: Option<Fault>,
     /// The well that is seen there; then no cell is.
     pub well: Option<Head>,
+    /// The volume beside the model that is seen there; then no cell is.
+    pub cube: Option<CubePoint>,
+}
+
+/// What is seen of a volume beside the model.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CubePoint {
+    /// Name of its values.
+    pub name: String,
+    /// Their unit; empty where there is none.
+    pub unit: String,
+    /// The value at the place that adds most to the pixel.
+    pub value: f64,
+    /// East and north in the unit of the map, and depth in that of the grid.
+    pub map: DVec3,
+}
+
+impl CubePoint {
+    fn of(view: &View, ray: &Ray, piece: &Piece) -> Option<Self> {
+        let (shown, value) = match piece.of {
+            PieceSource::Cube(value) => (view.shown.cube.as_ref()?, value),
+            _ => return None,
+        };
+        Some(Self {
+            name: shown.cube.name.clone(),
+            unit: shown.cube.unit.clone(),
+            value,
+            map: view.world.spaces.map_from_world(ray.at(piece.at)),
+        })
+    }
 }
 
 /// A drawn cell on a ray.
@@ -181,10 +213,10 @@ pub fn pick(
     let tube = tube_at(view, at);
     let head = |number: usize| view.shown.wells.heads.get(number).cloned();
     let Some(line) = renderer.look(view, at)? else {
-        // Beside the model there are the heads of wells.
         return Ok(Pick {
-            well: tube.and_then(|tube| head(tube.well as usize)),
-            ..nothing
+            property: nothing.property,
+            step: nothing.step,
+            ..beside_model(view, at, tube)
         });
     };
     let sight = Sight::new(case, view, &line, tube);
@@ -198,6 +230,7 @@ pub fn pick(
         PieceSource::Well(number) => head(number),
         _ => None,
     });
+    let cube = seen.and_then(|n| CubePoint::of(view, &line.ray, &gathered.pieces[n].0));
     let hit = seen.and_then(|seen| hit(case, view, &sight, &gathered.pieces[seen], &cells));
     let fault = match hit.as_ref().map(|h| &h.part) {
         Some(Part::Fault(fault)) => Some(fault.clone()),
@@ -208,8 +241,30 @@ pub fn pick(
         hit,
         fault,
         well,
+        cube,
         ..nothing
     })
+}
+
+/// What is seen where the ray misses the model: the heads of wells, and what a cube has beyond the model's box.
+fn beside_model(view: &View, at: DVec2, tube: Option<TubePoint>) -> Pick {
+    let ray = Ray::through(view, at);
+    let before = |piece: &Piece| tube.is_none_or(|tube| piece.at < f64::from(tube.distance));
+    let pieces = cube_pieces(view, &ray).into_iter().filter(before);
+    let gathered = Gathered::of(pieces.collect(), view);
+    let head = tube.and_then(|tube| view.shown.wells.heads.get(tube.well as usize));
+    // A well is seen through what covers less than half of it.
+    if let Some(well) = head.filter(|_| gathered.opacity < 0.5) {
+        return Pick {
+            well: Some(well.clone()),
+            ..Pick::default()
+        };
+    }
+    let seen = choice::seen(&gathered, |_| None).filter(|_| gathered.opacity >= LEAST_OPACITY);
+    Pick {
+        cube: seen.and_then(|n| CubePoint::of(view, &ray, &gathered.pieces[n].0)),
+        ..Pick::default()
+    }
 }
 
 /// The cells with their values.
@@ -247,7 +302,7 @@ fn hit(
             let part = Part::Fault(fault_of(case, *hit)?);
             (on_ray(hit.cell)?, part, None, *of_piece)
         }
-        PieceSource::Ghost | PieceSource::Well(_) => return None,
+        PieceSource::Ghost | PieceSource::Well(_) | PieceSource::Cube(_) => return None,
     };
     let world = sight.at(piece.at);
     Some(Hit {

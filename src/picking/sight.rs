@@ -6,6 +6,7 @@ use super::gather::{Piece, PieceSource};
 use super::{Part, fault_of};
 use crate::case::Case;
 use crate::model::Ijk;
+use crate::render::line_of_sight::Ray;
 use crate::render::{LineOfSight, Located, SurfacePoint, TubePoint};
 use crate::view::surfaces::{SHEET_OPACITY, fault_color};
 use crate::view::{View, ghosts};
@@ -19,6 +20,27 @@ pub(super) struct Sight<'a> {
     view: &'a View,
     line: &'a LineOfSight,
     tube: Option<TubePoint>,
+}
+
+/// What a ray meets of a volume beside the model.
+pub(super) fn cube_pieces(view: &View, ray: &Ray) -> Vec<Piece> {
+    let Some(shown) = &view.shown.cube else {
+        return Vec::new();
+    };
+    let step = shown.step(view.sampling.step);
+    let kept = |at: &f64| view.keeps(ray.at(*at));
+    let along = shown.along(ray.origin, ray.direction, view.sampling.step);
+    let piece = |(at, value, presence): (f64, f64, f64)| {
+        let position = shown.transfer.position(value);
+        Piece {
+            at,
+            reach: 0.5 * step,
+            opacity: -presence * (-shown.transfer.extinction(position) * step).exp_m1(),
+            color: shown.transfer.srgb(position),
+            of: PieceSource::Cube(value),
+        }
+    };
+    along.filter(|(at, ..)| kept(at)).map(piece).collect()
 }
 
 impl<'a> Sight<'a> {
@@ -42,7 +64,9 @@ impl<'a> Sight<'a> {
         let surfaces = surfaces.filter_map(|(point, located)| self.surface(*point, *located));
         let samples = self.line.samples.iter();
         let samples = samples.filter_map(|(at, located)| self.sample(*at, *located));
-        let mut pieces: Vec<Piece> = surfaces.chain(samples).chain(self.well()).collect();
+        let cube = cube_pieces(self.view, &self.line.ray);
+        let pieces = surfaces.chain(samples).chain(self.well()).chain(cube);
+        let mut pieces: Vec<Piece> = pieces.collect();
         pieces.sort_by(|a, b| a.at.total_cmp(&b.at));
         pieces
     }

@@ -27,6 +27,8 @@ pub struct Annotations {
     pub property: String,
     /// How its values are written; the unit stands behind the name.
     pub measure: Measure,
+    /// Name over the legend of a volume beside the model, and how its values are written.
+    pub cube: Option<(String, Measure)>,
     /// How lengths are written.
     pub lengths: Lengths,
     /// The legend has a curve of the opacity.
@@ -57,6 +59,10 @@ impl Annotations {
             },
             property: case.heading_of(&view.shown.property),
             measure: case.measure(&view.shown.property, view.notes.units),
+            cube: view.shown.cube.as_ref().map(|shown| {
+                let measure = view.notes.units.of_unit(&shown.cube.unit, "");
+                (shown.cube.name.clone(), measure)
+            }),
             lengths: Lengths::of(case, view.notes.units),
             has_opacity: !view.style.surfaces.solid,
             show_legend: view.notes.has_legend,
@@ -75,6 +81,22 @@ impl Annotations {
             unit,
             width,
         }
+    }
+}
+
+impl Annotations {
+    /// The legend of the colors of a view's cube, beside that of its property.
+    pub fn cube_key<'a>(&'a self, view: &'a View, other: &Key<'a>) -> Option<Key<'a>> {
+        let (shown, (name, measure)) = view.shown.cube.as_deref().zip(self.cube.as_ref())?;
+        Some(Key {
+            transfer: &shown.transfer,
+            beyond: shown.beyond,
+            heading: [name, &measure.unit],
+            measure,
+            has_opacity: true,
+            unit: other.unit,
+            width: other.width,
+        })
     }
 }
 
@@ -148,21 +170,25 @@ impl Layout {
         let width = |text: &str| canvas.text_width(text, unit);
         let annotations = Annotations::of(case, view);
         let key = annotations.key(view, unit, &width);
-        Self::of(size, unit, &annotations.parts(&key, size.y))
+        Self::of(size, unit, &annotations.parts(view, &key, size.y))
     }
 }
 
 impl Annotations {
-    /// The parts of a picture of a height.
-    pub fn parts(&self, key: &Key<'_>, height: f64) -> Parts {
+    /// The parts of a picture of a height: the legend of a cube stands at the left.
+    pub fn parts<'a>(&'a self, view: &'a View, key: &Key<'a>, height: f64) -> Parts {
+        let widths = |key: &Key<'_>| key.widths(0.85 * height);
         Parts {
             title: self.show_legend,
             info: self.info.as_ref().map(|info| match info.is_long() {
                 true => Length::Long,
                 false => Length::Usual,
             }),
-            legend: self.show_legend.then(|| key.widths(0.85 * height)),
-            left_legend: None,
+            legend: self.show_legend.then(|| widths(key)),
+            left_legend: self
+                .cube_key(view, key)
+                .filter(|_| self.show_legend)
+                .map(|key| widths(&key)),
         }
     }
 }
@@ -243,13 +269,17 @@ fn beside_volume(picture: &mut Rgb8, view: &View, layout: &Layout, annotations: 
     if layout.title.is_some() {
         pen.title_until(&annotations.title, &annotations.when);
     }
-    if let Some(strip) = layout.legend {
-        let legend = {
-            let width = |text: &str| pen.canvas.text_width(text, unit);
-            let key = annotations.key(view, unit, &width);
-            key.laid_out(strip, layout.is_narrow)
-        };
-        pen.legend(&legend);
+    let legends = {
+        let width = |text: &str| pen.canvas.text_width(text, unit);
+        let key = annotations.key(view, unit, &width);
+        let cube = annotations.cube_key(view, &key);
+        [(Some(key), layout.legend), (cube, layout.left_legend)].map(|(key, strip)| {
+            let (key, strip) = key.zip(strip)?;
+            Some(key.laid_out(strip, layout.is_narrow))
+        })
+    };
+    for legend in legends.iter().flatten() {
+        pen.legend(legend);
     }
     if let (Some(area), Some(info)) = (layout.info, &annotations.info) {
         draw_info(&mut pen, area, layout, info);
@@ -340,6 +370,7 @@ pub(super) mod tests {
                 connections: std::sync::Arc::default(),
                 named_faults: std::sync::Arc::default(),
                 chosen_faults: None,
+                cube: None,
                 clip: Vec::new(),
             },
             notes: Notes {
@@ -376,7 +407,7 @@ pub(super) mod tests {
         let canvas = Canvas::new(size, &mut []);
         let width = |text: &str| canvas.text_width(text, unit);
         let key = notes.key(view, unit, &width);
-        let parts = notes.parts(&key, f64::from(size[1]));
+        let parts = notes.parts(view, &key, f64::from(size[1]));
         Layout::of(DVec2::from_array(size.map(f64::from)), unit, &parts)
     }
 

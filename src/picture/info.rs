@@ -64,6 +64,13 @@ impl Info {
                 (13, "not as in the deck".into()),
             ]));
         }
+        if let Some(shown) = &view.shown.cube {
+            let name = &shown.cube.name;
+            items.push(Item::of([
+                (10, format!("beside it {name}, not lit")),
+                (11, format!("beside it {name}")),
+            ]));
+        }
         let factor = format!("{:.2}", view.world.vertical_exaggeration);
         let factor = shortened(&factor);
         let stretched = match view.world.space {

@@ -21,7 +21,8 @@ pub struct Layout {
     pub info_lines: usize,
     /// The legend, at the right.
     pub legend: Option<Area>,
-    /// That of another picture in the same place, of which the left part is seen, at the left.
+    /// That of a volume beside the model, or of another picture in the same place, of which the left part is seen; at the
+    /// left.
     pub left_legend: Option<Area>,
     /// Legends have no heading and little more than their ends.
     pub is_narrow: bool,
@@ -40,7 +41,7 @@ pub struct Parts {
     pub info: Option<Length>,
     /// The legend.
     pub legend: Option<LegendWidths>,
-    /// That of another picture in the same place.
+    /// That of a volume beside the model, or of another picture in the same place.
     pub left_legend: Option<LegendWidths>,
 }
 

@@ -144,6 +144,7 @@ fn view(grid: &Grid, field: CellField, extinction: f64, sampling_step: f64) -> V
             connections: std::sync::Arc::default(),
             named_faults: std::sync::Arc::default(),
             chosen_faults: None,
+            cube: None,
             clip: Vec::new(),
             cells: ShownCells::new(
                 field.into(),

@@ -5,8 +5,10 @@
 //! A light volume is made anew with the extinction, and where its own emitter has changed; what is compiled, where
 //! its constants have.
 
+use std::sync::Arc;
+
 use crate::scene::{Hull, Storage};
-use crate::view::View;
+use crate::view::{ShownCube, View};
 
 /// Numbers that count up with each change of what a view shows of one grid, and never fall: what a canceled update
 /// has dropped is stale for good.
@@ -29,6 +31,10 @@ pub struct Revisions {
     pub extinction: u64,
     /// Slopes of values at points of space. The volume of gradients.
     pub gradients: u64,
+    /// Values of a cube beside the model. Its voxels.
+    pub cube: u64,
+    /// How that looks and where it is. The table of its transfer function.
+    pub cube_look: u64,
 }
 
 /// Follows the views of one grid.
@@ -57,7 +63,17 @@ impl RevisionCounter {
         let occluders = changes(|a, b| occluders(a) != occluders(b));
         let extinction = values || space || opacities || occluders;
         let gradients = values || space || changes(|a, b| range(a) != range(b));
+        let cube = changes(|a, b| {
+            let of = |view: &View| view.shown.cube.as_ref().map(|s| s.cube.clone());
+            match (of(a), of(b)) {
+                (Some(a), Some(b)) => !Arc::ptr_eq(&a, &b),
+                (a, b) => a.is_some() != b.is_some(),
+            }
+        });
+        let cube_look = grid || cube || changes(|a, b| cube_look(a) != cube_look(b));
         for (revision, changes) in [
+            (&mut self.now.cube, cube),
+            (&mut self.now.cube_look, cube_look),
             (&mut self.now.grid, grid),
             (&mut self.now.drawn, drawn),
             (&mut self.now.values, values),
@@ -123,6 +139,24 @@ fn occluders(view: &View) -> impl PartialEq {
 fn opacities(view: &View) -> impl PartialEq {
     let transfer = &view.style.transfer;
     (&transfer.opacity, transfer.reference_length, range(view))
+}
+
+/// What executors read of a cube beside its values, and of the view for it.
+fn cube_look(view: &View) -> impl PartialEq {
+    let look = |shown: &Arc<ShownCube>| {
+        (
+            shown.transfer.clone(),
+            shown.world_from_sample,
+            shown.crop,
+            shown.step(view.sampling.step),
+        )
+    };
+    let shown = view.shown.cube.as_ref().map(look);
+    (
+        shown,
+        view.style.blending,
+        view.world.spaces.world_from_grid,
+    )
 }
 
 fn range(view: &View) -> impl PartialEq {

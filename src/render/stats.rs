@@ -92,6 +92,8 @@ pub struct FrameStats {
     pub recovered_rays: u64,
     /// LIBC: rays that could not be set right.
     pub lost_rays: u64,
+    /// Samples of a volume beside the model, with a value or without.
+    pub cube_samples: u64,
     /// Loop iterations of all rays and surface points, about.
     pub work: u64,
     /// Times that a ray paused within what it was doing.
@@ -150,6 +152,8 @@ pub struct DeviceBytes {
     pub resampled: u64,
     /// Light and occlusion volumes.
     pub lighting: u64,
+    /// A volume beside the model.
+    pub cube: u64,
     /// Images.
     pub targets: u64,
 }
@@ -163,9 +167,10 @@ impl DeviceBytes {
             property,
             resampled,
             lighting,
+            cube,
             targets,
         } = self;
-        geometry + acceleration + property + resampled + lighting + targets
+        geometry + acceleration + property + resampled + lighting + cube + targets
     }
 }
 
@@ -179,6 +184,7 @@ impl std::ops::Add for DeviceBytes {
             property: self.property + other.property,
             resampled: self.resampled + other.resampled,
             lighting: self.lighting + other.lighting,
+            cube: self.cube + other.cube,
             targets: self.targets + other.targets,
         }
     }

@@ -12,6 +12,7 @@ mod settings;
 mod strategy;
 mod surfaces;
 pub mod transfer;
+mod volumes;
 
 use serde::{Deserialize, Serialize};
 
@@ -27,6 +28,7 @@ pub use surfaces::{Hull, ShownFaults, ShownWells};
 pub use transfer::{
     ColorSpec, Coloring, FoundOpacity, OpacitySpec, OwnRange, RangeSpec, ScaleSpec, TransferSpec,
 };
+pub use volumes::{CropSpec, VerticalSpec, VolumeSpec};
 
 use crate::image::Blending;
 
@@ -91,6 +93,9 @@ pub struct Scene {
     pub filter: Filter,
     /// Clip planes; kept is what all of them keep.
     pub clip: Vec<ClipSpec>,
+    /// Regular volumes that are drawn together with the model; one of them at a time.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub volumes: Vec<VolumeSpec>,
     /// What is drawn beside the volume.
     pub show: Show,
 }
@@ -124,6 +129,7 @@ impl Default for Scene {
             grids: Grids::default(),
             filter: Filter::default(),
             clip: Vec::new(),
+            volumes: Vec::new(),
             show: Show::default(),
         }
     }

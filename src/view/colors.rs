@@ -11,7 +11,7 @@ use crate::model::CellField;
 use crate::scene::transfer::BANDS;
 use crate::scene::{
     ColorSpec, Coloring, FoundOpacity, Interpolation, Mode, OpacitySpec, OwnRange, RangeSpec,
-    ScaleSpec, Scene,
+    ScaleSpec, Scene, TransferSpec,
 };
 use crate::transfer::function::{MAX_OPACITY, color_at};
 use crate::transfer::kinds::Quantity;
@@ -60,7 +60,7 @@ pub(super) fn resolve(
         (_, ScaleSpec::Linear) => (Scale::Linear, ends(asked, field)?.0),
         (_, ScaleSpec::Log) => (Scale::Log, log_range(asked, field)?),
     };
-    let (color, bands) = colors(asked.scene, &scale)?;
+    let (color, bands) = colors(&asked.scene.transfer, &scale)?;
     let opacity = match asked.scene.mode {
         // What stands before light is solid.
         Mode::Cells => Opacity {
@@ -181,8 +181,10 @@ fn categories(
 }
 
 /// The color curve, and the number of equal parts that have one color each.
-fn colors(scene: &Scene, scale: &Scale) -> Result<(Curve<[f64; 3]>, Option<usize>), SceneError> {
-    let spec = &scene.transfer;
+pub(super) fn colors(
+    spec: &TransferSpec,
+    scale: &Scale,
+) -> Result<(Curve<[f64; 3]>, Option<usize>), SceneError> {
     let map = color_map(&spec.color)?;
     // At positions from 0 to 1, both included.
     let spread = |count: usize| {
@@ -234,7 +236,7 @@ fn rises<T>(curve: &Curve<T>) -> bool {
 }
 
 /// Where a scene has no opacity: rising with the value, or the same for all categories.
-fn default_opacity(scale: &Scale) -> Curve<f64> {
+pub(super) fn default_opacity(scale: &Scale) -> Curve<f64> {
     match scale {
         Scale::Categories(_) => vec![(0.0, 0.3), (1.0, 0.3)],
         _ => vec![(0.0, 0.02), (0.5, 0.1), (1.0, 0.5)],
@@ -252,9 +254,7 @@ fn opacity(
     };
     let spec = &asked.scene.transfer;
     let found = match &spec.opacity {
-        Some(OpacitySpec::Points(points)) => {
-            per_edge(points.iter().map(|p| (p[0], p[1])).collect())
-        }
+        Some(OpacitySpec::Points(points)) => per_edge(checked(points)?),
         None => filtered(asked, per_edge(default_opacity(scale))),
         Some(OpacitySpec::Found(FoundOpacity::Automatic)) => {
             let found = automatic(asked, scale, range)?;
@@ -272,9 +272,14 @@ fn opacity(
             )
         }
     };
-    let points = &found.curve;
-    match rises(points) && points.iter().all(|p| (0.0..=1.0).contains(&p.1)) {
-        true => Ok(found),
+    Ok(found)
+}
+
+/// An opacity that was chosen by hand.
+pub(super) fn checked(points: &[[f64; 2]]) -> Result<Curve<f64>, SceneError> {
+    let curve: Curve<f64> = points.iter().map(|p| (p[0], p[1])).collect();
+    match rises(&curve) && curve.iter().all(|p| (0.0..=1.0).contains(&p.1)) {
+        true => Ok(curve),
         false => Err(wrong(
             "transfer.opacity",
             "needs rising positions and opacities, both from 0 to 1",

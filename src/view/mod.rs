@@ -4,6 +4,7 @@ pub mod bounds;
 pub mod camera;
 pub mod clip;
 mod colors;
+pub mod cube;
 mod error;
 pub mod facts;
 mod filter;
@@ -28,13 +29,14 @@ use rayon::prelude::*;
 pub use bounds::model_corners;
 pub use camera::Camera;
 pub use clip::ClipPlane;
+pub use cube::ShownCube;
 pub use error::SceneError;
 pub use facts::Facts;
 pub use framing::{Direction, Extents, Subject};
 pub use half_turns::{NamedView, TurnAxis, half_turns};
 pub use lighting::Lighting;
 pub use look::default_property;
-pub use resolve::resolve;
+pub use resolve::{resolve, warnings};
 pub use sequence::{Sequence, Turn};
 pub use surfaces::Surfaces;
 pub use wells::Wells;
@@ -43,13 +45,14 @@ use crate::case::Units;
 use crate::image::Blending;
 use crate::model::{CellField, FaultFaces, Grid, Space, Spaces};
 use crate::scene::{
-    CameraSpec, Interpolation, LibcSettings, PltsSettings, SrgSettings, Storage, StrategyKind,
+    CameraSpec, Integration, Interpolation, LibcSettings, PltsSettings, SrgSettings, Storage,
+    StrategyKind,
 };
 use crate::transfer::TransferFunction;
 use bounds::box_corners;
 use ghosts::Ghosts;
 pub use grids::ShownGrids;
-use resolve::{camera as placed, checked_size};
+use resolve::{Framed, camera as placed, checked_size};
 
 /// All that a renderer needs beside the grid: what every strategy and the reference integrate.
 ///
@@ -130,6 +133,8 @@ pub struct Shown {
     /// By number of the named faults: true where the fault is drawn, of which those without a name are none;
     /// all faults where absent.
     pub chosen_faults: Option<Arc<[bool]>>,
+    /// A regular volume that is drawn together with the cells.
+    pub cube: Option<Arc<ShownCube>>,
 }
 
 /// How what is shown looks.
@@ -168,6 +173,15 @@ pub struct Sampling {
     pub srg: SrgSettings,
     /// How depths and values are held.
     pub storage: Storage,
+}
+
+impl Sampling {
+    /// The same with samples of cells, no segments.
+    fn by_samples(mut self) -> Self {
+        self.libc.integration = Integration::Samples;
+        self.plts.integration = Integration::Samples;
+        self
+    }
 }
 
 /// What is written beside and over an image.
@@ -256,8 +270,12 @@ impl View {
     /// When camera or size are not allowed.
     pub fn seen_from(&self, camera_spec: &CameraSpec, size: [u32; 2]) -> Result<Self, SceneError> {
         let size = checked_size(size, self.sampling.supersample)?;
-        let of = (&*self.world.subject, &self.world.corners);
-        let camera = placed(camera_spec, size, of, self.notes.has_box)?;
+        let of = Framed {
+            subject: &self.world.subject,
+            corners: &self.world.corners,
+            cube: self.shown.cube.as_deref(),
+        };
+        let camera = placed(camera_spec, size, &of, self.notes.has_box)?;
         Ok(Self {
             size,
             camera,

@@ -17,8 +17,8 @@ use super::step::step_of;
 use super::voxels::Shape;
 use super::wells::Measures;
 use super::{
-    Camera, ClipPlane, Notes, Sampling, Shown, ShownCells, Style, Surfaces, View, World, clip,
-    filter, surfaces, wells,
+    Camera, ClipPlane, Notes, Sampling, Shown, ShownCells, ShownCube, Style, Surfaces, View, World,
+    clip, cube, filter, surfaces, wells,
 };
 use crate::case::Case;
 use crate::model::{CellField, Dims, Grid, Ijk, Space, Spaces};
@@ -75,15 +75,20 @@ pub(super) fn resolve_over(
     let world_bounds = bounds_of(&box_corners);
     let wells = wells::shown(scene, case, &Measures::of(&spaces, &box_corners, edges))?;
     let size = checked_size(scene.size, scene.supersample)?;
+    let sampling = sampling(scene, case.grid.main_dims(), edges, world_bounds)?;
+    let cube = cube::shown(scene, case, &spaces, sampling.step)?;
+    let framed = Framed {
+        subject: &subject,
+        corners: &box_corners,
+        cube: cube.as_deref(),
+    };
     Ok(View {
         size,
-        camera: camera(
-            &scene.camera,
-            size,
-            (&subject, &box_corners),
-            scene.show.r#box,
-        )?,
-        sampling: sampling(scene, case.grid.main_dims(), edges, world_bounds)?,
+        camera: camera(&scene.camera, size, &framed, scene.show.r#box)?,
+        sampling: match cube {
+            Some(_) => sampling.by_samples(),
+            None => sampling,
+        },
         style: Style {
             background: background(scene)?,
             transfer,
@@ -107,6 +112,7 @@ pub(super) fn resolve_over(
             wells,
             named_faults: case.fault_faces.clone(),
             chosen_faults: surfaces::chosen(&scene.show.faults, case)?,
+            cube,
         },
         world: World {
             spaces,
@@ -126,8 +132,18 @@ fn notes(scene: &Scene, case: &Case, facts: Option<Arc<Facts>>) -> Result<Notes,
         has_legend: scene.show.legend,
         facts,
         units: scene.units.into(),
-        warnings: wells::warnings(scene, case)?,
+        warnings: warnings(scene, case)?,
     })
+}
+
+/// What a scene asks for in vain, and what was guessed, one sentence each.
+///
+/// # Errors
+/// When a file cannot be read.
+pub fn warnings(scene: &Scene, case: &Case) -> Result<Vec<String>, SceneError> {
+    let mut warnings = wells::warnings(scene, case)?;
+    warnings.extend(cube::warnings(scene, case)?);
+    Ok(warnings)
 }
 
 fn background(scene: &Scene) -> Result<[f64; 3], SceneError> {
@@ -346,19 +362,35 @@ fn connections(case: &Case, spaces: &Spaces, drawn: &[bool]) -> Vec<[DVec3; 2]> 
     case.connections.iter().filter_map(ends).collect()
 }
 
-/// The camera that a scene asks for, given what it frames and the corners of the model's box.
+/// What a camera frames, and what must lie before it.
+pub(super) struct Framed<'a> {
+    /// What it frames.
+    pub subject: &'a Subject,
+    /// Corners of the model's box.
+    pub corners: &'a [DVec3; 8],
+    /// What is drawn beside the model.
+    pub cube: Option<&'a ShownCube>,
+}
+
+/// The camera that a scene asks for.
 pub(super) fn camera(
     spec: &CameraSpec,
     size: [u32; 2],
-    (subject, corners): (&Subject, &[DVec3; 8]),
+    framed: &Framed<'_>,
     has_box: bool,
 ) -> Result<Camera, SceneError> {
+    let subject = framed.subject;
     let aspect = f64::from(size[0]) / f64::from(size[1]);
     let framing = |from, zoom| -> Result<Option<Camera>, SceneError> {
         let zoom = positive("camera.zoom", zoom)?;
         let camera = subject.camera(from, zoom, spec.projection(), aspect, has_box);
-        // The plane of a parallel one stays before the whole model, of which only a part may be framed.
-        Ok(camera.map(|c| c.before(corners)))
+        // The plane of a parallel one stays before all that is drawn, of which only a part may be framed.
+        let cube = framed.cube.map(ShownCube::corners);
+        let before = |c: Camera| {
+            cube.iter()
+                .fold(c.before(framed.corners), |c, all| c.before(all))
+        };
+        Ok(camera.map(before))
     };
     let camera = match spec {
         CameraSpec::Explicit(c) => {

@@ -9,7 +9,7 @@ use glam::DVec2;
 use super::overlay::{TEXT, ink, place, size, width, write};
 use crate::case::Case;
 use crate::picture::{
-    Annotations, Area, GROUND, Info, LINE, Layout, Legend, LegendWidths, Length, Parts, cut,
+    Annotations, Area, GROUND, Info, Key, LINE, Layout, Legend, LegendWidths, Length, Parts, cut,
 };
 use crate::scene::Show;
 use crate::view::View;
@@ -62,7 +62,7 @@ pub fn laid_out(
         let width = |text: &str| width(painter, text);
         let key = annotations.key(view, UNIT, &width);
         let height = places[0].map_or(0.0, |p| f64::from(p.height()));
-        Some(annotations.parts(&key, height))
+        Some(annotations.parts(view, &key, height))
     });
     let usual = Parts {
         title: show.legend,
@@ -114,8 +114,16 @@ pub fn draw(painter: &Painter, page: &Page, shown: &ShownView, title: Option<&st
     let is_said = own.split("   ").all(|fact| title.contains(fact));
     let right = if is_said { "" } else { own };
     titles(painter, page, view, left, right);
-    if let Some(strip) = page.layout.legend {
-        legend(painter, page, strip, view, &annotations);
+    let width = |text: &str| width(painter, text);
+    let key = annotations.key(view, UNIT, &width);
+    let cube = annotations.cube_key(view, &key);
+    for (key, strip) in [
+        (Some(&key), page.layout.legend),
+        (cube.as_ref(), page.layout.left_legend),
+    ] {
+        if let (Some(key), Some(strip)) = (key, strip) {
+            legend(painter, page, strip, view, key);
+        }
     }
     if let (Some([low, high]), Some(info)) = (page.layout.info, &annotations.info) {
         facts(painter, page, view, [low.x, high.x], info);
@@ -136,7 +144,10 @@ pub fn draw_shared(painter: &Painter, page: &Page, shown: [&ShownView; 2], own: 
     let strips = [page.layout.left_legend, page.layout.legend];
     for (n, strip) in strips.into_iter().enumerate() {
         if let Some(strip) = strip {
-            legend(painter, page, strip, &shown[n].0, &annotations[n]);
+            let width = |text: &str| width(painter, text);
+            let view = &shown[n].0;
+            let key = annotations[n].key(view, UNIT, &width);
+            legend(painter, page, strip, view, &key);
         }
     }
     if let Some([low, high]) = page.layout.info {
@@ -212,9 +223,7 @@ fn facts(painter: &Painter, page: &Page, view: &View, [left, right]: [f64; 2], i
     }
 }
 
-fn legend(painter: &Painter, page: &Page, strip: Area, view: &View, annotations: &Annotations) {
-    let width = |text: &str| width(painter, text);
-    let key = annotations.key(view, UNIT, &width);
+fn legend(painter: &Painter, page: &Page, strip: Area, view: &View, key: &Key<'_>) {
     draw_legend(
         painter,
         page.place,

@@ -284,6 +284,7 @@ fn twins() -> BTreeMap<String, Number> {
         ("COUNT_SECTIONS", layout::COUNT_SECTIONS),
         ("COUNT_CROSSINGS", layout::COUNT_CROSSINGS),
         ("COUNT_LOST_SAMPLES", layout::COUNT_LOST_SAMPLES),
+        ("COUNT_CUBE", layout::COUNT_CUBE),
         ("EMITTER_DIRECTIONAL", layout::EMITTER_DIRECTIONAL),
         ("EMITTER_POINT", layout::EMITTER_POINT),
         ("EMITTER_SPOT", layout::EMITTER_SPOT),

@@ -32,6 +32,7 @@ mod films;
 mod filters;
 mod first_pictures;
 mod framing;
+mod hybrid;
 mod layout;
 mod libc;
 mod light_updates;

@@ -1,5 +1,6 @@
 //! From files to a [`Case`]: the one module that knows both the file formats and the model.
 
+pub mod cube;
 mod grids;
 mod local;
 mod outliers;
@@ -342,6 +343,7 @@ fn build(mut loaded: Loaded, read: Read<'_>, mut about: About, warnings: &Warnin
         minus: Vec::new(),
         ensemble: None,
         simbox: Simbox::default(),
+        cubes: Arc::default(),
     }
 }
 

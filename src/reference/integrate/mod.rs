@@ -1,6 +1,7 @@
 //! The emission-absorption integral along one ray.
 
 mod cone;
+mod cube;
 mod lighting;
 mod surfaces;
 mod tubes;
@@ -8,6 +9,7 @@ mod tubes;
 use glam::DVec3;
 use rayon::prelude::*;
 
+use super::integrate::cube::CubeOnRay;
 use super::integrate::surfaces::SurfaceFaces;
 use super::locate::{Located, Locator};
 use crate::model::corner_point::weights;
@@ -111,16 +113,21 @@ impl<'a> Integrator<'a> {
     /// Red, green, blue, as they are blended, each times alpha, and alpha of what a ray passes through.
     pub fn ray(&self, ray: Ray) -> [f64; 4] {
         let step = self.view.sampling.step;
-        // Beside the box there are the heads of wells.
+        // Beside the box there are the heads of wells, and what a cube has beyond it.
         let [enter, leave] = match ray.within(self.view.world.bounds) {
             Some(span) => span,
-            None if self.view.style.surfaces.wells => [0.0, f64::NEG_INFINITY],
-            None => return [0.0; 4],
+            None => [0.0, f64::NEG_INFINITY],
         };
         if let Some(rgb) = self.section(ray, [enter, leave]) {
             return [rgb[0], rgb[1], rgb[2], 1.0];
         }
         let mut layers = self.layers(ray).into_iter().peekable();
+        let mut cube = CubeOnRay::new(self, ray);
+        let mut cube_until = |distance: f64, sum: &mut Sum| {
+            if let Some(cube) = &mut cube {
+                cube.add_until(distance, sum);
+            }
+        };
         let mut sum = Sum {
             color: DVec3::ZERO,
             transmittance: 1.0,
@@ -136,8 +143,10 @@ impl<'a> Integrator<'a> {
         {
             let distance = (number + 0.5) * step;
             while let Some(layer) = layers.next_if(|layer| layer.distance <= distance) {
+                cube_until(layer.distance, &mut sum);
                 sum.add(layer.color, layer.alpha);
             }
+            cube_until(distance, &mut sum);
             let position = ray.origin + distance * ray.direction;
             let absorbing = self.absorbing(position);
             let seen = absorbing.filter(|(sample, _)| !is_solid || sample.value.is_none());
@@ -148,8 +157,10 @@ impl<'a> Integrator<'a> {
             number += 1.0;
         }
         for layer in layers {
+            cube_until(layer.distance, &mut sum);
             sum.add(layer.color, layer.alpha);
         }
+        cube_until(f64::INFINITY, &mut sum);
         let [red, green, blue] = sum.color.to_array();
         [red, green, blue, 1.0 - sum.transmittance]
     }

@@ -166,6 +166,12 @@ impl Frame {
         }
     }
 
+    /// Distances between which clip planes keep a pixel's ray.
+    pub fn kept(&self, ray: &PixelRay) -> [f32; 2] {
+        let Clipped { enter, leave, .. } = self.clipped(ray.origin, ray.direction);
+        [enter, leave]
+    }
+
     /// What clip planes leave of a ray.
     fn clipped(&self, origin: Vec3A, direction: Vec3A) -> Clipped {
         let mut clipped = Clipped {

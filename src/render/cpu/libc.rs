@@ -331,7 +331,7 @@ impl Walk<'_> {
         tally: &mut Tally,
     ) {
         let (scene, ray) = (self.way.scene, self.way.ray);
-        layers.blend_until(sum, 0.5 * (self.t + t.min(ray.leave)));
+        layers.blend_surfaces_until(scene, sum, 0.5 * (self.t + t.min(ray.leave)));
         let is_ghost = scene.grid.is_ghost(self.column, self.layer);
         if self.way.settings.integration == Integration::Segments {
             let from = self.t.max(self.done).max(ray.enter);

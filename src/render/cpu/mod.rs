@@ -8,6 +8,7 @@ mod bricks;
 mod cell;
 mod cone_rays;
 mod cones;
+mod cube;
 mod each;
 mod edges;
 mod executor;

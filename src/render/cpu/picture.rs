@@ -2,6 +2,7 @@
 
 use std::time::{Duration, Instant};
 
+use glam::Vec4;
 use rayon::prelude::*;
 
 use super::boundary::Boundary;
@@ -199,7 +200,8 @@ impl Picture<'_> {
         tally: &mut Tally,
     ) -> [f32; 4] {
         tally.rays += 1;
-        if pixel.is_empty() {
+        let is_empty = pixel.is_empty();
+        if is_empty && self.scene.cube.is_none() {
             return [0.0; 4];
         }
         let scene = self.scene;
@@ -212,10 +214,14 @@ impl Picture<'_> {
         let whole = scene.frame.ray_of(pixel.at);
         let surfaces = (pixel.surfaces, pixel.tube);
         painter.find(scene, &through, surfaces, layers, tally);
-        let mut sum = Accumulated::of(section_color(scene, &whole, tally));
+        let section = match is_empty {
+            true => Vec4::ZERO,
+            false => section_color(scene, &whole, tally),
+        };
+        let mut sum = Accumulated::of(section);
         let ray = layers.before_opaque(scene, &whole);
         match self.strategy {
-            _ if !scene.transfer.is_open(&sum) => {}
+            _ if is_empty || !scene.transfer.is_open(&sum) => {}
             Strategy::Solid => {}
             Strategy::Plts => {
                 let inside = scene.frame.is_in_box(through.origin);
@@ -258,7 +264,8 @@ impl Picture<'_> {
                 }
             }
         }
-        layers.blend_rest(&mut sum);
+        layers.blend_rest(scene, &mut sum);
+        tally.cube_samples += layers.cube_samples;
         sum.pixel()
     }
 }

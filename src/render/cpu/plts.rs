@@ -112,7 +112,7 @@ impl Way<'_> {
         let Self { scene, ray, .. } = *self;
         let step = scene.frame.numbers.step;
         let [from, to] = [way.first, to].map(|n| ray.distance(step, n));
-        layers.blend_until(sum, 0.5 * (from + to));
+        layers.blend_until(scene, sum, 0.5 * (from + to));
         if to <= from {
             return;
         }

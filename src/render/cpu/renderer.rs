@@ -6,6 +6,7 @@ use std::time::Instant;
 use glam::{DVec3, Vec3A, Vec4};
 use rayon::prelude::*;
 
+use super::cube::{Cube, CubeVoxels, voxels};
 use super::frame::Frame as FrameOfRays;
 use super::grid::Grid;
 use super::illumination::{Illumination, Source};
@@ -20,6 +21,7 @@ use super::transfer::{Tables, Transfer};
 use crate::model::{Grid as Model, Ijk};
 use crate::render::job::{Progress, Work};
 use crate::render::line_of_sight::SurfaceTree;
+use crate::render::plan::cube::{CubeNumbers, cube_range, cube_table};
 use crate::render::plan::faces::face_numbers;
 use crate::render::plan::frame::{frame_uniform, ghost};
 use crate::render::plan::visible::{can_be_passed, visible_faces};
@@ -48,6 +50,8 @@ pub struct CpuRenderer {
     /// The visible ones of them, where rays do not meet all.
     visible: Kept<Option<Visible>>,
     surfaces: Kept<SurfaceFaces>,
+    cube: Kept<CubeVoxels>,
+    cube_tables: Kept<Tables>,
     /// Faces of surfaces that were looked at.
     surface_tree: SurfaceTree,
 }
@@ -84,6 +88,8 @@ impl CpuRenderer {
             boundary: Kept::default(),
             visible: Kept::default(),
             surfaces: Kept::default(),
+            cube: Kept::default(),
+            cube_tables: Kept::default(),
             surface_tree: SurfaceTree::default(),
         })
     }
@@ -127,6 +133,25 @@ impl CpuRenderer {
         let surfaces = self
             .surfaces
             .update(now.surfaces, || SurfaceFaces::new(model, view))?;
+        let cube = match &view.shown.cube {
+            Some(shown) => Some(Cube {
+                numbers: CubeNumbers::new(
+                    &self.grid.compact.facts,
+                    view,
+                    shown,
+                    cube_range(&shown.cube),
+                ),
+                voxels: self.cube.update(now.cube, || Ok(voxels(&shown.cube)))?,
+                tables: self
+                    .cube_tables
+                    .update(now.cube_look, || Ok(Tables::of(cube_table(view, shown))))?,
+            }),
+            None => {
+                self.cube.forget();
+                None
+            }
+        };
+        let cube_bytes = cube.as_ref().map_or(0, |cube| cube.voxels.bytes());
         let scene = Scene {
             frame: FrameOfRays::new(frame_uniform(&self.grid.compact.facts, view)),
             grid: &self.grid,
@@ -135,6 +160,7 @@ impl CpuRenderer {
             ghost: Vec4::from(ghost(view)),
             shading: Shading::new(&view.style.lighting, self.light.light()),
             surfaces: view.style.surfaces,
+            cube,
         };
         let prepare = start.elapsed();
         let picture = Picture {
@@ -157,6 +183,7 @@ impl CpuRenderer {
                 + DeviceBytes {
                     geometry: 4 * lists as u64,
                     lighting: self.light.bytes(),
+                    cube: cube_bytes,
                     resampled: match strategy {
                         Strategy::Srg => self.srg.bytes(),
                         _ => 0,

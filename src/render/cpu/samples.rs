@@ -61,12 +61,12 @@ impl Samples<'_> {
         let entry = scene.shading.shade_entry(entry, ray.base, is_ghost);
         let mut done = 0.0;
         while done < self.count && scene.transfer.is_open(sum) {
-            layers.blend_until(sum, self.distance(done));
+            layers.blend_until(scene, sum, self.distance(done));
             // Up to the next surface.
             let before = |distance: f32| {
                 (distance / scene.frame.numbers.step - 0.5 - ray.first).floor() + 1.0
             };
-            let end = layers.next().map_or(f32::MAX, |d| before(d) - self.first);
+            let end = (before(layers.next()) - self.first).min(f32::MAX);
             let part = (self.count - done).min((end - done).max(1.0));
             done += scene.transfer.accumulate_many(sum, entry, part);
         }
@@ -91,7 +91,7 @@ impl Samples<'_> {
                     return done;
                 }
                 let distance = self.distance(done);
-                layers.blend_until(sum, distance);
+                layers.blend_until(scene, sum, distance);
                 if entry.w > 0.0 {
                     let color = Vec3A::from_vec4(entry);
                     let at = [distance, scene.frame.numbers.step];

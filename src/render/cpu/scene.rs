@@ -2,6 +2,7 @@
 
 use glam::Vec4;
 
+use super::cube::Cube;
 use super::frame::Frame;
 use super::grid::Grid;
 use super::shading::Shading;
@@ -25,6 +26,8 @@ pub struct Scene<'a> {
     pub shading: Shading<'a>,
     /// Which surfaces are shown.
     pub surfaces: Surfaces,
+    /// What is shown beside the model.
+    pub cube: Option<Cube<'a>>,
 }
 
 impl Scene<'_> {

@@ -255,7 +255,7 @@ pub fn cast(way: &Way<'_>, layers: &mut Layers, sum: &mut Accumulated, tally: &m
         let four = volume.four(scene, places, &stretch, taken);
         for (lane, middle) in middles.to_array().into_iter().enumerate().take(count) {
             let distance = ray.distance(scene.frame.numbers.step, middle);
-            layers.blend_until(sum, distance);
+            layers.blend_until(scene, sum, distance);
             let sample = four.sample(lane);
             let met = u64::from(sample.is_met);
             tally.samples += met;

@@ -4,6 +4,7 @@
 
 use glam::{Vec2, Vec3A};
 
+use super::cube::{Cube, March};
 use super::each::Each;
 use super::edges::with_edges;
 use super::facing::{FacePlace, column_behind, face_corner};
@@ -84,11 +85,17 @@ pub struct Layer {
     opacity: f32,
 }
 
-/// The layers of a ray, nearest first, and how many of them are blended.
+/// The layers of a ray, nearest first, and how many of them are blended; and the samples of a cube, which lie between
+/// them and those of the cells.
 #[derive(Debug, Default)]
 pub struct Layers {
     layers: Vec<Layer>,
     passed: usize,
+    march: Option<March>,
+    /// Distance of what is next.
+    next: f32,
+    /// Samples of the cube that are blended.
+    pub cube_samples: u64,
 }
 
 /// A point of a well, which carries no number, as ghosts do.
@@ -110,25 +117,73 @@ impl Layers {
         self.layers.insert(at, layer);
     }
 
-    /// Distance of the next one.
-    pub fn next(&self) -> Option<f32> {
-        self.layers.get(self.passed).map(|layer| layer.distance)
+    /// Begins with those that were found of a ray.
+    pub fn begin(&mut self, scene: &Scene<'_>, ray: &PixelRay) {
+        let march = |cube: &Cube<'_>| cube.march(&scene.frame, ray);
+        self.march = scene.cube.as_ref().and_then(march);
+        self.cube_samples = 0;
+        self.next = self.after(scene);
     }
 
-    /// Blends those in front of a distance.
-    pub fn blend_until(&mut self, sum: &mut Accumulated, distance: f32) {
-        while let Some(layer) = self.layers.get(self.passed) {
-            if layer.distance > distance {
-                break;
-            }
-            sum.blend(layer.color, layer.opacity);
-            self.passed += 1;
+    /// Distance of the next one, or of the next sample of the cube.
+    #[inline]
+    pub fn next(&self) -> f32 {
+        self.next
+    }
+
+    /// Blends what lies in front of a distance.
+    #[inline]
+    pub fn blend_until(&mut self, scene: &Scene<'_>, sum: &mut Accumulated, distance: f32) {
+        if self.next <= distance {
+            self.advance(scene, sum, distance);
         }
     }
 
-    /// Blends all that are left.
-    pub fn blend_rest(&mut self, sum: &mut Accumulated) {
-        self.blend_until(sum, f32::MAX);
+    /// Blends the surfaces in front of a distance, and what lies before each of them: samples of a cube behind the last
+    /// one are left for those of the cells.
+    pub fn blend_surfaces_until(
+        &mut self,
+        scene: &Scene<'_>,
+        sum: &mut Accumulated,
+        distance: f32,
+    ) {
+        let next = |layers: &Self| layers.layers.get(layers.passed).map(|l| l.distance);
+        while let Some(at) = next(self).filter(|at| *at <= distance) {
+            self.advance(scene, sum, at);
+        }
+    }
+
+    fn advance(&mut self, scene: &Scene<'_>, sum: &mut Accumulated, distance: f32) {
+        loop {
+            let layer = self.layers.get(self.passed).copied();
+            let layer = layer.filter(|layer| layer.distance <= distance);
+            let until = layer.map_or(distance, |layer| layer.distance);
+            if let (Some(cube), Some(march)) = (&scene.cube, &mut self.march) {
+                let is_open = |sum: &Accumulated| scene.transfer.is_open(sum);
+                self.cube_samples += cube.blend_until(march, sum, until, is_open);
+            }
+            let Some(layer) = layer else {
+                break;
+            };
+            sum.blend(layer.color, layer.opacity);
+            self.passed += 1;
+        }
+        self.next = self.after(scene);
+    }
+
+    /// Distance of what is next.
+    fn after(&self, scene: &Scene<'_>) -> f32 {
+        let layer = self.layers.get(self.passed);
+        let layer = layer.map_or(f32::INFINITY, |layer| layer.distance);
+        match (&scene.cube, &self.march) {
+            (Some(cube), Some(march)) => layer.min(cube.next(march)),
+            _ => layer,
+        }
+    }
+
+    /// Blends all that is left.
+    pub fn blend_rest(&mut self, scene: &Scene<'_>, sum: &mut Accumulated) {
+        self.blend_until(scene, sum, f32::MAX);
     }
 
     /// A ray up to the first opaque layer, which ends it. Nothing of it is left where that is the hull and nothing can be
@@ -234,6 +289,7 @@ impl<'a> Painter<'a> {
                 tally.painted += 1;
             }
         }
+        found.begin(scene, ray);
     }
 
     fn layer_at(&self, scene: &Scene<'_>, kind: Kind, point: Point, ray: &PixelRay) -> Layer {

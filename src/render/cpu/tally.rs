@@ -35,6 +35,8 @@ pub struct Tally {
     pub skips: u64,
     /// Surface points that got their colors.
     pub painted: u64,
+    /// Samples of a cube beside the model.
+    pub cube_samples: u64,
 }
 
 impl AddAssign for Tally {
@@ -53,6 +55,7 @@ impl AddAssign for Tally {
         self.rays += other.rays;
         self.skips += other.skips;
         self.painted += other.painted;
+        self.cube_samples += other.cube_samples;
     }
 }
 
@@ -72,7 +75,13 @@ impl Tally {
             peels: self.peels,
             recovered_rays: self.recovered,
             lost_rays: self.lost_rays,
-            work: self.samples + self.iterations + self.steps + self.skips + self.painted,
+            cube_samples: self.cube_samples,
+            work: self.samples
+                + self.iterations
+                + self.steps
+                + self.skips
+                + self.painted
+                + self.cube_samples,
             ..FrameStats::default()
         }
     }

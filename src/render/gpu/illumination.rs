@@ -420,6 +420,8 @@ impl Illumination {
             wgpu::BindingResource::TextureView(&gradients),
             wgpu::BindingResource::Sampler(&self.sampler),
             wgpu::BindingResource::TextureView(&opacities),
+            wgpu::BindingResource::TextureView(&tables.cube[0]),
+            wgpu::BindingResource::TextureView(&tables.cube[1]),
         ];
         gpu.bind(gpu.layouts.group(2), &resources)
     }

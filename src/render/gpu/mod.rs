@@ -1,6 +1,7 @@
 //! Everything that owns a GPU object: device, shaders, the compact grid, frames and probes.
 
 pub mod bind_groups;
+mod cube;
 pub mod device;
 pub mod executor;
 pub mod extinction;

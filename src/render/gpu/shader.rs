@@ -37,6 +37,7 @@ sources! {
         "edges"
         "light"
         "cones"
+        "cube"
         "around"
         "openness"
         "cone_rays"

@@ -3,7 +3,7 @@
 use crate::model::Grid;
 use crate::render::DeviceBytes;
 use crate::render::gpu::faces::FaceList;
-use crate::render::gpu::{Gpu, GpuGrid, Round, grid_upload, surfaces};
+use crate::render::gpu::{Gpu, GpuGrid, Round, flag, grid_upload, surfaces};
 use crate::render::job::{Progress, Work};
 use crate::render::plan::light::Shading;
 use crate::view::{Surfaces, View};
@@ -30,6 +30,8 @@ pub struct Common {
     grid: grid_upload::Constants,
     shading: Shading,
     surfaces: Surfaces,
+    /// A cube is shown beside the model.
+    cube: bool,
 }
 
 impl Common {
@@ -39,6 +41,7 @@ impl Common {
             grid: what.grid.constants(),
             shading: Shading::of(&what.view.style.lighting),
             surfaces: what.view.style.surfaces,
+            cube: what.view.shown.cube.is_some(),
         }
     }
 
@@ -51,7 +54,8 @@ impl Common {
     pub fn pairs(self) -> impl Iterator<Item = (&'static str, f64)> {
         let [grid, shading] = [self.grid.pairs().to_vec(), self.shading.pairs().to_vec()];
         let surfaces = surfaces::constants(self.surfaces);
-        grid.into_iter().chain(shading).chain(surfaces)
+        let cube = [("CUBE", flag(self.cube))];
+        grid.into_iter().chain(shading).chain(surfaces).chain(cube)
     }
 }
 

@@ -1,5 +1,6 @@
 //! The transfer function on the device.
 
+use super::cube::GpuCube;
 use super::device::Gpu;
 use crate::render::RenderError;
 use crate::render::plan::transfer::{transfer_integrals, transfer_table};
@@ -15,6 +16,8 @@ pub struct TransferTables {
     pub table: wgpu::TextureView,
     /// Integrals over the position of extinction times color, and of extinction.
     pub integrals: wgpu::TextureView,
+    /// Voxels and table of a cube beside the model, or what is bound without one.
+    pub cube: [wgpu::TextureView; 2],
 }
 
 impl TransferTables {
@@ -22,11 +25,12 @@ impl TransferTables {
     ///
     /// # Errors
     /// When the device refuses.
-    pub fn new(gpu: &Gpu, view: &View, revision: u64) -> Result<Self, RenderError> {
+    pub fn new(gpu: &Gpu, view: &View, cube: &GpuCube, revision: u64) -> Result<Self, RenderError> {
         let table = transfer_table(view);
         Ok(Self {
             integrals: gpu.table("transfer integrals", FORMAT, &transfer_integrals(&table))?,
             table: gpu.table("transfer table", FORMAT, &table)?,
+            cube: cube.views(),
             revision,
         })
     }

@@ -312,7 +312,7 @@ pub const WORK_GAUSSIAN: u32 = 1;
 /// A pass of means.
 pub const WORK_MEAN: u32 = 2;
 /// Counters, each of a low and a high word.
-pub const COUNTERS: u32 = 14;
+pub const COUNTERS: u32 = 15;
 /// Counter of the samples inside drawn cells.
 pub const COUNT_SAMPLES: u32 = 0;
 /// Counter of Newton iterations.
@@ -341,6 +341,8 @@ pub const COUNT_SECTIONS: u32 = 11;
 pub const COUNT_CROSSINGS: u32 = 12;
 /// Counter of samples inside the model that were found in no cell.
 pub const COUNT_LOST_SAMPLES: u32 = 13;
+/// Counter of samples of a cube beside the model.
+pub const COUNT_CUBE: u32 = 14;
 /// Colors of faults: of named ones in turn, and of those without a name.
 pub const FAULT_COLORS: usize = crate::view::surfaces::PALETTE.len() + 1;
 /// Clip planes at most.

@@ -8,6 +8,7 @@ mod cells;
 pub mod columns;
 mod compact_grid;
 pub mod cones;
+pub mod cube;
 pub mod extinction;
 mod face_bins;
 pub mod faces;

@@ -1,13 +1,19 @@
 //! The transfer function as tables.
 
 use super::layout::LUT_SIZE;
+use crate::image::Blending;
 use crate::transfer::TransferFunction;
 use crate::view::View;
 
 /// Red, green, blue, as they are blended, and extinction at equal distances over the range.
 pub fn transfer_table(view: &View) -> Vec<[f32; 4]> {
-    let color = |position| view.color_at(position).map(|v| v as f32);
-    let extinctions = extinctions(&view.style.transfer).into_iter();
+    table_of(&view.style.transfer, view.style.blending)
+}
+
+/// As [`transfer_table`], of any transfer function.
+pub fn table_of(transfer: &TransferFunction, blending: Blending) -> Vec<[f32; 4]> {
+    let color = |position| blending.of_srgb(transfer.srgb(position)).map(|v| v as f32);
+    let extinctions = extinctions(transfer).into_iter();
     positions()
         .zip(extinctions)
         .map(|(position, extinction)| {
