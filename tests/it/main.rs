@@ -64,4 +64,5 @@ mod surround;
 mod synthetic;
 mod units;
 mod vectors;
+mod volumes;
 mod wells;
