@@ -11,7 +11,7 @@ use strataray_parsers::egrid::Egrid;
 use strataray_parsers::resqml::{GridPart, Package};
 use strataray_parsers::restart::{self, Step};
 use strataray_parsers::roff::RoffFile;
-use strataray_parsers::{ParseError, Warnings, init};
+use strataray_parsers::{ParseError, Warnings, init, volume};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut arguments = std::env::args().skip(1);
@@ -26,6 +26,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         GridSource::Resqml(path) => {
             let package = Package::open(path)?;
             package.grids().first().map_or([0; 3], GridPart::dims)
+        }
+        GridSource::Volume(path) => {
+            volume::open(path, &volume::Options::default())?
+                .lattice
+                .dims
         }
         GridSource::Deck(path) => Grdecl::read(path, &mut warnings)?.dims,
     };

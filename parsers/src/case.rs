@@ -7,6 +7,7 @@ use crate::error::{At, ErrorKind, ParseError};
 use crate::paths;
 use crate::records::Form;
 use crate::resqml::is_package;
+use crate::volume;
 
 /// Where the grid is.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -19,6 +20,8 @@ pub enum GridSource {
     Roff(PathBuf),
     /// A RESQML package, with its properties and time steps.
     Resqml(PathBuf),
+    /// A regular volume: seismic, or an image.
+    Volume(PathBuf),
 }
 
 /// Where the time steps are.
@@ -73,6 +76,8 @@ pub struct CaseFiles {
     pub paths: Vec<PathBuf>,
     /// ROFF files of properties: those beside a ROFF grid whose names begin with its own and `--`, and those added by hand.
     pub roff: Vec<PathBuf>,
+    /// Volumes on the lattice of another one, added by hand.
+    pub volumes: Vec<PathBuf>,
     /// Static properties.
     pub init: Option<PathBuf>,
     /// Time steps.
@@ -81,6 +86,26 @@ pub struct CaseFiles {
     pub summary: Option<SummarySource>,
     /// Files that belong to the case and are not read, with the reason.
     pub not_read: Vec<(PathBuf, &'static str)>,
+}
+
+impl CaseFiles {
+    /// A grid with its own values: what lies beside it is of another one.
+    fn alone(name: String, grid: GridSource) -> Self {
+        Self {
+            name,
+            grid,
+            deck: None,
+            added: Vec::new(),
+            schedules: Vec::new(),
+            paths: Vec::new(),
+            roff: Vec::new(),
+            volumes: Vec::new(),
+            init: None,
+            restart: RestartSource::None,
+            summary: None,
+            not_read: Vec::new(),
+        }
+    }
 }
 
 /// What an extension stands for.
@@ -98,6 +123,7 @@ enum Role {
     Paths,
     Roff,
     Resqml,
+    Volume,
     /// Curves over time, which [`find_summary`] finds.
     Summary(SummaryPart),
 }
@@ -132,6 +158,7 @@ fn role(path: &Path) -> Option<Role> {
         "SCH" => Role::Schedule,
         "ROFF" | "ROFFBIN" | "ROFFASC" => Role::Roff,
         "EPC" => Role::Resqml,
+        "SGY" | "SEGY" | "NRRD" | "NHDR" | "MHA" | "MHD" | "VTI" => Role::Volume,
         // Text grids are called .grid too.
         "GRID" if form(path).is_none() => Role::Text,
         "GRID" | "FGRID" => Role::Egrid,
@@ -198,6 +225,7 @@ fn sniff(path: &Path) -> Role {
         None | Some(Role::Text) if form(path).is_some() => Role::Egrid,
         None | Some(Role::Text) if is_roff(path) => Role::Roff,
         None if is_package(path) => Role::Resqml,
+        None if volume::is_volume(path) => Role::Volume,
         None | Some(Role::Text) => text_role(path),
         Some(role) => role,
     }
@@ -207,8 +235,8 @@ fn sniff(path: &Path) -> Role {
 /// EGRID file.
 ///
 /// A `.grdecl` file named by the user is the grid itself; a file with an unknown extension is taken
-/// for an EGRID or a text grid by its first bytes. EGRID goes before decks, unified before
-/// separate restarts, and what the user named before all.
+/// for an EGRID, a volume or a text grid by its first bytes. EGRID goes before decks, grids before volumes, unified
+/// before separate restarts, and what the user named before all.
 ///
 /// # Errors
 /// When no grid is found; the sentence says what was looked for.
@@ -243,6 +271,7 @@ pub fn find(path: &Path) -> Result<CaseFiles, ParseError> {
         Some(Role::Egrid) => Some(GridSource::Egrid(path.to_owned())),
         Some(Role::Roff) => Some(GridSource::Roff(path.to_owned())),
         Some(Role::Resqml) => Some(GridSource::Resqml(path.to_owned())),
+        Some(Role::Volume) => Some(GridSource::Volume(path.to_owned())),
         _ => first(Role::Egrid).map(GridSource::Egrid),
     };
     let deck = first(Role::Deck).or_else(|| first(Role::Text));
@@ -252,14 +281,18 @@ pub fn find(path: &Path) -> Result<CaseFiles, ParseError> {
         .or_else(|| deck.clone().map(GridSource::Deck))
         .or_else(roff)
         .or_else(resqml)
+        .or_else(|| first(Role::Volume).map(GridSource::Volume))
     else {
         return Err(no_grid(path, &stem, &files));
     };
-    let schedules = first(Role::Deck).filter(|_| !matches!(grid, GridSource::Roff(_)));
-    let schedules = match &grid {
-        GridSource::Deck(deck) => schedules.filter(|schedule| schedule == deck),
-        _ => schedules,
-    };
+    if matches!(grid, GridSource::Volume(_)) {
+        return Ok(CaseFiles::alone(stem, grid));
+    }
+    let schedules = first(Role::Deck).filter(|schedule| match &grid {
+        GridSource::Deck(deck) => schedule == deck,
+        GridSource::Roff(_) => false,
+        _ => true,
+    });
     let deck = deck.filter(|_| matches!(grid, GridSource::Egrid(_)));
     let is_resqml = matches!(grid, GridSource::Resqml(_));
     let other_package = files
@@ -278,6 +311,7 @@ pub fn find(path: &Path) -> Result<CaseFiles, ParseError> {
         added: Vec::new(),
         schedules: schedules.into_iter().collect(),
         paths: Vec::new(),
+        volumes: Vec::new(),
         // A package has properties and steps of its own.
         init: first(Role::Init).filter(|_| !is_resqml),
         restart: if is_resqml {
@@ -356,6 +390,14 @@ pub fn find_with(path: &Path, with: &[PathBuf]) -> Result<CaseFiles, ParseError>
             Role::Egrid | Role::Resqml => {
                 return Err(refuse(
                     "is a grid of its own and cannot be added to another one",
+                ));
+            }
+            Role::Volume if matches!(files.grid, GridSource::Volume(_)) => {
+                files.volumes.push(added.clone());
+            }
+            Role::Volume => {
+                return Err(refuse(
+                    "is a regular volume and can be added to another volume alone; open it by itself",
                 ));
             }
             Role::Summary(_) => files.summary = Some(find_summary(added)?),

@@ -141,6 +141,10 @@ pub struct About {
     pub length_unit: String,
     /// The six numbers of MAPAXES as read.
     pub map_axes: Option<[f64; 6]>,
+    /// Unit of the vertical axis where it is time, as of seismic, and no depth.
+    pub time_unit: Option<String>,
+    /// The property that the case is about, where its files have one above all: the values of a volume.
+    pub subject: Option<String>,
     /// Length unit of map coordinates: METRES, FEET or CM.
     pub map_unit: String,
     /// `single`, `dual` or `dual_permeability`. With fractures, properties such as `SWAT` are of the matrix,

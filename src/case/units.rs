@@ -150,6 +150,14 @@ impl Case {
         units.of_length(&self.about.length_unit)
     }
 
+    /// How depths are shown: as lengths, or as times where the vertical axis is one.
+    pub fn vertical(&self, units: Units) -> Measure {
+        match &self.about.time_unit {
+            Some(unit) => Measure::of_file(unit),
+            None => self.length(units),
+        }
+    }
+
     /// How eastings and northings are shown.
     pub fn map_length(&self, units: Units) -> Measure {
         units.of_length(&self.about.map_unit)

@@ -253,6 +253,9 @@ fn facts(shown: &Shown<'_>, stats: &[String]) -> anyhow::Result<Value> {
     if shown.units != Units::File {
         facts["unit_system"] = json!(shown.units);
     }
+    if let Some(unit) = &case.about.time_unit {
+        facts["time_unit"] = json!(unit);
+    }
     if let Some(axes) = grid.map_axes() {
         facts["map_units"] = json!(shown.map_length.unit);
         facts["map_bounds"] = map_bounds(shown, axes);

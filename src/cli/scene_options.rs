@@ -94,7 +94,8 @@ pub struct SceneOptions {
 #[derive(clap::Args, Default)]
 pub struct AddedFiles {
     /// Files to add to the case: properties or faults in text, paths of wells (.dev and others), a deck or its schedule with
-    /// wells, an INIT, restart or summary of another name; of several restarts steps are put together.
+    /// wells, an INIT, restart or summary of another name; of several restarts steps are put together. To a volume
+    /// another one on the same samples.
     #[arg(long, value_name = "FILE", num_args = 1..)]
     with: Vec<PathBuf>,
     /// Another case on the same grid, whose values on the same date are subtracted: PRESSURE-PRESSURE@NAME is one more

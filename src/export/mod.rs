@@ -25,6 +25,7 @@ mod output;
 mod roff;
 pub mod synthetic;
 pub mod table;
+pub mod volume;
 mod vtu;
 mod wells;
 

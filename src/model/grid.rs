@@ -62,6 +62,9 @@ pub enum ModelError {
          columns than the others"
     )]
     Empty(usize, usize, usize),
+    /// The cells of a regular lattice have no volume.
+    #[error("there is no grid of such cells: {0}")]
+    Lattice(&'static str),
     /// The corners of so many cells do not fit in memory.
     #[error("there is not enough memory for the corners of {0} x {1} x {2} cells")]
     Memory(usize, usize, usize),

@@ -14,8 +14,12 @@ pub fn short_unit(name: &str) -> String {
 /// How lengths of a case are written, with short units.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Lengths {
-    /// Lengths and depths of the grid.
+    /// Lengths of the grid.
     pub grid: Measure,
+    /// Depths, or times where the vertical axis is one.
+    pub vertical: Measure,
+    /// The vertical axis is time.
+    pub is_time: bool,
     /// Eastings and northings.
     pub map: Measure,
 }
@@ -29,6 +33,8 @@ impl Lengths {
         };
         Self {
             grid: short(case.length(units)),
+            vertical: short(case.vertical(units)),
+            is_time: case.about.time_unit.is_some(),
             map: short(case.map_length(units)),
         }
     }
@@ -38,6 +44,8 @@ impl Lengths {
     pub fn named(unit: &str) -> Self {
         Self {
             grid: Measure::of_file(unit),
+            vertical: Measure::of_file(unit),
+            is_time: false,
             map: Measure::of_file(unit),
         }
     }
@@ -47,19 +55,20 @@ impl Lengths {
         [
             self.map.show(east),
             self.map.show(north),
-            self.grid.show(depth),
+            self.vertical.show(depth),
         ]
     }
 
     /// A place on the map in words.
     pub fn place(&self, place: [f64; 3]) -> String {
         let [east, north, depth] = self.shown(place);
-        let (map, grid) = (&self.map.unit, &self.grid.unit);
-        let unit = match map == grid {
+        let (map, vertical) = (&self.map.unit, &self.vertical.unit);
+        let name = if self.is_time { "time" } else { "depth" };
+        let unit = match map == vertical {
             true => String::new(),
             false => format!(" {map}"),
         };
-        format!("E {east:.1}{unit}  N {north:.1}{unit}  depth {depth:.2} {grid}")
+        format!("E {east:.1}{unit}  N {north:.1}{unit}  {name} {depth:.2} {vertical}")
     }
 }
 
@@ -75,10 +84,16 @@ mod tests {
             lengths.place(place),
             "E 500000.0  N 6000000.0  depth 2000.00 m"
         );
-        lengths.grid.unit = "ft".into();
+        lengths.vertical.unit = "ft".into();
         assert_eq!(
             lengths.place(place),
             "E 500000.0 m  N 6000000.0 m  depth 2000.00 ft"
+        );
+        lengths.vertical.unit = "ms".into();
+        lengths.is_time = true;
+        assert_eq!(
+            lengths.place(place),
+            "E 500000.0 m  N 6000000.0 m  time 2000.00 ms"
         );
     }
 }

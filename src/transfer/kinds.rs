@@ -25,12 +25,14 @@ pub enum Quantity {
     Difference,
     /// Depths.
     Depth,
+    /// Amplitudes of seismic, about zero.
+    Amplitude,
     /// Anything else.
     Other,
 }
 
 /// Names, or their beginnings (`PERM*`) or ends (`*NUM`); the first that fits counts.
-const NAMES: [(Quantity, &[&str]); 9] = [
+const NAMES: [(Quantity, &[&str]); 10] = [
     (
         Quantity::Region,
         &["*NUM", "FIP*", "FACIES*", "*FACIES", "ROCKTYPE", "NNC"],
@@ -46,6 +48,7 @@ const NAMES: [(Quantity, &[&str]); 9] = [
     ),
     (Quantity::Fraction, &["PORO", "NTG"]),
     (Quantity::Depth, &["DEPTH", "TOPS"]),
+    (Quantity::Amplitude, &["AMPLITUDE*", "SEISMIC*"]),
 ];
 
 impl Quantity {
@@ -75,7 +78,7 @@ impl Quantity {
     pub fn interest(self) -> Interest {
         match self {
             Self::Pressure => Interest::Low,
-            Self::Difference => Interest::Ends,
+            Self::Difference | Self::Amplitude => Interest::Ends,
             Self::Region | Self::Depth => Interest::Alike,
             Self::Oil
             | Self::Water
@@ -109,6 +112,7 @@ mod tests {
             ("PRESSURE-PRESSURE@0", Quantity::Difference),
             ("DEPTH", Quantity::Depth),
             ("PORV", Quantity::Wide),
+            ("Amplitude.far", Quantity::Amplitude),
             ("RS", Quantity::Other),
             ("SWAT.MEAN", Quantity::Water),
             ("SWAT.STD", Quantity::Other),

@@ -342,6 +342,10 @@ fn automatic(
             .map(cell);
         let interest = match scale {
             Scale::Categories(_) => Interest::Alike,
+            // Amplitudes of one sign are not about zero.
+            _ if Quantity::of(asked.property) == Quantity::Amplitude && low >= 0.0 => {
+                Interest::High
+            }
             _ => Quantity::of(asked.property).interest(),
         };
         Ok(opacity::find(

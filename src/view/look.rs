@@ -73,11 +73,17 @@ pub fn look_of(case: &Case, property: &str) -> Look {
         Quantity::Wide => wide(case, property),
         Quantity::Region => categories(case, property),
         Quantity::Fraction => percentiles(case, property, "viridis"),
-        Quantity::Difference => difference(case, property),
+        Quantity::Difference => about_zero(case, property),
         Quantity::Depth => Look::new(RangeSpec::STEP, "viridis"),
+        Quantity::Amplitude if has_both_signs(case, property) => about_zero(case, property),
+        Quantity::Amplitude => percentiles(case, property, "turbo"),
         Quantity::Other if looks_like_regions(case, property) => categories(case, property),
         Quantity::Other => percentiles(case, property, "turbo"),
     };
+    if is_mask(case, property) {
+        // Means at corners would blur away what is one sample thick.
+        look.interpolation = Interpolation::Cell;
+    }
     if look.transfer.coloring != Coloring::Categories
         && look.transfer.scale == ScaleSpec::Linear
         && !matches!(look.range, RangeSpec::Fixed([0.0, 1.0]))
@@ -111,6 +117,9 @@ fn has_wells(case: &Case) -> bool {
 
 /// The property shown where a scene names none: what the case is about.
 pub fn default_property(case: &Case) -> String {
+    if let Some(subject) = &case.about.subject {
+        return subject.clone();
+    }
     let has = |name: &&&str| case.properties.iter().any(|p| p.name == **name);
     // A saturation that is the same everywhere tells nothing.
     let saturations = ["SOIL", "SGAS", "SWAT"].iter();
@@ -189,12 +198,26 @@ pub fn numbers_regions(case: &Case, property: &str) -> bool {
     }
 }
 
-/// Region numbers that the list of names does not know: few whole numbers in an array of the files.
+/// Region numbers that the list of names does not know: few whole numbers in an array of the files. Two of them in a
+/// volume are a mask, of which one looks for what it keeps.
 fn looks_like_regions(case: &Case, property: &str) -> bool {
     let of_files = case
         .property(property)
         .is_ok_and(|p| p.kind == Kind::Static);
-    of_files && matches!(case.categories(property), Ok(Categories::Values(v)) if v.len() > 1)
+    let least = if is_subject(case, property) { 3 } else { 2 };
+    of_files && matches!(case.categories(property), Ok(Categories::Values(v)) if v.len() >= least)
+}
+
+/// True of a volume of two whole numbers.
+fn is_mask(case: &Case, property: &str) -> bool {
+    is_subject(case, property)
+        && matches!(case.categories(property), Ok(Categories::Values(v)) if v.len() == 2)
+}
+
+/// True of the values of a volume.
+fn is_subject(case: &Case, property: &str) -> bool {
+    let subject = case.about.subject.as_ref();
+    subject.is_some_and(|subject| subject.eq_ignore_ascii_case(property))
 }
 
 fn categories(case: &Case, property: &str) -> Look {
@@ -208,8 +231,13 @@ fn categories(case: &Case, property: &str) -> Look {
     look
 }
 
+fn has_both_signs(case: &Case, property: &str) -> bool {
+    let range = case.range_over_steps(property).ok().flatten();
+    range.is_some_and(|range| range.min < 0.0 && range.max > 0.0)
+}
+
 /// Symmetric about zero, so far that all but long tails is told apart.
-fn difference(case: &Case, property: &str) -> Look {
+fn about_zero(case: &Case, property: &str) -> Look {
     let whole = case.range_over_steps(property).ok().flatten();
     let whole = whole.map_or(0.0, |v| v.min.abs().max(v.max.abs()));
     let tails = percentile_range(case, property, |v| v != 0.0);
@@ -226,14 +254,15 @@ fn difference(case: &Case, property: &str) -> Look {
 const FEW: usize = 2000;
 
 /// The mode that shows more of a property: into the volume where it changes with time and the model has an inside,
-/// cells where that hides what faces show at once: regions, constant and static properties, small models and
-/// sections of one cell.
+/// or is that of a volume, cells where that hides what faces show at once: regions, constant and static properties,
+/// small models and sections of one cell.
 pub fn opening_mode(case: &Case, property: &str) -> Mode {
     let dims = case.grid.main_dims();
     let is_small = case.grid.active_cells().len() < FEW;
     let is_section = [dims.ni, dims.nj, dims.nk].contains(&1);
     let of_regions = Quantity::of(property) == Quantity::Region;
-    let is_plain = !case.is_dynamic(property) || of_regions || constant(case, property).is_some();
+    let has_inside = case.is_dynamic(property) || is_subject(case, property);
+    let is_plain = !has_inside || of_regions || constant(case, property).is_some();
     match is_small || is_section || is_plain {
         true => Mode::Cells,
         false => Mode::Volume,

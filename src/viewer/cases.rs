@@ -16,10 +16,14 @@ pub enum Meaning {
     Nothing(String),
 }
 
-/// Endings of files that hold a grid; of a case with more than one of them the first counts.
-const GRIDS: [&str; 8] = [
-    "EGRID", "FEGRID", "GRID", "FGRID", "GRDECL", "ROFF", "EPC", "DATA",
+/// Endings of files that hold a grid, and behind these of regular volumes; of a case with more than one of them the first
+/// counts.
+const GRIDS: [&str; 15] = [
+    "EGRID", "FEGRID", "GRID", "FGRID", "GRDECL", "ROFF", "EPC", "DATA", "SGY", "SEGY", "NRRD",
+    "NHDR", "MHA", "MHD", "VTI",
 ];
+/// How many of them are of grids.
+const OF_GRIDS: usize = 8;
 /// Bytes of a text file that is searched for a grid, at most; a larger one is taken to have one.
 const MOST_SEARCHED: u64 = 16 << 20;
 /// Entries that are offered while a path is typed, at most.
@@ -70,7 +74,8 @@ pub fn meaning(path: &Path) -> Meaning {
 fn of_folder(folder: &Path) -> Vec<PathBuf> {
     let mut cases = in_folder(folder);
     let is_text = |path: &PathBuf| has_ending(path, "GRDECL");
-    let was_run = |path: &PathBuf| !is_text(path) && !has_ending(path, "DATA");
+    let is_volume = |path: &PathBuf| GRIDS[OF_GRIDS..].iter().any(|g| has_ending(path, g));
+    let was_run = |path: &PathBuf| !is_text(path) && !has_ending(path, "DATA") && !is_volume(path);
     let were_run = cases.iter().any(was_run);
     let is_large = |path: &PathBuf| path.metadata().is_ok_and(|m| m.len() > MOST_SEARCHED);
     let is_grid = |path: &PathBuf| is_large(path) || load::is_case(path);
@@ -158,6 +163,12 @@ mod tests {
         assert_eq!(meaning(&at("a")), Meaning::Case(at("A.EGRID")));
         assert_eq!(meaning(&at("B")), Meaning::Case(at("b.grdecl")));
         assert_eq!(meaning(&at("A.UNRST")), Meaning::Case(at("A.UNRST")));
+        // Of one name the grid goes before the volume, and a volume alone is a case.
+        make("A.nrrd");
+        assert_eq!(meaning(&at("a")), Meaning::Case(at("A.EGRID")));
+        make("cube.segy");
+        assert_eq!(meaning(&at("cube")), Meaning::Case(at("cube.segy")));
+        std::fs::remove_file(at("cube.segy")).unwrap();
         assert!(matches!(meaning(&at("C")), Meaning::Nothing(_)));
         assert!(matches!(meaning(&at("no/C")), Meaning::Nothing(_)));
         std::fs::create_dir(at("beyond")).unwrap();

@@ -68,4 +68,5 @@ mod surround;
 mod synthetic;
 mod units;
 mod vectors;
+mod volumes;
 mod wells;

@@ -384,6 +384,11 @@ pub fn sniff(path: &Path) -> Result<Option<Format>, ParseError> {
     Ok(format(&source, &head))
 }
 
+/// True where a file that can be read is a volume.
+pub(crate) fn is_volume(path: &Path) -> bool {
+    matches!(sniff(path), Ok(Some(_)))
+}
+
 fn read(source: &Source, options: &Options) -> Result<VolumeFile, ParseError> {
     let head = source.head()?;
     let format = match options.raw {

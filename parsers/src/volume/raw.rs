@@ -106,7 +106,9 @@ impl FromStr for RawLayout {
 /// True where a file begins as a layout in JSON does.
 pub(super) fn is_header(start: &[u8]) -> bool {
     let start = &start[..start.len().min(4096)];
-    start.starts_with(b"{") && start.windows(6).any(|word| word == b"\"size\"")
+    let has = |key: &[u8]| start.windows(key.len()).any(|word| word == key);
+    // Scenes are JSON with a size too.
+    start.starts_with(b"{") && has(b"\"size\"") && has(b"\"type\"")
 }
 
 pub(super) fn read(

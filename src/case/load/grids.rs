@@ -1,6 +1,6 @@
 //! The grid of a case with what else its files say: EGRID or a deck, and text that was added.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use strataray_parsers::case::{CaseFiles, GridSource};
@@ -16,6 +16,7 @@ use super::outliers::{self, Coordinate};
 use super::resqml::{self, PackageValues};
 use super::roff;
 use super::slots::CellFlags;
+use super::volume::{self, VolumeValues};
 use crate::case::{About, LoadTimes, NamedFault};
 use crate::model::topology::Face;
 use crate::model::{
@@ -25,7 +26,7 @@ use crate::model::{
 fn model_error(path: &Path, error: &ModelError) -> ParseError {
     let kind = match error {
         ModelError::Length { .. } => ErrorKind::WrongCount,
-        ModelError::NotFinite { .. } => ErrorKind::BadValue,
+        ModelError::NotFinite { .. } | ModelError::Lattice(_) => ErrorKind::BadValue,
         ModelError::Dimensions(..) | ModelError::Memory(..) | ModelError::Empty(..) => {
             ErrorKind::TooLarge
         }
@@ -41,6 +42,8 @@ pub struct Loaded {
     pub texts: Vec<DeckProperty>,
     /// Properties and steps of a RESQML package.
     pub package: Option<PackageValues>,
+    /// Values of regular volumes.
+    pub volumes: Vec<VolumeValues>,
     pub connections: Vec<[Ijk; 2]>,
     /// With arrays of text, where they are of a deck.
     pub local_grids: Vec<DeckLocalGrid>,
@@ -111,6 +114,7 @@ pub fn read(
         GridSource::Egrid(path) => read_egrid(path, about, warnings)?,
         GridSource::Roff(path) => read_roff(path, about)?,
         GridSource::Resqml(path) => read_resqml(path, about)?,
+        GridSource::Volume(path) => read_volumes(path, &files.volumes, about)?,
         GridSource::Deck(path) => {
             let deck = Grdecl::read_with(path, &files.added, warnings)?;
             read_deck(path, deck, about)?
@@ -150,6 +154,7 @@ fn read_egrid(
         flags: CellFlags::new(egrid.actnum, egrid.coarse, egrid.porosity_model),
         texts: Vec::new(),
         package: None,
+        volumes: Vec::new(),
         connections,
         local_grids: of_results(egrid.local_grids),
         reservoirs: egrid.reservoirs,
@@ -220,6 +225,7 @@ fn read_deck(path: &Path, deck: Grdecl, about: &mut About) -> Result<Loaded, Par
         flags: CellFlags::new(deck.actnum, None, deck.porosity_model),
         texts: deck.properties,
         package: None,
+        volumes: Vec::new(),
         connections: Vec::new(),
         local_grids: deck.local_grids,
         reservoirs: Vec::new(),
@@ -284,12 +290,50 @@ fn of_pillars(path: &Path, pillars: &Pillars, about: &mut About) -> Result<Loade
     };
     let grid = built(path, &input, about)?;
     about.files.push(path.to_owned());
+    Ok(of_grid(grid, about))
+}
+
+/// The cells of a regular volume, and the values of it and of others on the same lattice.
+fn read_volumes(path: &Path, others: &[PathBuf], about: &mut About) -> Result<Loaded, ParseError> {
+    let first = volume::open(path)?;
+    let start = Instant::now();
+    let lattice = first.lattice;
+    let grid = Grid::regular(&lattice).map_err(|e| model_error(path, &e))?;
+    about.load_times = LoadTimes {
+        model: start.elapsed(),
+    };
+    about.files.push(path.to_owned());
+    about.notes.extend(first.notes);
+    about.time_unit = first.time;
+    about.subject = Some(first.values.name().to_owned());
+    let mut loaded = of_grid(grid, about);
+    loaded.map.length = Some(first.length.into());
+    loaded.volumes.push(first.values);
+    for path in others {
+        let mut other = volume::open(path)?;
+        other.check_lattice(&lattice)?;
+        other.values.rename(&loaded.volumes);
+        about.files.push(path.clone());
+        let new = other
+            .notes
+            .into_iter()
+            .filter(|note| !about.notes.contains(note));
+        let new: Vec<String> = new.collect();
+        about.notes.extend(new);
+        loaded.volumes.push(other.values);
+    }
+    Ok(loaded)
+}
+
+/// A grid in map coordinates, with nothing beside it.
+fn of_grid(grid: Grid, about: &mut About) -> Loaded {
     about.porosity_model = "single".into();
-    Ok(Loaded {
+    Loaded {
         grid,
         flags: CellFlags::default(),
         texts: Vec::new(),
         package: None,
+        volumes: Vec::new(),
         connections: Vec::new(),
         local_grids: Vec::new(),
         reservoirs: Vec::new(),
@@ -303,7 +347,7 @@ fn of_pillars(path: &Path, pillars: &Pillars, about: &mut About) -> Result<Loade
             is_map: true,
             ..MapKeywords::default()
         },
-    })
+    }
 }
 
 /// Faults of the deck beside an EGRID file, and all that was added by hand.

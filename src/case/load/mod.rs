@@ -14,6 +14,7 @@ mod roff;
 mod slots;
 mod source;
 mod summary;
+mod volume;
 mod wells;
 
 use std::borrow::Cow;
@@ -308,6 +309,7 @@ fn build(mut loaded: Loaded, read: Read<'_>, mut about: About, warnings: &Warnin
         steps: Vec::new(),
         texts: std::mem::take(&mut loaded.texts),
         package: loaded.package.take(),
+        volumes: std::mem::take(&mut loaded.volumes),
         summary,
         wells: WellFiles::default(),
     };
@@ -325,6 +327,7 @@ fn build(mut loaded: Loaded, read: Read<'_>, mut about: About, warnings: &Warnin
         units,
         length,
         phases: told.phases.unwrap_or(loaded.phases),
+        time: about.time_unit.clone(),
         has_connections: !loaded.connections.is_empty(),
     };
     let properties = properties::of(&source, &setting, &mut about);

@@ -6,6 +6,7 @@ use strataray_parsers::units::{LengthUnit, UnitSystem};
 
 use super::resqml::PackageValues;
 use super::source::FileSource;
+use super::volume::VolumeValues;
 use crate::case::pores::Pores;
 use crate::case::{About, CONNECTIONS, Kind, POROSITY_THICKNESS, Property};
 use crate::model::derived::{Derived, rest_of_saturations};
@@ -18,6 +19,8 @@ pub struct Setting {
     pub length: LengthUnit,
     /// Phases as INTEHEAD numbers them; 0 where unknown.
     pub phases: i32,
+    /// Unit of the vertical axis where it is time.
+    pub time: Option<String>,
     /// True where the case has connections between cells that are no neighbors.
     pub has_connections: bool,
 }
@@ -40,7 +43,9 @@ pub fn of(source: &FileSource, setting: &Setting, about: &mut About) -> Vec<Prop
         });
     }
     let package = source.package.iter().flat_map(PackageValues::properties);
-    list.extend(package.filter(|p| !source.texts.iter().any(|t| t.name == p.name)));
+    let volumes = source.volumes.iter().map(VolumeValues::property);
+    let stored = package.chain(volumes);
+    list.extend(stored.filter(|p| !source.texts.iter().any(|t| t.name == p.name)));
     // Dynamic ones first claim their names: a property of both INIT and restart changes with time.
     let mut counts: Vec<(&str, usize)> = Vec::new();
     for step in &source.steps {
@@ -79,9 +84,13 @@ pub fn of(source: &FileSource, setting: &Setting, about: &mut About) -> Vec<Prop
         list.push(Property::new(POROSITY_THICKNESS, Kind::Derived, unit));
     }
     let connections = setting.has_connections.then_some((CONNECTIONS, ""));
+    let [down, volume] = match &setting.time {
+        Some(time) => [time.as_str(), ""],
+        None => [setting.length.short(), setting.length.volume()],
+    };
     let derived = Derived::ALL.iter().map(|(name, derived)| match derived {
-        Derived::Depth | Derived::Thickness => (*name, setting.length.short()),
-        Derived::Volume => (*name, setting.length.volume()),
+        Derived::Depth | Derived::Thickness => (*name, down),
+        Derived::Volume => (*name, volume),
         _ => (*name, ""),
     });
     for (name, unit) in derived.chain(connections) {

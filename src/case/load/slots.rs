@@ -147,6 +147,14 @@ impl CellSlots {
         whole || count == self.total || count == self.count()
     }
 
+    /// The values of the active cells from those of all cells, which are kept where all are active.
+    pub fn pick_of_whole(&self, values: Vec<f32>) -> Vec<f32> {
+        match self.places.is_none() && self.cells.len() == values.len() {
+            true => values,
+            false => self.pick_of_all(&values),
+        }
+    }
+
     /// The values of the active cells from an array of all cells.
     pub fn pick_of_all(&self, values: &[f32]) -> Vec<f32> {
         match &self.places {

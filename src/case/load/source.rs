@@ -15,6 +15,7 @@ use super::resqml::PackageValues;
 use super::restarts;
 use super::slots::CellSlots;
 use super::summary::SummaryFiles;
+use super::volume::VolumeValues;
 use super::wells::{self, WellFiles};
 use crate::case::pores::{self, Pores};
 use crate::case::{About, CaseError, Source, Vectors, Well};
@@ -40,6 +41,8 @@ pub struct FileSource {
     pub texts: Vec<DeckProperty>,
     /// Properties of a RESQML package.
     pub package: Option<PackageValues>,
+    /// Properties of regular volumes.
+    pub volumes: Vec<VolumeValues>,
     /// Curves over time.
     pub summary: SummaryFiles,
     /// Wells that are not of the steps.
@@ -296,6 +299,10 @@ impl Source for FileSource {
         {
             let values = package.values(name, step)?;
             return Ok(values.map(|values| self.cells.pick_of_all(&values)));
+        }
+        let volume = self.volumes.iter().find(|v| v.name() == name);
+        if let Some(volume) = volume.filter(|_| self.text(name).is_none()) {
+            return Ok(Some(self.cells.pick_of_whole(volume.read()?)));
         }
         let (array, pores) = match self.text(name) {
             Some(_) => (name, Pores::Matrix),

@@ -9,9 +9,12 @@ mod flood;
 mod noise;
 mod plain;
 mod structure;
+mod volumes;
 
 use super::grid::ModelError;
 use super::ids::{Dims, Ijk};
+
+pub use volumes::{SyntheticVolume, VOLUMES, VolumeRecipe};
 
 /// What stands behind a name.
 #[derive(Debug, Clone, Copy)]

@@ -22,6 +22,18 @@ impl Noise {
         (self.octave(p) + 0.5 * self.octave(2.0 * p + 0.37)) / 1.5
     }
 
+    /// The sum of so many octaves, each of half the size and height of the one before, in [-1, 1].
+    pub(super) fn fractal(self, p: DVec3, octaves: u32) -> f64 {
+        let (mut sum, mut most) = (0.0, 0.0);
+        for n in 0..octaves {
+            let scale = f64::from(1_u32 << n);
+            // Moved, so that lattice points do not fall together.
+            sum += self.octave(scale * p + 0.37 * f64::from(n)) / scale;
+            most += 1.0 / scale;
+        }
+        sum / most
+    }
+
     fn octave(self, p: DVec3) -> f64 {
         let corner = p.floor();
         let f = p - corner;

@@ -60,21 +60,14 @@ impl Coordinate {
         }
     }
 
-    fn name(self) -> &'static str {
+    /// Its name, and a short one.
+    fn names(self, lengths: &Lengths) -> [&'static str; 2] {
         match self {
-            Self::Easting => "Easting",
-            Self::Northing => "Northing",
-            Self::Depth => "Depth",
-            Self::Index(axis) => AXES[axis],
-        }
-    }
-
-    fn short_name(self) -> &'static str {
-        match self {
-            Self::Easting => "E",
-            Self::Northing => "N",
-            Self::Depth => "Depth",
-            Self::Index(axis) => AXES[axis],
+            Self::Easting => ["Easting", "E"],
+            Self::Northing => ["Northing", "N"],
+            Self::Depth if lengths.is_time => ["Time"; 2],
+            Self::Depth => ["Depth"; 2],
+            Self::Index(axis) => [AXES[axis]; 2],
         }
     }
 
@@ -95,7 +88,7 @@ impl Coordinate {
         match self {
             Self::Index(_) => Measure::default(),
             Self::Easting | Self::Northing => lengths.map.clone(),
-            Self::Depth => lengths.grid.clone(),
+            Self::Depth => lengths.vertical.clone(),
         }
     }
 }
@@ -182,7 +175,8 @@ impl Scale {
             let free = free.filter(|l| layout.is_free(&l.area) && (moves || !l.is_moved));
             let free: Vec<Label> = free.collect();
             if few && free.len() >= LABELS[1] {
-                self.write(layout, &free, &measure.unit);
+                let names = self.coordinate.names(lengths);
+                self.write(layout, &free, names, &measure.unit);
                 return true;
             }
         }
@@ -248,7 +242,7 @@ impl Scale {
         length * outward.signum() * way
     }
 
-    fn write(&self, layout: &mut Arrangement<'_>, labels: &[Label], unit: &str) {
+    fn write(&self, layout: &mut Arrangement<'_>, labels: &[Label], names: [&str; 2], unit: &str) {
         for label in labels {
             layout.write(&label.text, label.area);
             layout.made.strokes.push([label.at, label.at + label.tick]);
@@ -257,7 +251,7 @@ impl Scale {
             true => name.to_owned(),
             false => format!("{name} ({unit})"),
         };
-        let names = [self.coordinate.name(), self.coordinate.short_name()].map(named);
+        let names = names.map(named);
         let places = names.each_ref().map(|n| self.place(layout, labels, n));
         // The short one where the other would be moved, and may come to lie on the model.
         let is_short = places[0].is_none_or(|(moved, _)| moved > NOT_MOVED);
