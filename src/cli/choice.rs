@@ -1,7 +1,7 @@
 //! Choices by name, as scene files have them, with a sentence for each.
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use strataray::scene::lighting::OcclusionMethod;
+use strataray::scene::lighting::LightMethod;
 use strataray::scene::{Interpolation, LightMode, Mode, Space, Storage, StrategyKind, Units};
 use strataray::view::TurnAxis;
 
@@ -71,12 +71,18 @@ pub const LIGHT_MODES: [NamedChoice<LightMode>; 4] = [
     ),
 ];
 
-pub const OCCLUSION_METHODS: [NamedChoice<OcclusionMethod>; OcclusionMethod::ALL.len()] = {
-    const fn choice(method: OcclusionMethod) -> NamedChoice<OcclusionMethod> {
+pub const OCCLUSION_METHODS: [NamedChoice<LightMethod>; LightMethod::ALL.len()] = {
+    const fn choice(method: LightMethod) -> NamedChoice<LightMethod> {
         (method.name(), method, method.describe())
     }
-    let [cones, surround, shells] = OcclusionMethod::ALL;
-    [choice(cones), choice(surround), choice(shells)]
+    let all = LightMethod::ALL;
+    let mut choices = [choice(all[0]); LightMethod::ALL.len()];
+    let mut n = 1;
+    while n < all.len() {
+        choices[n] = choice(all[n]);
+        n += 1;
+    }
+    choices
 };
 
 pub const STRATEGIES: [NamedChoice<StrategyKind>; StrategyKind::ALL.len()] = {

@@ -27,6 +27,8 @@ pub struct Revisions {
     pub surfaces: u64,
     /// Opacity at points of space. The extinction pyramid, and all light volumes.
     pub extinction: u64,
+    /// Values at points of space, whatever the curve. The pyramid of values.
+    pub placed: u64,
     /// Slopes of values at points of space. The volume of gradients.
     pub gradients: u64,
 }
@@ -54,7 +56,8 @@ impl RevisionCounter {
         let opacities = changes(|a, b| opacities(a) != opacities(b));
         let visible = values || opacities;
         let space = changes(|a, b| space(a) != space(b));
-        let extinction = values || space || opacities;
+        let placed = values || space;
+        let extinction = placed || opacities;
         let gradients = values || space || changes(|a, b| range(a) != range(b));
         for (revision, changes) in [
             (&mut self.now.grid, grid),
@@ -64,6 +67,7 @@ impl RevisionCounter {
             (&mut self.now.transfer, transfer),
             (&mut self.now.surfaces, surfaces),
             (&mut self.now.extinction, extinction),
+            (&mut self.now.placed, placed),
             (&mut self.now.gradients, gradients),
         ] {
             *revision += u64::from(changes);

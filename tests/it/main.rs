@@ -33,6 +33,7 @@ mod first_pictures;
 mod framing;
 mod layout;
 mod libc;
+mod light_methods;
 mod light_updates;
 mod lighting;
 mod limits;

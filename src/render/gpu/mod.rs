@@ -15,6 +15,7 @@ pub mod pyramids;
 mod renderer;
 pub mod resample;
 pub mod round;
+mod sat;
 pub mod shader;
 pub mod slabs;
 pub mod strategies;
@@ -23,6 +24,7 @@ pub mod surfaces;
 mod target;
 pub mod tiles;
 pub mod transfer_tables;
+mod vct;
 pub mod volume;
 
 pub use device::Gpu;

@@ -39,6 +39,10 @@ sources! {
         "cones"
         "around"
         "openness"
+        "inside"
+        "opacity"
+        "sat"
+        "vct"
         "cone_rays"
         "shading"
         "random"
@@ -49,6 +53,7 @@ sources! {
         "faces"
         "illuminate"
         "libc"
+        "moments"
         "paint"
         "peel"
         "plts"
@@ -57,6 +62,7 @@ sources! {
         "resample"
         "solid"
         "srg"
+        "sums"
 }
 
 /// The whole text of a shader with its imports in front, each once.

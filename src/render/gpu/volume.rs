@@ -15,6 +15,7 @@ impl Shape {
         match self.voxel {
             Voxel::Single => wgpu::TextureFormat::R16Float,
             Voxel::Packed => wgpu::TextureFormat::R16Uint,
+            Voxel::Word => wgpu::TextureFormat::R32Uint,
             Voxel::Pair => wgpu::TextureFormat::Rg16Float,
             Voxel::Quad => wgpu::TextureFormat::Rgba16Float,
         }

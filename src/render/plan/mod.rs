@@ -17,10 +17,12 @@ pub mod light;
 mod lists;
 pub mod majorants;
 pub mod packing;
+pub mod sat;
 pub mod srg;
 pub mod surfaces;
 pub mod transfer;
 pub mod tubes;
+pub mod vct;
 pub mod visible;
 pub mod volume;
 
