@@ -5,22 +5,19 @@
 // opacities of a unit of length. Writes opacities, or in the last of three passes optical depths, which is
 // what the pyramid holds. Unit of length is the finest level's standard deviation in world space. Nothing is
 // outside the box.
-#import light
 #import mean
+#import opacity
 
 // What is done.
 override WORK: u32 = 1u;
 // Depths are written.
 override WRITES_DEPTHS: bool = false;
-// Clip planes cut values away.
-override CLIPS: bool = false;
 
 // Opacities are kept below one, as in the transfer function.
 const MOST_OPACITY: f32 = 0.999999;
 // Standard deviations after which a Gaussian ends; voxels that lie there in part count.
 const REACH: f32 = 3.0;
 
-@group(3) @binding(0) var<uniform> blur: BlurInfo;
 @group(3) @binding(1) var<uniform> slab: Slab;
 @group(3) @binding(2) var source: texture_3d<f32>;
 @group(3) @binding(3) var<storage, read_write> voxels: array<u32>;
@@ -37,7 +34,8 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
 
 fn blurred(voxel: vec3u) -> f32 {
     if WORK == WORK_VALUES {
-        return opacity_of_values(vec3i(voxel));
+        // Outside of the texture, where there are none, this is 0.
+        return with_others(vec3i(voxel), textureLoad(source, voxel, 0).x);
     }
     let ratio = f32(blur.source_count) / f32(blur.made_count);
     let center = (f32(voxel[blur.axis]) + 0.5) * ratio - 0.5;
@@ -66,24 +64,4 @@ fn blurred(voxel: vec3u) -> f32 {
         return -log(1.0 - min(opacity, MOST_OPACITY));
     }
     return opacity;
-}
-
-// Opacity of a unit of length.
-fn opacity_of_values(at: vec3i) -> f32 {
-    let voxel = field_voxel(at);
-    let in_cell = transfer_at(blur.position_low + blur.position_scale * voxel.value).w;
-    var coverage = voxel.coverage;
-    // Outside of the texture, where there are none, this is 0.
-    var occluders = textureLoad(source, at, 0).x;
-    if CLIPS {
-        let point = blur.box_low + (vec3f(at) + 0.5) * blur.spacing;
-        for (var n = 0u; n < blur.clip_count; n++) {
-            let plane = blur.clip_planes[n];
-            let is_kept = dot(plane.xyz, point) + plane.w >= 0.0;
-            coverage = select(0.0, coverage, is_kept);
-            occluders = select(0.0, occluders, is_kept);
-        }
-    }
-    let opacity = coverage * (1.0 - exp(-select(in_cell, blur.ghost, voxel.is_ghost) * blur.sigma));
-    return 1.0 - (1.0 - opacity) * (1.0 - occluders);
 }

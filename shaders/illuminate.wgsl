@@ -1,9 +1,11 @@
 // Light volumes: what the rays sample instead of tracing cones (campagnolo-2021, 3.3.3 and 4.2).
 //
 // Dispatch covers a slab. `main`: one thread = the transmittances of the cones from two voxels along x to
-// one emitter, or to all sides; reads the pyramid, or mean opacities. `gradient`: one thread = the gradient of the field around a voxel; reads
+// one emitter, or to all sides; reads the pyramid of extinction or of values, sums of extinction, or mean opacities. `gradient`: one thread = the gradient of the field around a voxel; reads
 // the volume of values.
 #import around
+#import sat
+#import vct
 
 @group(3) @binding(0) var<uniform> slab: Slab;
 // The emitter, and the slice at which its volume begins.
@@ -27,6 +29,10 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
             pair[side] = surround_openness(emitter, p);
         } else if METHOD == METHOD_SPAO_MIPMAP {
             pair[side] = shells_openness(p);
+        } else if METHOD == METHOD_VCT {
+            pair[side] = vct_transmittance(emitter, p);
+        } else if METHOD == METHOD_SAT {
+            pair[side] = sat_transmittance(emitter, p);
         } else {
             pair[side] = cone_transmittance(emitter, p);
         }

@@ -1,6 +1,7 @@
 // Occlusion from all sides: by cones in even directions, or by mean opacities of shells around a point (SPAO,
 // kroes-2014). src/render/plan/around.rs says how.
 #import cones
+#import inside
 #import openness
 
 // Each shell counts as one voxel.
@@ -40,9 +41,6 @@ fn shells_openness(p: vec3f) -> f32 {
 
 // Mean opacity of a cube of 2^level voxels around a point; there is nothing outside of the box.
 fn cube_opacity(p: vec3f, level: u32) -> f32 {
-    let half_edge = 0.5 * exp2(f32(level));
-    let inside = min(p + half_edge, lighting.size) - max(p - half_edge, vec3f(0.0));
-    let part = clamp(inside / (2.0 * half_edge), vec3f(0.0), vec3f(1.0));
     let mean = textureSampleLevel(opacities, smooth_sampler, p / lighting.size, f32(level)).x;
-    return part.x * part.y * part.z * mean;
+    return part_inside(p, 0.5 * exp2(f32(level))) * mean;
 }

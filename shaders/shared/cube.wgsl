@@ -8,11 +8,11 @@
 override CUBE: bool = false;
 
 // Value times presence, and presence.
-@group(2) @binding(10) var cube_voxels: texture_3d<f32>;
+@group(2) @binding(13) var cube_voxels: texture_3d<f32>;
 // In rows of LUT_ROW texels: red, green, blue, as they are blended, and extinction at LUT_SIZE positions; then three
 // rows from grid space relative to the origin to the cube's box, its low corner with the distance of samples, its
 // high corner, and offset and factor from stored values to positions.
-@group(2) @binding(11) var cube_table: texture_2d<f32>;
+@group(2) @binding(14) var cube_table: texture_2d<f32>;
 
 // The samples that a ray has not passed yet.
 struct March {

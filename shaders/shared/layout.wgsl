@@ -154,7 +154,8 @@ struct BlurInfo {
     // Extinction of inactive cells.
     ghost: f32,
     clip_count: u32,
-    reserved: u32,
+    // Numbers that a unit of optical depth is counted in, in sums.
+    counts: f32,
     clip_planes: array<vec4f, MAX_CLIP_PLANES>,
 }
 
@@ -293,6 +294,16 @@ const LIGHT_RAYS: u32 = 3u;
 const METHOD_CONES: u32 = 0u;
 const METHOD_SURROUND: u32 = 1u;
 const METHOD_SPAO_MIPMAP: u32 = 2u;
+// Light along a cone through the pyramid of values.
+const METHOD_VCT: u32 = 3u;
+// Light along a cone by boxes of a summed-area table.
+const METHOD_SAT: u32 = 4u;
+// Sums that a pass adds up along an axis, and the optical depth of a unit of length that counts at most.
+const SUM_PARTS: u32 = 8u;
+const DEEPEST: f32 = 8.0;
+// Means and deviations of the table of opacities by mean and deviation.
+const VCT_MEANS: u32 = 1024u;
+const VCT_DEVIATIONS: u32 = 32u;
 // Changes of position over a reference length between which the gradient comes to count; brightness and
 // exponent of highlights.
 const GRADIENT_FADE_LOW: f32 = 0.01;

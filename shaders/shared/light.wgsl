@@ -15,6 +15,14 @@
 @group(2) @binding(8) var smooth_sampler: sampler;
 // Opacities of a unit of length that nothing has blurred.
 @group(2) @binding(9) var opacities: texture_3d<f32>;
+// Mean of the values times the part of a voxel that cells cover, their deviation times that; the part; and that of
+// inactive cells.
+@group(2) @binding(10) var value_pyramid: texture_3d<f32>;
+// Opacities by mean and deviation, in rows of LUT_ROW texels, each with the four between which it lies; behind them that
+// of inactive cells.
+@group(2) @binding(11) var value_opacities: texture_2d<f32>;
+// Sums of counted optical depths over all voxels with smaller or equal indices, which wrap around.
+@group(2) @binding(12) var sums: texture_3d<u32>;
 
 fn light_texel(at: u32) -> vec4u {
     return textureLoad(emitters_and_sections, in_rows(at), 0);

@@ -2,12 +2,17 @@
 #import cones
 #import frame
 #import cone_rays
+#import sat
+#import vct
 
 // Samples are shaded.
 override LIT: bool = false;
 // Where occlusion and the lights' shadows are found: LIGHT_OFF, LIGHT_IMAGE, LIGHT_VOLUME, LIGHT_RAYS.
 override OCCLUSION: u32 = 0u;
 override SHADOWS: u32 = 0u;
+// By which method, at every sample.
+override OCCLUSION_METHOD: u32 = 0u;
+override SHADOWS_METHOD: u32 = 0u;
 // There are lights.
 override LIGHTS: bool = false;
 // They make highlights and shade by the gradient.
@@ -23,7 +28,7 @@ fn shade(color: vec3f, point: vec3f, is_ghost: bool) -> vec3f {
     let p = in_light(point);
     var light = vec3f(lighting.ambient);
     if OCCLUSION != LIGHT_OFF {
-        light *= 1.0 - lighting.strength * (1.0 - transmittance(OCCLUSION, emitter_at(0u), p));
+        light *= 1.0 - lighting.strength * (1.0 - transmittance(OCCLUSION, OCCLUSION_METHOD, emitter_at(0u), p));
     }
     var highlight = vec3f(0.0);
     if LIGHTS {
@@ -36,7 +41,7 @@ fn shade(color: vec3f, point: vec3f, is_ghost: bool) -> vec3f {
                 arriving *= smoothstep(emitter.cos_outer, emitter.cos_inner, dot(-way, emitter.axis));
             }
             if SHADOWS != LIGHT_OFF {
-                arriving *= transmittance(SHADOWS, emitter, p);
+                arriving *= transmittance(SHADOWS, SHADOWS_METHOD, emitter, p);
             }
             if BLINN_PHONG {
                 let half_way = normalize(way + toward(emitter_at(0u), p).xyz + vec3f(1e-6));
@@ -80,8 +85,14 @@ fn surface_at(p: vec3f, is_ghost: bool) -> vec4f {
     return vec4f(gradient / max(size, 1e-9), select(counts, 0.0, is_ghost));
 }
 
-fn transmittance(mode: u32, emitter: Emitter, p: vec3f) -> f32 {
+fn transmittance(mode: u32, method: u32, emitter: Emitter, p: vec3f) -> f32 {
     if mode == LIGHT_IMAGE {
+        if method == METHOD_VCT {
+            return vct_transmittance(emitter, p);
+        }
+        if method == METHOD_SAT {
+            return sat_transmittance(emitter, p);
+        }
         return cone_transmittance(emitter, p);
     }
     if mode == LIGHT_RAYS {

@@ -1,7 +1,8 @@
 //! Choices by name, as scene files have them, with a sentence for each.
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use strataray::scene::lighting::OcclusionMethod;
+use strataray::compare::LightRow;
+use strataray::scene::lighting::LightMethod;
 use strataray::scene::{Interpolation, LightMode, Mode, Space, Storage, StrategyKind, Units};
 use strataray::view::TurnAxis;
 
@@ -71,12 +72,40 @@ pub const LIGHT_MODES: [NamedChoice<LightMode>; 4] = [
     ),
 ];
 
-pub const OCCLUSION_METHODS: [NamedChoice<OcclusionMethod>; OcclusionMethod::ALL.len()] = {
-    const fn choice(method: OcclusionMethod) -> NamedChoice<OcclusionMethod> {
+pub const OCCLUSION_METHODS: [NamedChoice<LightMethod>; LightMethod::ALL.len()] = {
+    const fn choice(method: LightMethod) -> NamedChoice<LightMethod> {
         (method.name(), method, method.describe())
     }
-    let [cones, surround, shells] = OcclusionMethod::ALL;
-    [choice(cones), choice(surround), choice(shells)]
+    let all = LightMethod::ALL;
+    let mut choices = [choice(all[0]); LightMethod::ALL.len()];
+    let mut n = 1;
+    while n < all.len() {
+        choices[n] = choice(all[n]);
+        n += 1;
+    }
+    choices
+};
+
+pub const LIGHT_ROWS: [NamedChoice<LightRow>; LightMethod::ALL.len() + 2] = {
+    let rays = (
+        LightRow::Rays.name(),
+        LightRow::Rays,
+        "Many rays, which the others are measured against",
+    );
+    let off = (
+        LightRow::Off.name(),
+        LightRow::Off,
+        "Without occlusion and shadows",
+    );
+    let mut choices = [rays; LightMethod::ALL.len() + 2];
+    choices[1] = off;
+    let mut n = 0;
+    while n < LightMethod::ALL.len() {
+        let method = LightMethod::ALL[n];
+        choices[n + 2] = (method.name(), LightRow::Method(method), method.describe());
+        n += 1;
+    }
+    choices
 };
 
 pub const STRATEGIES: [NamedChoice<StrategyKind>; StrategyKind::ALL.len()] = {

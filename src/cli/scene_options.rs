@@ -7,7 +7,7 @@ use anyhow::Context;
 use strataray::case::load::{self, CasePaths};
 use strataray::case::{Case, GridPool, Minus, distinct_names, minus};
 use strataray::render::{self, Executor};
-use strataray::scene::lighting::{OcclusionMethod, PRESETS};
+use strataray::scene::lighting::{LightMethod, PRESETS};
 use strataray::scene::read_text;
 use strataray::scene::{
     CameraSpec, FramingCamera, Interpolation, LightMode, LightingSpec, Mode, Projection, Scene,
@@ -56,9 +56,12 @@ pub struct SceneOptions {
     /// Occlusion toward the viewer, and where it is found.
     #[arg(long, value_name = "MODE", value_parser = one_of(&LIGHT_MODES))]
     occlusion: Option<LightMode>,
-    /// Which way occlusion looks: toward the viewer, or to all sides.
+    /// How occlusion is found, toward the viewer or to all sides.
     #[arg(long, value_name = "METHOD", value_parser = one_of(&OCCLUSION_METHODS))]
-    occlusion_method: Option<OcclusionMethod>,
+    occlusion_method: Option<LightMethod>,
+    /// How shadows of lights are found, by a method that looks along cones.
+    #[arg(long, value_name = "METHOD", value_parser = one_of(&OCCLUSION_METHODS), hide_possible_values = true)]
+    shadow_method: Option<LightMethod>,
     /// Preset of occlusion and lights.
     #[arg(long, value_name = "NAME", value_parser = lighting_preset, help = lighting_help())]
     lighting: Option<LightingSpec>,
@@ -169,6 +172,9 @@ impl SceneOptions {
         }
         if let Some(method) = self.occlusion_method {
             scene.lighting.occlusion.get_or_insert_default().method = method;
+        }
+        if let Some(method) = self.shadow_method {
+            scene.lighting.shadows.method = method;
         }
         if let Some(size) = &self.size {
             let parsed = size

@@ -1,13 +1,16 @@
-//! Strategies side by side: the same views by each, measured against one reference.
+//! Pictures side by side: the same views by each strategy, light method or setting, measured against a truth.
 //!
 //! A [`Plan`] says what is compared, a [`Comparer`] makes the pictures and figures of one view after
 //! another, and a [`Report`] writes them into a folder for people and for programs.
 
+mod light;
 pub mod markdown;
+mod plan;
 mod plots;
 mod report;
 mod row;
 mod sheet;
+mod sweep;
 mod tables;
 
 use std::sync::Arc;
@@ -18,70 +21,43 @@ use crate::image::{Image, Rgb8};
 use crate::model::Grid;
 use crate::reference;
 use crate::render::{Executor, Frame, RenderError, Renderer};
-use crate::scene::StrategyKind;
-use crate::view::{NamedView, View};
+use crate::view::View;
 
+pub use light::LightRow;
+pub use plan::{Contender, Plan, Reference, Source, Truth};
 pub use report::{Report, ReportError};
 pub use row::Row;
+pub use sweep::{Sweep, SweepError, SweepPlanError};
 pub use tables::{Setting, summary};
-
-/// What the pictures are measured against.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Reference {
-    /// The f64 reference on the CPU.
-    Cpu,
-    /// The pictures of a strategy, whose own figures are perfect then.
-    Strategy(StrategyKind),
-}
-
-impl Reference {
-    /// Its name in rows and files.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Cpu => "cpu",
-            Self::Strategy(kind) => kind.name(),
-        }
-    }
-
-    /// True where this strategy is the reference.
-    pub fn is(self, strategy: StrategyKind) -> bool {
-        self == Self::Strategy(strategy)
-    }
-}
-
-/// What is compared.
-#[derive(Debug, Clone)]
-pub struct Plan {
-    /// The strategies, each once.
-    pub strategies: Vec<StrategyKind>,
-    /// What they are measured against.
-    pub reference: Reference,
-    /// The views, all of the same size and the same cells and values; their strategy does not matter.
-    pub views: Vec<NamedView>,
-    /// Frames to time for each picture, after one to warm up.
-    pub frames: usize,
-}
 
 /// All pictures of one view.
 pub struct Compared {
     /// Number of the view in the plan.
     pub view: usize,
-    /// The reference, or the sentence that says why there is none.
-    pub reference: Result<Rgb8, String>,
-    /// What the reference took.
-    pub reference_time: Duration,
-    /// One for each strategy, in the plan's order.
+    /// One for each truth, in the plan's order.
+    pub truths: Vec<Found>,
+    /// One for each contender, in the plan's order.
     pub outcomes: Vec<Outcome>,
 }
 
-/// What a strategy made of a view.
+/// What came of a truth in a view.
+pub struct Found {
+    /// Its picture, or the sentence that says why there is none.
+    pub picture: Result<Rgb8, String>,
+    /// Which pixels the model covers.
+    covered: Vec<bool>,
+    /// What it took.
+    pub time: Duration,
+}
+
+/// What a contender made of a view.
 pub struct Outcome {
     /// Its figures.
     pub row: Row,
     /// Its picture over the background; `None` where it failed.
     pub picture: Option<Rgb8>,
-    /// CIEDE2000 difference of each pixel to the reference; `None` where there is nothing to compare
-    /// or this is the reference itself.
+    /// CIEDE2000 difference of each pixel to its truth; `None` where there is nothing to compare
+    /// or this is the truth itself.
     pub differences: Option<Vec<f64>>,
 }
 
@@ -89,15 +65,47 @@ pub struct Outcome {
 pub struct Comparer<'a> {
     plan: &'a Plan,
     renderer: Box<dyn Renderer>,
-    /// What the first preparation of each strategy took.
-    prepared: Vec<(StrategyKind, Duration)>,
+    /// What the first preparation of each contender took.
+    prepared: Vec<Option<Prepared>>,
+}
+
+/// What preparing for the first picture of a contender took.
+#[derive(Debug, Clone, Copy)]
+struct Prepared {
+    all: Duration,
+    /// Of it, extinction and light volumes; `None` without light.
+    light: Option<Duration>,
 }
 
 /// Is told the fraction done and returns false to cancel.
 type Told<'a> = dyn Fn(f64) -> bool + Sync + 'a;
 
+/// Alpha above which the model covers a pixel.
+const COVERED: f32 = 0.05;
+
+impl Found {
+    fn of(image: &Image, view: &View, time: Duration) -> Self {
+        Self {
+            picture: Ok(finished(image, view)),
+            covered: image.pixels.iter().map(|p| p[3] > COVERED).collect(),
+            time,
+        }
+    }
+
+    fn of_attempt(attempt: &Attempt, view: &View) -> Self {
+        match attempt {
+            Ok(frame) => Self::of(&frame.image, view, frame.stats.frame),
+            Err(error) => Self {
+                picture: Err(error.clone()),
+                covered: Vec::new(),
+                time: Duration::ZERO,
+            },
+        }
+    }
+}
+
 impl<'a> Comparer<'a> {
-    /// Uploads the grid with the values of the views, so that no strategy's preparation has to.
+    /// Uploads the grid with the values of the views, so that nobody's preparation has to.
     ///
     /// # Errors
     /// When the adapter cannot hold them.
@@ -107,118 +115,126 @@ impl<'a> Comparer<'a> {
         plan: &'a Plan,
     ) -> Result<Self, RenderError> {
         let mut renderer = executor.renderer(grid)?;
-        if let Some(first) = plan.views.first() {
-            renderer.prepare(&first.view)?;
+        if let Some(first) = plan.first_view() {
+            renderer.prepare(first)?;
         }
         Ok(Self {
             plan,
             renderer,
-            prepared: Vec::new(),
+            prepared: vec![None; plan.contenders.len()],
         })
     }
 
     /// Makes the pictures of view number `n`; `None` where `progress`, which is told the fraction done,
-    /// returned false, or where there is no such view. A strategy that fails has a row that says so.
+    /// returned false, or where there is no such view. A contender that fails has a row that says so.
     pub fn view(&mut self, n: usize, progress: &Told) -> Option<Compared> {
         let plan = self.plan;
-        let view = &plan.views.get(n)?.view;
+        plan.views.get(n)?;
         let mut pictures = Pictures {
             done: 0,
             all: plan.images_per_view(),
             progress,
         };
         let mut shots = Vec::new();
-        for &kind in &plan.strategies {
-            shots.push((kind, self.timed(view, kind, &mut pictures)?));
+        for (number, contender) in plan.contenders.iter().enumerate() {
+            shots.push(self.timed(number, contender, n, &mut pictures)?);
         }
-        let (reference, reference_time) = self.reference(view, &shots, &mut pictures)?;
-        let outcome = |(kind, shot)| self.outcome(n, kind, shot, reference.as_ref());
+        let mut truths = Vec::new();
+        for truth in &plan.truths {
+            truths.push(self.truth(truth, n, &shots, &mut pictures)?);
+        }
+        let contenders = plan.contenders.iter().enumerate();
+        let outcome = |((number, contender), shot): ((usize, &Contender), Attempt)| {
+            self.outcome(n, number, contender, shot, &truths[contender.truth])
+        };
         Some(Compared {
             view: n,
-            outcomes: shots.into_iter().map(outcome).collect(),
-            reference,
-            reference_time,
+            outcomes: contenders.zip(shots).map(outcome).collect(),
+            truths,
         })
     }
 
-    /// The median frame of a strategy after one to warm up.
+    /// The median frame of a contender after one to warm up.
     fn timed(
         &mut self,
-        view: &View,
-        kind: StrategyKind,
+        number: usize,
+        contender: &Contender,
+        n: usize,
         pictures: &mut Pictures,
     ) -> Option<Attempt> {
+        let view = &contender.views[n];
+        let all = self.plan.images_of(contender);
+        if self.prepared[number].is_none() && !view.style.lighting.is_off() {
+            // What others have left of light would not be made for this one.
+            if let Err(error) = self.renderer.render(&dark(view), &|_| true) {
+                pictures.done += all;
+                return Some(Err(error.to_string()));
+            }
+        }
         let mut frames = Vec::new();
-        for n in 0..=self.plan.frames.max(1) {
-            match self.frame(view, kind, pictures)? {
+        for done in 0..all {
+            match self.frame(view, pictures)? {
                 Err(error) => {
-                    pictures.done += self.plan.frames.max(1) - n;
+                    pictures.done += all - 1 - done;
                     return Some(Err(error));
                 }
-                Ok(frame) if n == 0 => self.remember(kind, frame.prepare),
-                Ok(frame) => frames.push(frame),
+                Ok(frame) => {
+                    if done == 0 {
+                        self.prepared[number].get_or_insert_with(|| Prepared::of(&frame, view));
+                    }
+                    if done > 0 || all == 1 {
+                        frames.push(frame);
+                    }
+                }
             }
         }
         Some(Frame::median(frames).ok_or_else(|| "no frame was timed".into()))
     }
 
-    fn frame(
-        &mut self,
-        view: &View,
-        kind: StrategyKind,
-        pictures: &mut Pictures,
-    ) -> Option<Attempt> {
-        let view = view.by(kind);
+    fn frame(&mut self, view: &View, pictures: &mut Pictures) -> Option<Attempt> {
         let progress = pictures.next();
-        match self.renderer.render(&view, &progress) {
+        match self.renderer.render(view, &progress) {
             Err(RenderError::Canceled) => None,
             rendered => Some(rendered.map_err(|error| error.to_string())),
         }
     }
 
-    fn remember(&mut self, kind: StrategyKind, prepare: Duration) {
-        if self.prepared(kind).is_none() {
-            self.prepared.push((kind, prepare));
-        }
-    }
-
-    fn prepared(&self, kind: StrategyKind) -> Option<Duration> {
-        let found = self.prepared.iter().find(|(k, _)| *k == kind);
-        found.map(|(_, prepare)| *prepare)
-    }
-
-    /// The reference of a view and what it took.
-    fn reference(
+    /// The truth of a view and what it took.
+    fn truth(
         &mut self,
-        view: &View,
-        shots: &[(StrategyKind, Attempt)],
+        truth: &Truth,
+        n: usize,
+        shots: &[Attempt],
         pictures: &mut Pictures,
-    ) -> Option<(Result<Rgb8, String>, Duration)> {
-        let of_frame = |shot: &Attempt| match shot {
-            Ok(frame) => (Ok(finished(&frame.image, view)), frame.stats.frame),
-            Err(error) => (Err(error.clone()), Duration::ZERO),
-        };
-        let Reference::Strategy(kind) = self.plan.reference else {
-            let start = Instant::now();
-            let image = reference::render(self.renderer.grid(), view, &pictures.next())?;
-            return Some((Ok(finished(&image, view)), start.elapsed()));
-        };
-        Some(match shots.iter().find(|(k, _)| *k == kind) {
-            Some((_, shot)) => of_frame(shot),
-            None => of_frame(&self.frame(view, kind, pictures)?),
+    ) -> Option<Found> {
+        Some(match &truth.source {
+            Source::Contender(of) => {
+                Found::of_attempt(&shots[*of], &self.plan.contenders[*of].views[n])
+            }
+            Source::Executor(views) => {
+                Found::of_attempt(&self.frame(&views[n], pictures)?, &views[n])
+            }
+            Source::Cpu(views) => {
+                let start = Instant::now();
+                let image = reference::render(self.renderer.grid(), &views[n], &pictures.next())?;
+                Found::of(&image, &views[n], start.elapsed())
+            }
         })
     }
 
     fn outcome(
         &self,
         n: usize,
-        kind: StrategyKind,
+        number: usize,
+        contender: &Contender,
         shot: Attempt,
-        reference: Result<&Rgb8, &String>,
+        truth: &Found,
     ) -> Outcome {
-        let named = &self.plan.views[n];
-        let mut row = Row::of(kind, n, &named.name, self.plan.reference);
-        row.prepare_ms = self.prepared(kind).map(row::ms);
+        let mut row = Row::of(self.plan, contender, n);
+        if let Some(prepared) = self.prepared[number] {
+            row.prepare_ms = Some(row::ms(prepared.all));
+            row.light_ms = prepared.light.map(row::ms);
+        }
         let frame = match shot {
             Ok(frame) => frame,
             Err(error) => {
@@ -231,12 +247,17 @@ impl<'a> Comparer<'a> {
             }
         };
         row.cost(&frame);
-        let picture = finished(&frame.image, &named.view);
-        match quality(&picture, reference) {
+        let picture = finished(&frame.image, &contender.views[n]);
+        match quality(&picture, truth) {
             Ok(quality) => row.quality(&quality),
             Err(error) => row.error = Some(error),
         }
-        let other = reference.ok().filter(|_| !row.is_reference());
+        let other = truth.picture.as_ref().ok().filter(|_| !row.is_reference());
+        row.brighter = truth
+            .picture
+            .as_ref()
+            .ok()
+            .and_then(|t| brighter(&picture, t, &truth.covered));
         Outcome {
             row,
             differences: other.and_then(|r| ciede2000_map(&picture.pixels, &r.pixels)),
@@ -245,9 +266,40 @@ impl<'a> Comparer<'a> {
     }
 }
 
-fn quality(picture: &Rgb8, reference: Result<&Rgb8, &String>) -> Result<Comparison, String> {
-    let reference = reference.map_err(|error| format!("there is no reference: {error}"))?;
-    Comparison::of(picture, reference).map_err(|error| error.to_string())
+impl Prepared {
+    fn of(frame: &Frame, view: &View) -> Self {
+        let light = frame.light.extinction + frame.light.volumes;
+        Self {
+            all: frame.prepare,
+            light: (!view.style.lighting.is_off()).then_some(light),
+        }
+    }
+}
+
+/// The same view without light, and small.
+fn dark(view: &View) -> View {
+    let mut dark = view.clone();
+    dark.size = [8, 8];
+    dark.style.lighting.occlusion = None;
+    dark.style.lighting.lights.clear();
+    dark.style.lighting.blinn_phong = false;
+    dark
+}
+
+fn quality(picture: &Rgb8, truth: &Found) -> Result<Comparison, String> {
+    let truth = truth.picture.as_ref();
+    let truth = truth.map_err(|error| format!("there is no reference: {error}"))?;
+    Comparison::of(picture, truth).map_err(|error| error.to_string())
+}
+
+/// Mean of how much brighter a picture is than its truth where the model covers that, of 255; `None` where it covers
+/// nothing.
+fn brighter(picture: &Rgb8, truth: &Rgb8, covered: &[bool]) -> Option<f64> {
+    let light = |p: &[u8; 3]| p.iter().map(|c| f64::from(*c)).sum::<f64>() / 3.0;
+    let pairs = picture.pixels.iter().zip(&truth.pixels);
+    let among = pairs.zip(covered).filter(|(_, covered)| **covered);
+    let differences: Vec<f64> = among.map(|((a, b), _)| light(a) - light(b)).collect();
+    (!differences.is_empty()).then(|| crate::image::metrics::mean(&differences))
 }
 
 /// A frame, or the sentence that says why there is none.
@@ -258,18 +310,6 @@ fn finished(image: &Image, view: &View) -> Rgb8 {
     Rgb8 {
         size: image.size,
         pixels: image.over_background_8bit(view.style.background),
-    }
-}
-
-impl Plan {
-    /// True where the reference is one of the strategies compared, so that it has rows.
-    fn has_reference(&self) -> bool {
-        self.strategies.iter().any(|k| self.reference.is(*k))
-    }
-
-    fn images_per_view(&self) -> usize {
-        let frames = 1 + self.frames.max(1);
-        self.strategies.len() * frames + usize::from(!self.has_reference())
     }
 }
 
@@ -286,5 +326,23 @@ impl<'a> Pictures<'a> {
         let (before, all, progress) = (self.done as f64, self.all as f64, self.progress);
         self.done += 1;
         move |fraction| progress((before + fraction) / all)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn brightness_is_signed_and_of_covered_pixels_alone() {
+        let picture = |values: [u8; 3]| Rgb8 {
+            size: [3, 1],
+            pixels: values.map(|v| [v; 3]).to_vec(),
+        };
+        let (a, b) = (picture([10, 20, 200]), picture([14, 20, 0]));
+        let covered = [true, true, false];
+        assert_eq!(brighter(&a, &b, &covered), Some(-2.0));
+        assert_eq!(brighter(&b, &a, &covered), Some(2.0));
+        assert_eq!(brighter(&a, &b, &[false; 3]), None);
     }
 }

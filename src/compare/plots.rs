@@ -1,10 +1,9 @@
 //! Figures over the views as line plots.
 
-use super::{Plan, Row};
+use super::{Contender, Plan, Row};
 use crate::case::Case;
 use crate::image::Rgb8;
 use crate::picture::{Plot, Series};
-use crate::scene::StrategyKind;
 
 /// Width and height of the plots.
 const SIZE: [u32; 2] = [900, 420];
@@ -62,36 +61,40 @@ pub fn all(case: &Case, plan: &Plan, rows: &[Row]) -> Vec<(&'static str, Rgb8)> 
 fn x_label(plan: &Plan) -> String {
     match plan.views.as_slice() {
         [] => String::new(),
-        [only] => format!("View: {}", only.name),
-        [first, .., last] => format!("View, from {} to {}", first.name, last.name),
+        [only] => format!("View: {only}"),
+        [first, .., last] => format!("View, from {first} to {last}"),
     }
 }
 
 impl Figure {
     fn plot(&self, case: &Case, plan: &Plan, rows: &[Row]) -> Plot {
-        let against = match self.is_quality {
-            true => format!(" against {}", plan.reference.name()),
-            false => String::new(),
+        let against = match (self.is_quality, plan.truths.as_slice()) {
+            (true, [only]) => format!(" against {}", only.name),
+            (true, _) => " against its reference".to_owned(),
+            (false, _) => String::new(),
         };
-        let series = |kind: &StrategyKind| match self.is_quality && plan.reference.is(*kind) {
-            // Nothing to see, but a strategy keeps its color in all plots.
-            true => Series::default(),
-            false => self.series(kind.name(), rows),
+        let series = |contender: &Contender| {
+            let truth = &plan.truths[contender.truth].name;
+            match self.is_quality && truth == contender.name() {
+                // Nothing to see, but a contender keeps its color in all plots.
+                true => Series::default(),
+                false => self.series(contender.name(), rows),
+            }
         };
         Plot {
             title: format!("{}{against}", case.about.name),
             x_label: x_label(plan),
             y_label: self.label.into(),
             log_y: self.log,
-            series: plan.strategies.iter().map(series).collect(),
+            series: plan.contenders.iter().map(series).collect(),
         }
     }
 
-    fn series(&self, strategy: &str, rows: &[Row]) -> Series {
-        let own = rows.iter().filter(|row| row.strategy == strategy);
+    fn series(&self, name: &str, rows: &[Row]) -> Series {
+        let own = rows.iter().filter(|row| row.name() == name);
         let point = |row: &Row| [row.view as f64, (self.value)(row).unwrap_or(f64::NAN)];
         Series {
-            name: strategy.to_owned(),
+            name: name.to_owned(),
             points: own.map(point).collect(),
         }
     }

@@ -6,7 +6,7 @@ use std::{fs, io};
 
 use super::sheet::Sheet;
 use super::tables::Setting;
-use super::{Compared, Outcome, Plan, Row, plots, tables};
+use super::{Compared, Outcome, Row, Source, plots, tables};
 use crate::image::Rgb8;
 use crate::picture::{PictureError, SheetError, difference_picture, write_png};
 
@@ -78,11 +78,13 @@ impl<'a> Report<'a> {
             ..
         } = self.setting;
         self.sheet.add(plan, &compared, difference_scale);
-        if let Ok(reference) = &compared.reference {
-            self.reference_times.push(compared.reference_time);
-            if !plan.has_reference() {
-                let name = plan.picture_file(compared.view, plan.reference.name());
-                self.write(&name, reference)?;
+        for (truth, found) in plan.truths.iter().zip(&compared.truths) {
+            if let Ok(picture) = &found.picture {
+                self.reference_times.push(found.time);
+                if !matches!(truth.source, Source::Contender(_)) {
+                    let name = plan.picture_file(compared.view, &truth.name);
+                    self.write(&name, picture)?;
+                }
             }
         }
         for outcome in compared.outcomes {
@@ -119,17 +121,19 @@ impl<'a> Report<'a> {
             differences,
         } = outcome;
         if let Some(picture) = &picture {
-            let name = plan.picture_file(row.view, row.strategy);
+            let name = plan.picture_file(row.view, row.name());
             self.write(&name, picture)?;
             row.picture = Some(name);
         }
-        if let Some(differences) = &differences {
-            let name = plan.picture_file(row.view, &format!("{}_difference", row.strategy));
-            let [strategy, reference] = [row.strategy, row.reference];
-            let title = format!("{strategy} against {reference}, view {}", row.view_title());
-            let size = plan.views[row.view].view.size;
+        if let (Some(differences), Some(Rgb8 { size, .. })) = (&differences, &picture) {
+            let name = plan.picture_file(row.view, &format!("{}_difference", row.name()));
+            let [own, reference] = [row.name(), &row.reference];
+            let title = format!("{own} against {reference}, view {}", row.view_title());
             let scale = self.setting.difference_scale;
-            self.write(&name, &difference_picture(differences, size, scale, &title))?;
+            self.write(
+                &name,
+                &difference_picture(differences, *size, scale, &title),
+            )?;
             row.difference = Some(name);
         }
         Ok(row)
@@ -144,13 +148,5 @@ impl<'a> Report<'a> {
         let path = self.folder.join(name);
         let written = text.and_then(|text| fs::write(&path, text));
         written.map_err(ReportError::write(&path))
-    }
-}
-
-impl Plan {
-    /// File of a picture of a view; sorted by name they stand in the order of the views.
-    pub(super) fn picture_file(&self, view: usize, what: &str) -> String {
-        let digits = self.views.len().saturating_sub(1).to_string().len();
-        format!("view_{view:0digits$}_{what}.png")
     }
 }

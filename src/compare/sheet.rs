@@ -1,4 +1,4 @@
-//! The contact sheet: a line for each view, with the reference and each strategy beside its differences.
+//! The contact sheet: a line for each view, with the references and each contender beside its differences.
 
 use super::tables::{figure, with_unit};
 use super::{Compared, Outcome, Plan, Row};
@@ -18,22 +18,27 @@ pub struct Sheet {
 impl Sheet {
     /// Adds the line of a view.
     pub fn add(&mut self, plan: &Plan, compared: &Compared, difference_scale: f64) {
-        let named = &plan.views[compared.view];
-        let empty = Rgb8::filled(named.view.size, [255; 3]);
+        let Some(first) = plan.contenders.first() else {
+            return;
+        };
+        let size = first.views[compared.view].size;
+        let empty = Rgb8::filled(size, [255; 3]);
         let mut add = |picture: Option<&Rgb8>, caption: String| {
             let tile = picture.unwrap_or(&empty).shrunk(WIDEST);
             self.tiles.push((tile, caption));
         };
-        let view = format!("view {}, {}", compared.view, named.name);
-        let reference = plan.reference.name();
-        let said = match &compared.reference {
-            Ok(_) => {
-                let ms = 1e3 * compared.reference_time.as_secs_f64();
-                format!("{reference}, the reference: {ms:.0} ms")
-            }
-            Err(error) => format!("{reference}, the reference, failed: {error}"),
-        };
-        add(compared.reference.as_ref().ok(), format!("{view}\n{said}"));
+        let view = format!("view {}, {}", compared.view, plan.views[compared.view]);
+        for (truth, found) in plan.truths.iter().zip(&compared.truths) {
+            let name = &truth.name;
+            let said = match &found.picture {
+                Ok(_) => {
+                    let ms = 1e3 * found.time.as_secs_f64();
+                    format!("{name}, the reference: {ms:.0} ms")
+                }
+                Err(error) => format!("{name}, the reference, failed: {error}"),
+            };
+            add(found.picture.as_ref().ok(), format!("{view}\n{said}"));
+        }
         let others = compared.outcomes.iter();
         for outcome in others.filter(|o| !o.row.is_reference()) {
             let Outcome {
@@ -43,7 +48,7 @@ impl Sheet {
             } = outcome;
             add(picture.as_ref(), format!("{view}\n{}", cost(row)));
             let map = differences.as_ref();
-            let map = map.map(|d| difference_colors(d, named.view.size, difference_scale));
+            let map = map.map(|d| difference_colors(d, size, difference_scale));
             add(map.as_ref(), quality(row));
         }
         self.views += 1;
@@ -63,9 +68,9 @@ impl Sheet {
 
 fn cost(row: &Row) -> String {
     match (row.frame_ms, &row.error) {
-        (Some(ms), _) => format!("{}: {ms:.0} ms", row.strategy),
-        (None, Some(error)) => format!("{} failed: {error}", row.strategy),
-        (None, None) => row.strategy.to_owned(),
+        (Some(ms), _) => format!("{}: {ms:.0} ms", row.name()),
+        (None, Some(error)) => format!("{} failed: {error}", row.name()),
+        (None, None) => row.name().to_owned(),
     }
 }
 
@@ -75,7 +80,7 @@ fn quality(row: &Row) -> String {
     }
     format!(
         "{} against {}\n{}, CIEDE2000 {}",
-        row.strategy,
+        row.name(),
         row.reference,
         with_unit(row.psnr_db),
         figure(row.ciede2000_mean, 3)

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use super::plots::FIGURES;
 use super::row::ms;
-use super::{Plan, Reference, Row};
+use super::{Contender, Plan, Row, Source, Truth};
 use crate::case::Case;
 use crate::compare::markdown::{self, row, table};
 use crate::model::Space;
@@ -27,14 +27,17 @@ pub struct Setting<'a> {
 /// The file with all images of all views.
 pub(super) const SHEET: &str = "sheet.png";
 
-/// What the rows of a strategy come to.
+/// What the rows of a contender come to.
 struct Digest {
-    strategy: &'static str,
+    name: String,
     is_reference: bool,
+    is_floor: bool,
     worst_psnr_db: Option<f64>,
     worst_ssim: Option<f64>,
     mean_ciede2000: Option<f64>,
     worst_ciede2000_p99: Option<f64>,
+    brighter: Option<f64>,
+    light_ms: Option<f64>,
     median_ms: Option<f64>,
     prepare_ms: Option<f64>,
     gpu_bytes: Option<u64>,
@@ -44,20 +47,22 @@ struct Digest {
 }
 
 impl Digest {
-    fn of(strategy: &'static str, rows: &[Row]) -> Self {
-        let own: Vec<&Row> = rows.iter().filter(|r| r.strategy == strategy).collect();
+    fn of(name: &str, rows: &[Row]) -> Self {
+        let own: Vec<&Row> = rows.iter().filter(|r| r.name() == name).collect();
         let all = |value: fn(&Row) -> Option<f64>| own.iter().copied().filter_map(value);
         let mut times: Vec<f64> = all(|r| r.frame_ms).collect();
         times.sort_by(f64::total_cmp);
-        let differences: Vec<f64> = all(|r| r.ciede2000_mean).collect();
+        let mean_of = |value| mean(all(value).collect());
         Self {
-            strategy,
+            name: name.to_owned(),
             is_reference: own.iter().any(|r| r.is_reference()),
+            is_floor: own.iter().any(|r| r.is_floor),
             worst_psnr_db: all(|r| r.psnr_db).min_by(f64::total_cmp),
             worst_ssim: all(|r| r.ssim).min_by(f64::total_cmp),
-            mean_ciede2000: Some(crate::image::metrics::mean(&differences))
-                .filter(|m| m.is_finite()),
+            mean_ciede2000: mean_of(|r| r.ciede2000_mean),
             worst_ciede2000_p99: all(|r| r.ciede2000_p99).max_by(f64::total_cmp),
+            brighter: mean_of(|r| r.brighter),
+            light_ms: all(|r| r.light_ms).next(),
             median_ms: times.get(times.len() / 2).copied(),
             prepare_ms: all(|r| r.prepare_ms).next(),
             gpu_bytes: own.iter().filter_map(|r| r.gpu_bytes).max(),
@@ -67,37 +72,53 @@ impl Digest {
         }
     }
 
-    /// One of each strategy, in the order of the rows.
+    /// One of each contender, in the order of the rows.
     fn all(rows: &[Row]) -> Vec<Self> {
         let mut names: Vec<&str> = Vec::new();
         for row in rows {
-            if !names.contains(&row.strategy) {
-                names.push(row.strategy);
+            if !names.contains(&row.name()) {
+                names.push(row.name());
             }
         }
         names.into_iter().map(|n| Self::of(n, rows)).collect()
     }
 }
 
-/// Who is closest to the reference and who is fast, and a table of the strategies over all views.
+/// Mean of some figures; `None` of none.
+fn mean(values: Vec<f64>) -> Option<f64> {
+    Some(crate::image::metrics::mean(&values)).filter(|m| m.is_finite())
+}
+
+/// What rows are called that have these.
+fn heading(rows: &[Row]) -> &'static str {
+    match rows.iter().any(|r| r.setting.is_some()) {
+        true => "setting",
+        false => "strategy",
+    }
+}
+
+/// Who is closest to the reference and who is fast, and a table of the contenders over all views.
 pub fn summary(rows: &[Row]) -> String {
     let digests = Digest::all(rows);
     let times = digests.iter().filter_map(|d| d.median_ms);
     let slowest = times.fold(f64::NAN, f64::max);
-    let mut lines = vec![row([
-        "strategy",
+    let is_lit = rows.iter().any(|r| r.light_ms.is_some());
+    let mut head = row([
+        heading(rows),
         "PSNR dB, worst",
         "SSIM, worst",
         "CIEDE2000, mean",
         "p99, worst",
+        "brighter, of 255",
         "ms a frame",
         "speed",
         "ms to prepare",
-        "GPU MB",
-        "recovered rays",
-        "lost rays",
-        "failed",
-    ])];
+    ]);
+    if is_lit {
+        head.push("of it light".into());
+    }
+    head.extend(row(["GPU MB", "recovered rays", "lost rays", "failed"]));
+    let mut lines = vec![head];
     for digest in &digests {
         let speed = digest.median_ms.map(|ms| slowest / ms);
         let reference = if digest.is_reference {
@@ -105,47 +126,64 @@ pub fn summary(rows: &[Row]) -> String {
         } else {
             ""
         };
-        lines.push(vec![
-            format!("{}{reference}", digest.strategy),
+        let mut line = vec![
+            format!("{}{reference}", digest.name),
             decibels(digest.worst_psnr_db),
             figure(digest.worst_ssim, 5),
             figure(digest.mean_ciede2000, 4),
             figure(digest.worst_ciede2000_p99, 3),
+            signed(digest.brighter),
             figure(digest.median_ms, 1),
             figure(speed, 1),
             figure(digest.prepare_ms, 1),
+        ];
+        if is_lit {
+            line.push(figure(digest.light_ms, 1));
+        }
+        line.extend([
             megabytes(digest.gpu_bytes),
             digest.recovered_rays.to_string(),
             digest.lost_rays.to_string(),
             digest.failures.to_string(),
         ]);
+        lines.push(line);
     }
     format!("{}\n{}", verdict(&digests), table(&lines, 1))
 }
 
 fn verdict(digests: &[Digest]) -> String {
     let mut text = String::new();
-    let others = digests.iter().filter(|d| !d.is_reference);
+    let others = digests.iter().filter(|d| !d.is_reference && !d.is_floor);
     let measured = others.filter_map(|d| Some((d, d.mean_ciede2000?)));
     if let Some((closest, difference)) = measured.min_by(|a, b| a.1.total_cmp(&b.1)) {
         text += &format!(
             "- Closest to the reference: **{}**, CIEDE2000 {} in the mean, {} in its worst view.\n",
-            closest.strategy,
+            closest.name,
             figure(Some(difference), 4),
             with_unit(closest.worst_psnr_db)
         );
     }
-    let timed = || digests.iter().filter_map(|d| Some((d, d.median_ms?)));
+    let timed = || {
+        let own = digests.iter().filter(|d| !d.is_floor);
+        own.filter_map(|d| Some((d, d.median_ms?)))
+    };
     let by_time = |a: &(&Digest, f64), b: &(&Digest, f64)| a.1.total_cmp(&b.1);
     if let (Some(fast), Some(slow)) = (timed().min_by(by_time), timed().max_by(by_time))
-        && fast.0.strategy != slow.0.strategy
+        && fast.0.name != slow.0.name
     {
         text += &format!(
             "- Fastest: **{}**, {:.1} ms a frame, {:.1} times as fast as {}.\n",
-            fast.0.strategy,
+            fast.0.name,
             fast.1,
             slow.1 / fast.1,
-            slow.0.strategy
+            slow.0.name
+        );
+    }
+    for floor in digests.iter().filter(|d| d.is_floor) {
+        text += &format!(
+            "- Noise floor: {} is CIEDE2000 {} from its reference by chance alone; figures below that say nothing.\n",
+            floor.name,
+            figure(floor.mean_ciede2000, 4)
         );
     }
     text
@@ -154,13 +192,14 @@ fn verdict(digests: &[Digest]) -> String {
 /// The whole of `compare.md`.
 pub(super) fn page(setting: &Setting, rows: &[Row], reference_times: &[Duration]) -> String {
     let plan = setting.plan;
-    let names: Vec<&str> = plan.strategies.iter().map(|k| k.name()).collect();
+    let names: Vec<&str> = plan.contenders.iter().map(Contender::name).collect();
+    let truths: Vec<&str> = plan.truths.iter().map(|t| t.name.as_str()).collect();
     let name = &setting.case.about.name;
     let plots = FIGURES.iter().map(|f| format!("![{0}]({0})\n", f.file));
     format!(
         "# {name}: {} against {}\n\n{}\n{}\n## Pictures\n![{SHEET}]({SHEET})\n\n## Over the views\n{}\n## Each view\n{}\n",
         names.join(", "),
-        plan.reference.name(),
+        truths.join(", "),
         summary(rows),
         conditions(setting, rows, reference_times),
         plots.collect::<String>(),
@@ -170,8 +209,9 @@ pub(super) fn page(setting: &Setting, rows: &[Row], reference_times: &[Duration]
 
 const NOTES: &str = "\
 PSNR, SSIM and CIEDE2000 are of the 8-bit sRGB pictures over the background; two pictures that agree in every pixel are \"equal\". \
-Times are of the rays; the first preparation compiles shaders and makes what a strategy keeps beside the grid. \
-Speed is relative to the slowest strategy. GPU MB (1,000,000 bytes) is all that is on the device for one strategy.
+Times are of the rays; the first preparation compiles shaders and makes what a picture keeps beside the grid. \
+Speed is relative to the slowest. GPU MB (1,000,000 bytes) is all that is on the device. Brighter is the signed mean over \
+the pixels that the model covers. Light is what follows from its method alone: extinction, and volumes of light.
 ";
 
 /// What the figures hold for.
@@ -194,16 +234,16 @@ fn conditions(setting: &Setting, rows: &[Row], reference_times: &[Duration]) -> 
             &format!("{}, {size} cells, {active} active", case.about.name),
         ]),
     ];
-    if let Some(named) = plan.views.first() {
-        lines.extend(conditions_of_view(case, &named.view));
+    if let Some(view) = plan.first_view() {
+        lines.extend(conditions_of_view(case, view));
     }
     let total: Duration = reference_times.iter().sum();
     let each = ms(total) / reference_times.len().max(1) as f64;
-    let what = match plan.reference {
-        Reference::Cpu => "the f64 reference on the CPU",
-        Reference::Strategy(_) => "the accurate strategy",
+    let by = |truth: &Truth| match truth.source {
+        Source::Cpu(_) => format!("{}, the f64 reference on the CPU", truth.name),
+        Source::Contender(_) | Source::Executor(_) => format!("{}, by the adapter", truth.name),
     };
-    let name = plan.reference.name();
+    let truths: Vec<String> = plan.truths.iter().map(by).collect();
     let scale = setting.difference_scale;
     lines.extend([
         row(["views", &views]),
@@ -213,7 +253,7 @@ fn conditions(setting: &Setting, rows: &[Row], reference_times: &[Duration]) -> 
         ]),
         row([
             "reference",
-            &format!("{name}, {what}, {each:.0} ms a picture"),
+            &format!("{}, {each:.0} ms a picture", truths.join("; ")),
         ]),
         row([
             "difference maps",
@@ -255,12 +295,13 @@ fn conditions_of_view(case: &Case, view: &View) -> [markdown::Row; 3] {
 fn each_view(plan: &Plan, rows: &[Row]) -> String {
     let mut lines = vec![row([
         "view",
-        "strategy",
+        heading(rows),
         "pictures",
         "PSNR dB",
         "SSIM",
         "CIEDE2000, mean",
         "p99",
+        "brighter, of 255",
         "ms a frame",
         "GPU MB",
         "recovered rays",
@@ -270,12 +311,13 @@ fn each_view(plan: &Plan, rows: &[Row]) -> String {
         let count = |n: Option<u64>| n.map_or_else(|| ABSENT.to_owned(), |n| n.to_string());
         lines.push(vec![
             r.view_title(),
-            r.strategy.to_owned(),
+            r.name().to_owned(),
             links(plan, r),
             decibels(r.psnr_db),
             figure(r.ssim, 5),
             figure(r.ciede2000_mean, 4),
             figure(r.ciede2000_p99, 3),
+            signed(r.brighter),
             figure(r.frame_ms, 1),
             megabytes(r.gpu_bytes),
             count(r.recovered_rays),
@@ -287,7 +329,7 @@ fn each_view(plan: &Plan, rows: &[Row]) -> String {
 
 /// Links to the pictures of a row, or why there are none.
 fn links(plan: &Plan, row: &Row) -> String {
-    let reference = || plan.picture_file(row.view, row.reference);
+    let reference = || plan.picture_file(row.view, &row.reference);
     let links = [
         ("picture", row.picture.clone()),
         ("reference", row.difference.as_ref().map(|_| reference())),
@@ -310,6 +352,11 @@ pub(super) fn figure(value: Option<f64>, decimals: usize) -> String {
         Some(v) if v > 0.0 && v < 0.5 * least => format!("<{least:.decimals$}"),
         Some(v) => format!("{v:.decimals$}"),
     }
+}
+
+/// A figure with its sign.
+fn signed(value: Option<f64>) -> String {
+    value.map_or_else(|| ABSENT.to_owned(), |v| format!("{v:+.1}"))
 }
 
 /// A PSNR; infinite where two pictures are equal.
@@ -346,11 +393,11 @@ mod tests {
     }
 
     /// A row with the figures that the verdict goes by.
-    fn figures(strategy: &'static str, reference: &'static str, figures: [f64; 3]) -> Row {
+    fn figures(strategy: &'static str, reference: &str, figures: [f64; 3]) -> Row {
         let [psnr_db, ciede2000, ms] = figures.map(Some);
         Row {
             strategy,
-            reference,
+            reference: reference.to_owned(),
             psnr_db,
             ciede2000_mean: ciede2000,
             frame_ms: ms,

@@ -29,6 +29,8 @@ pub struct Revisions {
     pub surfaces: u64,
     /// Opacity at points of space. The extinction pyramid, and all light volumes.
     pub extinction: u64,
+    /// Values at points of space, whatever the curve. The pyramid of values.
+    pub placed: u64,
     /// Slopes of values at points of space. The volume of gradients.
     pub gradients: u64,
     /// Values of a cube beside the model. Its voxels.
@@ -61,7 +63,8 @@ impl RevisionCounter {
         let visible = values || opacities;
         let space = changes(|a, b| space(a) != space(b));
         let occluders = changes(|a, b| occluders(a) != occluders(b));
-        let extinction = values || space || opacities || occluders;
+        let placed = values || space;
+        let extinction = placed || opacities || occluders;
         let gradients = values || space || changes(|a, b| range(a) != range(b));
         let cube = changes(|a, b| {
             let of = |view: &View| view.shown.cube.as_ref().map(|s| s.cube.clone());
@@ -81,6 +84,7 @@ impl RevisionCounter {
             (&mut self.now.transfer, transfer),
             (&mut self.now.surfaces, surfaces),
             (&mut self.now.extinction, extinction),
+            (&mut self.now.placed, placed),
             (&mut self.now.gradients, gradients),
         ] {
             *revision += u64::from(changes);

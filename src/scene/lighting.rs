@@ -67,10 +67,11 @@ pub enum LightMode {
     MonteCarlo,
 }
 
-/// Which way occlusion looks, and how.
+/// How the light that comes to a point is found, and which way it is looked for. Shadows are looked for toward their
+/// lights.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum OcclusionMethod {
+pub enum LightMethod {
     /// Along a cone toward the viewer: what lies before something else is seen. It changes with the camera.
     #[default]
     Cones,
@@ -79,15 +80,25 @@ pub enum OcclusionMethod {
     Surround,
     /// To all sides by mean opacities of shells around a point (SPAO): quicker to make, less exact.
     SpaoMipmap,
+    /// Along a cone through a pyramid of values (shih-2016): an edited curve needs no new pyramid.
+    Vct,
+    /// Along a cone by boxes of a summed-area table of extinction (schlegel-2011).
+    Sat,
 }
 
-impl OcclusionMethod {
+impl LightMethod {
     /// All of them.
-    pub const ALL: [Self; 3] = [Self::Cones, Self::Surround, Self::SpaoMipmap];
+    pub const ALL: [Self; 5] = [
+        Self::Cones,
+        Self::Surround,
+        Self::SpaoMipmap,
+        Self::Vct,
+        Self::Sat,
+    ];
 
     /// As scenes write it.
     pub const fn name(self) -> &'static str {
-        ["cones", "surround", "spao_mipmap"][self as usize]
+        ["cones", "surround", "spao_mipmap", "vct", "sat"][self as usize]
     }
 
     /// What it does and when to use it.
@@ -96,12 +107,14 @@ impl OcclusionMethod {
             "Cones toward the viewer: what lies before something else is seen; made anew when the camera moves",
             "Cones to all sides: hollows and the inside are dark; the camera turns at no cost",
             "To all sides by mean opacities of shells (SPAO): quicker to make, less exact",
+            "Voxel cone tracing toward the viewer: edits of the curve are quickest; too dark beside what is opaque",
+            "Boxes of a summed-area table toward the viewer: quickly made; shadows change as light or viewer turns",
         ][self as usize]
     }
 
-    /// True where it does not look toward the viewer.
-    pub fn is_around(self) -> bool {
-        self != Self::Cones
+    /// True where it looks to all sides, and not along a cone.
+    pub const fn is_around(self) -> bool {
+        matches!(self, Self::Surround | Self::SpaoMipmap)
     }
 }
 
@@ -111,7 +124,7 @@ impl OcclusionMethod {
 pub struct OcclusionSpec {
     /// Which way it looks, and how.
     #[serde(skip_serializing_if = "is_default")]
-    pub method: OcclusionMethod,
+    pub method: LightMethod,
     /// Where it is found.
     pub mode: LightMode,
     /// Half of the cone's opening.
@@ -137,7 +150,7 @@ pub struct OcclusionSpec {
 impl Default for OcclusionSpec {
     fn default() -> Self {
         Self {
-            method: OcclusionMethod::default(),
+            method: LightMethod::default(),
             mode: LightMode::Preilluminated,
             half_angle_degrees: 20.0,
             splits: 7,
@@ -164,6 +177,9 @@ fn is_true(value: &bool) -> bool {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct ShadowSpec {
+    /// How they are found; none that looks to all sides.
+    #[serde(skip_serializing_if = "is_default")]
+    pub method: LightMethod,
     /// Where they are found.
     pub mode: LightMode,
     /// Parts that a cone is split into at most: 1, 3 or 7.
@@ -181,6 +197,7 @@ pub struct ShadowSpec {
 impl Default for ShadowSpec {
     fn default() -> Self {
         Self {
+            method: LightMethod::default(),
             mode: LightMode::Preilluminated,
             splits: 1,
             attenuation: 1.0,

@@ -10,8 +10,7 @@ use glam::DVec3;
 use super::error::{SceneError, within, wrong};
 use crate::image::Blending;
 use crate::scene::lighting::{
-    LightMode, LightSpec, LightingSpec, OcclusionMethod, OcclusionSpec, SHADOW_HALF_ANGLE,
-    VolumeSpec,
+    LightMethod, LightMode, LightSpec, LightingSpec, OcclusionSpec, SHADOW_HALF_ANGLE, VolumeSpec,
 };
 use crate::transfer::presets::parse_color;
 
@@ -100,7 +99,7 @@ pub struct Occlusion {
     /// Where it is found; never `Off`, nor `Image` of a method that looks to all sides.
     pub mode: LightMode,
     /// Which way it looks, and how.
-    pub method: OcclusionMethod,
+    pub method: LightMethod,
     /// Of shells: each counts as one voxel, whatever its thickness.
     pub per_shell: bool,
     /// Its cone; all of the sphere for a method that looks to all sides.
@@ -130,6 +129,8 @@ pub struct Lighting {
     pub lights: Vec<Light>,
     /// Where their shadows are found.
     pub shadows: LightMode,
+    /// How they are found; never by a method that looks to all sides.
+    pub shadow_method: LightMethod,
     /// Part of the light that comes from everywhere.
     pub ambient: f64,
     /// Lights make highlights and shade by the field's gradient.
@@ -265,6 +266,13 @@ pub(crate) fn resolve(
             even_media: s.even_media,
         })
     };
+    if s.method.is_around() {
+        let problem = format!(
+            "{} looks to all sides; shadows are found along cones: cones, vct or sat",
+            s.method.name()
+        );
+        return Err(wrong("lighting.shadows.method", problem));
+    }
     // Checked even where no light has one.
     cone(SHADOW_HALF_ANGLE)?;
     let ambient = within("lighting.ambient", spec.ambient(), [0.0, 1.0])?;
@@ -289,6 +297,7 @@ pub(crate) fn resolve(
         occlusion: occlusion.filter(|o| o.mode != LightMode::Off),
         lights: spec.lights.iter().map(checked).collect::<Result<_, _>>()?,
         shadows: s.mode,
+        shadow_method: s.method,
         ambient,
         blinn_phong: spec.blinn_phong && !spec.lights.is_empty(),
         exact_colors: spec.exact_colors,

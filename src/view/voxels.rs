@@ -9,6 +9,8 @@ pub enum Voxel {
     Single,
     /// None, but 16 bits of coverage and value; two voxels along x share a word.
     Packed,
+    /// None, but a whole number of 32 bits.
+    Word,
     /// Two. Of a resampled field: the value, as a part of the range that it was filled with, times presence;
     /// and presence, 1 in a drawn cell and 0 elsewhere.
     Pair,
@@ -62,7 +64,7 @@ impl Shape {
     pub(crate) fn voxel_bytes(&self) -> u32 {
         match self.voxel {
             Voxel::Single | Voxel::Packed => 2,
-            Voxel::Pair => 4,
+            Voxel::Pair | Voxel::Word => 4,
             Voxel::Quad => 8,
         }
     }

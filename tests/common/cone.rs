@@ -24,6 +24,7 @@ pub struct Model {
 pub struct Light {
     /// Transmittances.
     pub block: Block,
+    /// Of extinction; none where it is not asked.
     pub pyramid: Vec<Block>,
     pub space: Space,
     pub cone: Cone,
@@ -79,8 +80,9 @@ impl Model {
         }));
         let (view, _) = render(&mut self.renderer, &self.case, &self.scene);
         let (gpu, light) = (self.renderer.gpu(), self.renderer.light());
-        let pyramid = Block::levels(gpu, light.pyramid().unwrap());
-        let space = Space::new(&view, pyramid[0].size);
+        let pyramid = light.pyramid();
+        let pyramid = pyramid.map_or_else(Vec::new, |p| Block::levels(gpu, p));
+        let space = Space::new(&view, size.map(|n| n as usize));
         Light {
             block: Block::read(gpu, light.light_volumes().unwrap(), 0),
             eye: space.point(eye),

@@ -8,7 +8,9 @@ use std::sync::Mutex;
 use crate::common;
 use glam::DVec3;
 use strataray::case::{Case, load};
-use strataray::compare::{Compared, Comparer, Plan, Reference, Report, Row, Setting, summary};
+use strataray::compare::{
+    Compared, Comparer, Plan, Reference, Report, Row, Setting, Source, summary,
+};
 use strataray::image::metrics::Comparison;
 use strataray::render::gpu::GpuExecutor;
 use strataray::scene::{CameraSpec, ExplicitCamera, Projection, Scene, StrategyKind};
@@ -27,12 +29,8 @@ fn scene() -> Scene {
 fn plan(case: &Case, reference: Reference, views: usize) -> Plan {
     let scene = scene();
     let view = view::resolve(&scene, case).unwrap();
-    Plan {
-        strategies: StrategyKind::ALL.to_vec(),
-        reference,
-        views: half_turns(&scene, &view, TurnAxis::All, views),
-        frames: 1,
-    }
+    let views = half_turns(&scene, &view, TurnAxis::All, views);
+    Plan::of_strategies(&StrategyKind::ALL, reference, views, 1)
 }
 
 /// All views of a plan, or `None` with a sentence where there is no adapter.
@@ -56,9 +54,9 @@ fn rows_of_every_strategy_against_the_cpu() {
     for (n, compared) in views.iter().enumerate() {
         let rows: Vec<&Row> = compared.outcomes.iter().map(|o| &o.row).collect();
         assert_eq!(rows.iter().map(|r| r.strategy).collect::<Vec<_>>(), names());
-        let reference = compared.reference.as_ref().unwrap();
+        let reference = compared.truths[0].picture.as_ref().unwrap();
         for (outcome, row) in compared.outcomes.iter().zip(rows) {
-            assert_eq!((row.view, row.reference), (n, "cpu"));
+            assert_eq!((row.view, row.reference.as_str()), (n, "cpu"));
             assert!(row.error.is_none() && !row.is_reference(), "{row:?}");
             assert!(row.frame_ms.unwrap() > 0.0 && row.prepare_ms.unwrap() > 0.0);
             // At least the 16 bytes of each of the picture's pixels.
@@ -85,7 +83,7 @@ fn the_reference_is_perfect_and_another_view_is_not() {
         return;
     };
     for (compared, other) in views.iter().zip(views.iter().rev()) {
-        let reference = compared.reference.as_ref().unwrap();
+        let reference = compared.truths[0].picture.as_ref().unwrap();
         let perfect = compared.outcomes.iter().filter(|o| o.row.is_reference());
         assert_eq!(perfect.clone().count(), 1);
         for outcome in perfect {
@@ -116,10 +114,15 @@ fn failing_strategies_are_rows_and_the_rest_goes_on() {
     for reference in [Reference::Cpu, ACCURATE] {
         let mut plan = plan(&case, reference, 2);
         let limit = gpu.device.limits().max_texture_dimension_2d;
-        plan.views[0].view.size = [limit + 1, 1];
+        for contender in &mut plan.contenders {
+            contender.views[0].size = [limit + 1, 1];
+        }
+        if let Source::Cpu(views) = &mut plan.truths[0].source {
+            views[0].size = [limit + 1, 1];
+        }
         let views = compare(&case, &plan).unwrap();
         let is_cpu = reference == Reference::Cpu;
-        assert_eq!(views[0].reference.is_ok(), is_cpu);
+        assert_eq!(views[0].truths[0].picture.is_ok(), is_cpu);
         for (outcome, next) in views[0].outcomes.iter().zip(&views[1].outcomes) {
             let error = outcome.row.error.as_ref().unwrap();
             assert!(error.contains(&limit.to_string()), "{error}");
@@ -427,6 +430,126 @@ fn a_reference_that_is_not_compared_is_a_picture_without_rows() {
     }
 }
 
+/// A scene of occlusion in small volumes, as a file in a folder.
+fn lit_scene(folder: &Path) -> String {
+    let path = folder.join("scene.json");
+    let scene = serde_json::json!({
+        "property": "PORO", "mode": "volume", "vertical_exaggeration": 8.0,
+        "transfer": {"opacity": [[0, 0.0], [0.3, 0.1], [0.6, 0.3], [1, 0.9]]},
+        "lighting": {"occlusion": {}, "volume": {"budget_mb": 1}, "rays": 8},
+    });
+    std::fs::write(&path, scene.to_string()).unwrap();
+    path.to_str().unwrap().to_owned()
+}
+
+#[test]
+fn light_methods_are_measured_against_rays_of_their_own_side() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = lit_scene(folder.path());
+    let arguments = [
+        "--adapter",
+        "cpu",
+        "--scene",
+        &scene,
+        "--light",
+        "cones,surround,off,vct,cones",
+    ];
+    let output = run(&arguments, folder.path());
+    let said = String::from_utf8(output.stdout).unwrap();
+    assert!(output.status.success(), "{:?}", output.stderr);
+    let rows = rows_of(folder.path());
+    let told: Vec<[&str; 2]> = rows
+        .iter()
+        .map(|row| ["setting", "reference"].map(|key| row[key].as_str().unwrap()))
+        .collect();
+    let around = "rays to all sides";
+    let expected = [
+        ["cones", "rays"],
+        ["off", "rays"],
+        ["vct", "rays"],
+        ["rays again", "rays"],
+        ["surround", around],
+        ["off to all sides", around],
+        ["rays to all sides again", around],
+    ];
+    assert_eq!(told, expected);
+    let figure = |name: &str, key: &str| {
+        let row = rows.iter().find(|row| row["setting"] == name).unwrap();
+        row[key].as_f64().unwrap()
+    };
+    // Each method is nearer than no light at all, and two runs of rays are nearer than that.
+    for [off, method, floor] in [
+        ["off", "cones", "rays again"],
+        ["off", "vct", "rays again"],
+        ["off to all sides", "surround", "rays to all sides again"],
+    ] {
+        let [off_by, by, least] = [off, method, floor].map(|n| figure(n, "ciede2000_mean"));
+        assert!(
+            least > 0.0 && least < by && by < 0.9 * off_by,
+            "{method}: {least} {by} {off_by}"
+        );
+        assert!(figure(off, "brighter") > 5.0);
+        assert!(figure(method, "light_ms") > 0.0);
+    }
+    assert_eq!(said.matches("Noise floor").count(), 2, "{said}");
+    let floors = rows.iter().filter(|row| row["is_floor"] == true).count();
+    assert_eq!(floors, 2);
+    assert!(links_lead_somewhere(folder.path()) > 0);
+}
+
+#[test]
+fn rays_are_the_reference_itself_where_they_have_a_row() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = lit_scene(folder.path());
+    let arguments = ["--adapter", "cpu", "--scene", &scene, "--light", "vct,rays"];
+    assert!(run(&arguments, folder.path()).status.success());
+    let rows = rows_of(folder.path());
+    let names: Vec<_> = rows.iter().map(|row| row["setting"].clone()).collect();
+    assert_eq!(names, ["vct", "rays", "rays again"]);
+    assert_eq!(rows[1]["ssim"], 1.0);
+    assert!(rows[0]["ssim"].as_f64().unwrap() < 1.0);
+    assert!(rows[1]["difference"].is_null() && rows[2]["difference"].is_string());
+}
+
+#[test]
+fn values_of_a_key_are_measured_each_against_its_own_scene() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = lit_scene(folder.path());
+    let common = ["--adapter", "cpu", "--scene", &scene, "--sweep"];
+    let swept = |sweep: &str| {
+        let output = run(&[&common[..], &[sweep]].concat(), folder.path());
+        let said = String::from_utf8(output.stderr).unwrap();
+        (output.status.success(), said)
+    };
+    let (done, said) = swept("lighting.occlusion.attenuation=0,1,1,4");
+    assert!(done, "{said}");
+    let rows = rows_of(folder.path());
+    let own: Vec<&serde_json::Value> = rows.iter().filter(|r| r["is_floor"] != true).collect();
+    let names: Vec<_> = own.iter().map(|r| r["setting"].as_str().unwrap()).collect();
+    assert_eq!(names, ["attenuation=0", "attenuation=1", "attenuation=4"]);
+    let apart: Vec<f64> = own
+        .iter()
+        .map(|r| r["ciede2000_mean"].as_f64().unwrap())
+        .collect();
+    // Rays know no attenuation: cones without it darken nothing, and with four times as much far too much.
+    assert!(apart[1] < apart[0] && apart[1] < apart[2], "{apart:?}");
+    assert!(links_lead_somewhere(folder.path()) > 0);
+    for (sweep, word) in [
+        ("lighting.occlusion.angle=1", "lighting.occlusion.angle"),
+        ("lighting.occlusion.splits=2", "splits"),
+        ("lighting.rays=many", "lighting.rays=many"),
+        ("property=NONE", "property=NONE"),
+        ("sampling_step.x=1", "sampling_step.x"),
+        ("rays", "lighting.rays=4,16,64"),
+        ("lighting..rays=1", "a key is missing"),
+        ("lighting.rays=1,,2", "a value is missing"),
+    ] {
+        let (done, said) = swept(sweep);
+        assert!(!done && said.contains(word), "{sweep}: {said}");
+        assert!(!said.contains("panicked"));
+    }
+}
+
 #[test]
 fn err_in_one_sentence() {
     let folder = tempfile::tempdir().unwrap();
@@ -458,6 +581,9 @@ fn err_in_one_sentence() {
         &["--views", "0"],
         &["--frames", "0"],
         &["--strategy", "plts", "--strategies", "plts"],
+        &["--light", "cones", "--strategies", "plts"],
+        &["--light", "brightest"],
+        &["--light", "cones", "--sweep", "lighting.rays=1"],
     ] {
         assert_eq!(run(arguments, folder.path()).status.code(), Some(2));
     }

@@ -175,7 +175,7 @@ fn structs_of_light(m: &Module) -> Vec<&'static str> {
             sigma,
             ghost,
             clip_count,
-            reserved,
+            counts,
             clip_planes
         ),
         agrees!(
@@ -302,6 +302,11 @@ fn twins() -> BTreeMap<String, Number> {
         ("METHOD_CONES", layout::METHOD_CONES),
         ("METHOD_SURROUND", layout::METHOD_SURROUND),
         ("METHOD_SPAO_MIPMAP", layout::METHOD_SPAO_MIPMAP),
+        ("METHOD_VCT", layout::METHOD_VCT),
+        ("METHOD_SAT", layout::METHOD_SAT),
+        ("SUM_PARTS", layout::SUM_PARTS),
+        ("VCT_MEANS", layout::VCT_MEANS),
+        ("VCT_DEVIATIONS", layout::VCT_DEVIATIONS),
     ];
     let real = [
         ("GRADIENT_FADE_LOW", lighting::GRADIENT_FADE[0]),
@@ -315,6 +320,7 @@ fn twins() -> BTreeMap<String, Number> {
         ("EDGE_FADE_LOW", surfaces::EDGE_FADE[0]),
         ("EDGE_FADE_HIGH", surfaces::EDGE_FADE[1]),
         ("COINCIDENT", topology::COINCIDENT),
+        ("DEEPEST", f64::from(strataray::render::plan::sat::DEEPEST)),
     ];
     let whole = whole.map(|(name, n)| (name.to_owned(), Number::U32(n)));
     let real = real.map(|(name, n)| (name.to_owned(), Number::F32(n as f32)));

@@ -35,6 +35,7 @@ mod framing;
 mod hybrid;
 mod layout;
 mod libc;
+mod light_methods;
 mod light_updates;
 mod lighting;
 mod limits;

@@ -14,7 +14,7 @@ use strataray::render::cpu::CpuExecutor;
 use strataray::render::gpu::{GpuExecutor, GpuRenderer};
 use strataray::render::{Executor, Renderer};
 use strataray::scene::Scene;
-use strataray::scene::lighting::OcclusionMethod;
+use strataray::scene::lighting::LightMethod;
 use strataray::view::View;
 use strataray::{reference, view};
 
@@ -141,7 +141,7 @@ fn turning_the_camera_makes_no_light_from_all_sides_anew() {
     let Some(gpu) = common::gpu() else { return };
     let case = load::open(&common::sample()).unwrap();
     let [_, (_, opacity), _] = opacities();
-    for method in OcclusionMethod::ALL {
+    for method in LightMethod::ALL {
         let mut renderer = GpuRenderer::new(gpu.clone(), &case.grid).unwrap();
         let occlusion = json!({"method": method});
         let mut made = |azimuth| {

@@ -100,7 +100,7 @@ impl Means {
 }
 
 /// Part of a cube around a point, of half an edge each way, that lies in the box: there is nothing outside.
-fn part_inside(p: Vec3A, size: Vec3A, half: f32) -> f32 {
+pub fn part_inside(p: Vec3A, size: Vec3A, half: f32) -> f32 {
     let inside = (p + half).min(size) - (p - half).max(Vec3A::ZERO);
     let part = (inside / (2.0 * half)).clamp(Vec3A::ZERO, Vec3A::ONE);
     part.x * part.y * part.z

@@ -11,7 +11,7 @@ use super::transfer::Tables;
 use super::volume::Voxels;
 use crate::render::job::Progress;
 use crate::render::plan::extinction::{Blur, Line, MOST_LEVELS};
-use crate::render::plan::layout::PACKED_GHOST;
+use crate::render::plan::layout::{BlurInfo, PACKED_GHOST};
 use crate::render::plan::occluders::Occluders;
 use crate::view::voxels::Shape;
 
@@ -63,11 +63,7 @@ pub async fn opacities(
     occluders: Option<&Occluders>,
     progress: &Progress,
 ) -> Voxels<f32> {
-    let numbers = blur.info(Line {
-        axis: 0,
-        counts: [blur.size[0]; 2],
-        deviation: 0.0,
-    });
+    let numbers = blur.numbers();
     // A packed value has so few numbers that each is asked once.
     let of_value = |packed: u32| {
         let voxel = FieldVoxel::of(packed as u16);
@@ -80,17 +76,9 @@ pub async fn opacities(
         1.0 - (-extinction * numbers.sigma).exp()
     };
     let of_values: Vec<f32> = (0..=PACKED_GHOST).map(of_value).collect();
-    let planes = numbers.clip_planes.map(Vec4::from_array);
-    let planes = &planes[..numbers.clip_count as usize];
-    let [low, spacing] = [numbers.box_low, numbers.spacing].map(Vec3A::from);
+    let is_kept = unclipped(&numbers);
     Voxels::by_rows(blur.size, progress, |y, z| {
-        let is_kept = |x: usize| {
-            let at = Vec3A::new(x as f32, y as f32, z as f32) + 0.5;
-            let is_kept =
-                |plane: &Vec4| Vec3A::from_vec4(*plane).dot(low + at * spacing) + plane.w >= 0.0;
-            planes.iter().all(is_kept)
-        };
-        let opacity = |(x, packed): (usize, &u16)| match *packed != 0 && is_kept(x) {
+        let opacity = |(x, packed): (usize, &u16)| match *packed != 0 && is_kept([x, y, z]) {
             true => {
                 let value = u32::from(*packed) & PACKED_GHOST;
                 FieldVoxel::of(*packed).coverage * of_values[value as usize]
@@ -101,13 +89,26 @@ pub async fn opacities(
         if let Some(occluders) = occluders {
             let others = row.iter_mut().zip(occluders.row(y, z)).enumerate();
             for (x, (opacity, other)) in others.filter(|(_, (_, other))| *other > 0.0) {
-                let other = if is_kept(x) { other } else { 0.0 };
+                let other = if is_kept([x, y, z]) { other } else { 0.0 };
                 *opacity = 1.0 - (1.0 - *opacity) * (1.0 - other);
             }
         }
         row
     })
     .await
+}
+
+/// Whether clip planes leave the middle of a voxel.
+pub fn unclipped(numbers: &BlurInfo) -> impl Fn([usize; 3]) -> bool + Sync + use<> {
+    let planes = numbers.clip_planes.map(Vec4::from_array);
+    let count = numbers.clip_count as usize;
+    let [low, spacing] = [numbers.box_low, numbers.spacing].map(Vec3A::from);
+    move |voxel| {
+        let at = Vec3A::from_array(voxel.map(|n| n as f32)) + 0.5;
+        let is_kept =
+            |plane: &Vec4| Vec3A::from_vec4(*plane).dot(low + at * spacing) + plane.w >= 0.0;
+        planes[..count].iter().all(is_kept)
+    }
 }
 
 /// What a voxel along an axis takes of those before: from the first one on.

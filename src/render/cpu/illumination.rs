@@ -16,7 +16,9 @@ use super::kept::Kept;
 use super::lamps::Lamp;
 use super::light::Light;
 use super::resample::Resampler;
+use super::sat::{Sat, Sums};
 use super::transfer::Tables;
+use super::vct::{ValuePyramid, Vct};
 use super::volume::Voxels;
 use crate::model::Grid as Model;
 use crate::render::LightTimes;
@@ -26,9 +28,11 @@ use crate::render::plan::extinction::Blur;
 use crate::render::plan::layout::{Emitter, LightingInfo};
 use crate::render::plan::light::{Emitters, Shading};
 use crate::render::plan::occluders::Occluders;
+use crate::render::plan::sat;
+use crate::render::plan::vct::OpacityTable;
 use crate::render::revisions::Revisions;
 use crate::scene::Interpolation;
-use crate::scene::lighting::OcclusionMethod;
+use crate::scene::lighting::LightMethod;
 use crate::view::View;
 
 /// Makes light and keeps it up to date.
@@ -40,6 +44,10 @@ pub struct Illumination {
     pyramid: Kept<Pyramid>,
     /// Voxels of light volumes that count, where not for cells alone.
     near: Option<Voxels<bool>>,
+    values: Kept<ValuePyramid>,
+    sums: Kept<Sums>,
+    /// Opacities by what that pyramid holds.
+    of_values: Kept<Vec<[f32; 4]>>,
     /// One for each emitter whose light is found before the rays.
     volumes: Vec<LightVolume>,
     gradients: Kept<Voxels<Vec4>>,
@@ -68,18 +76,20 @@ struct LightVolume {
 /// What a light volume is made from.
 #[derive(Clone, PartialEq)]
 struct Lit {
-    /// Revision of the pyramid.
+    /// Revision of what it is found in.
     extinction: u64,
     size: [u32; 3],
     emitter: Emitter,
     sections: Vec<[f32; 4]>,
-    method: OcclusionMethod,
+    method: LightMethod,
     per_shell: bool,
 }
 
 /// What light at a point is found from.
 struct Finder<'a> {
     cones: Option<&'a Cones<'a>>,
+    vct: Option<&'a Vct<'a>>,
+    sat: Option<&'a Sat<'a>>,
     means: Option<&'a Means>,
     info: &'a LightingInfo,
 }
@@ -87,19 +97,29 @@ struct Finder<'a> {
 impl<'a> Finder<'a> {
     /// The part of the light toward a lamp, or from all sides, that comes to a point of lighting space.
     fn of(self, lit: &Lit, lamp: &'a Lamp) -> Box<dyn Fn(Vec3A) -> f32 + Sync + 'a> {
-        let Self { cones, means, info } = self;
+        let Self {
+            cones,
+            vct,
+            sat,
+            means,
+            info,
+        } = self;
         let per_shell = lit.per_shell;
-        match (lit.method, cones, means) {
-            (OcclusionMethod::Cones, Some(cones), _) => Box::new(|p| cones.transmittance(lamp, p)),
-            (OcclusionMethod::Surround, Some(cones), _) => {
+        let found: Option<Box<dyn Fn(Vec3A) -> f32 + Sync + 'a>> = match lit.method {
+            LightMethod::Cones => {
+                cones.map(|cones| Box::new(move |p| cones.transmittance(lamp, p)) as _)
+            }
+            LightMethod::Surround => cones.map(|cones| {
                 let surround = Surround::new(cones, lamp);
-                Box::new(move |p| surround.openness(p))
+                Box::new(move |p| surround.openness(p)) as _
+            }),
+            LightMethod::SpaoMipmap => {
+                means.map(|means| Box::new(move |p| means.openness(info, per_shell, p)) as _)
             }
-            (OcclusionMethod::SpaoMipmap, _, Some(means)) => {
-                Box::new(move |p| means.openness(info, per_shell, p))
-            }
-            _ => Box::new(|_| 1.0),
-        }
+            LightMethod::Vct => vct.map(|vct| Box::new(move |p| vct.transmittance(lamp, p)) as _),
+            LightMethod::Sat => sat.map(|sat| Box::new(move |p| sat.transmittance(lamp, p)) as _),
+        };
+        found.unwrap_or_else(|| Box::new(|_| 1.0))
     }
 }
 
@@ -158,8 +178,7 @@ impl Illumination {
     ) {
         let lighting = &source.view.style.lighting;
         let (size, light_size) = (lighting.size(), lighting.light_size());
-        let is_used =
-            slopes || shading.casts_rays() || shading.traces_cones() || shading.averages();
+        let is_used = slopes || shading.reads_field();
         let fits = |f: &Field| {
             let sizes = [f.voxels.size, f.near.size];
             sizes == [size, light_size].map(|size| size.map(|n| n as usize))
@@ -200,9 +219,23 @@ impl Illumination {
         if !shading.traces_cones() {
             self.pyramid.forget();
         }
+        if !shading.traces_values() {
+            self.values.forget();
+            self.of_values.forget();
+        }
+        self.hold_values(source, shading, progress).await;
+        let counts = sat::counts(source.view);
+        if !shading.sums() || self.sums.get().is_some_and(|s| s.counts != counts) {
+            self.sums.forget();
+        }
+        let wants_sums = shading.sums() && !self.sums.is_of(revision);
         let wants_rays = uses_opacities && !self.opacities.is_of(revision);
         let wants_cones = shading.traces_cones() && !self.pyramid.is_of(revision);
-        let Some(field) = self.field.get().filter(|_| wants_rays || wants_cones) else {
+        let Some(field) = self
+            .field
+            .get()
+            .filter(|_| wants_rays || wants_cones || wants_sums)
+        else {
             return;
         };
         let blur = Blur::new(&source.grid.compact.facts, source.view, field.range);
@@ -214,6 +247,9 @@ impl Illumination {
             None => None,
         };
         let made = opacities(&field.voxels, &blur, source.tables, occluders, progress).await;
+        if wants_sums {
+            self.sums.keep(revision, Sums::new(&made, counts));
+        }
         if wants_cones {
             self.pyramid.forget();
             let pyramid = Pyramid::new(&made, &blur, progress).await;
@@ -222,6 +258,25 @@ impl Illumination {
         if wants_rays {
             let means = Means::new(made, shells, progress).await;
             self.opacities.keep(revision, means);
+        }
+    }
+
+    /// Makes the pyramid of values where values or clip planes have changed, and the table of their opacities where the
+    /// transfer function has.
+    async fn hold_values(&mut self, source: &Source<'_>, shading: Shading, progress: &Progress) {
+        let Some(field) = self.field.get().filter(|_| shading.traces_values()) else {
+            return;
+        };
+        if !self.values.is_of(source.revisions.placed) {
+            self.values.forget();
+            let blur = Blur::new(&source.grid.compact.facts, source.view, field.range);
+            let made = ValuePyramid::new(&field.voxels, &blur, progress).await;
+            self.values.keep(source.revisions.placed, made);
+        }
+        if !self.of_values.is_of(source.revisions.extinction) {
+            let table = OpacityTable::new(source.view, field.range);
+            let revision = source.revisions.extinction;
+            self.of_values.keep(revision, table.texels());
         }
     }
 
@@ -241,17 +296,15 @@ impl Illumination {
         let size = info.light_size;
         let shading = Shading::of(&source.view.style.lighting);
         let cones = self.pyramid.get().map(|p| Cones::new(p, info));
+        let vct = vct(&self.values, &self.of_values, info);
+        let sat = self.sums.get().map(|s| Sat::new(s, info));
         for (n, &at) in emitters.volumes.iter().enumerate() {
             let lit = Lit {
                 extinction: source.revisions.extinction,
                 size,
                 emitter: emitters.emitters[at].for_cones(),
                 sections: emitters.of(at).to_vec(),
-                // The viewer's.
-                method: match at {
-                    0 => shading.method,
-                    _ => OcclusionMethod::Cones,
-                },
+                method: shading.method_of(at),
                 per_shell: shading.per_shell,
             };
             if self.volumes.get(n).is_some_and(|v| v.lit == lit) {
@@ -259,6 +312,8 @@ impl Illumination {
             }
             let finder = Finder {
                 cones: cones.as_ref(),
+                vct: vct.as_ref(),
+                sat: sat.as_ref(),
                 means: self.opacities.get(),
                 info,
             };
@@ -308,6 +363,8 @@ impl Illumination {
         Some(Light {
             shading,
             cones: self.pyramid.get().map(|p| Cones::new(p, &info)),
+            vct: vct(&self.values, &self.of_values, &info),
+            sat: self.sums.get().map(|s| Sat::new(s, &info)),
             rays: self.opacities.get().and_then(Means::finest).map(rays),
             info,
             lamps: &self.lamps,
@@ -323,7 +380,22 @@ impl Illumination {
             .map_or(0, |f| f.voxels.bytes() + f.near.bytes())
             + self.opacities.get().map_or(0, Means::bytes)
             + self.pyramid.get().map_or(0, Pyramid::bytes)
+            + self.values.get().map_or(0, ValuePyramid::bytes)
+            + self.sums.get().map_or(0, Sums::bytes)
+            + self
+                .of_values
+                .get()
+                .map_or(0, |t| size_of_val(t.as_slice()) as u64)
             + self.volumes.iter().map(|v| v.voxels.bytes()).sum::<u64>()
             + self.gradients.get().map_or(0, Voxels::bytes)
     }
+}
+
+/// Where light is found along cones through values.
+fn vct<'a>(
+    values: &'a Kept<ValuePyramid>,
+    opacities: &'a Kept<Vec<[f32; 4]>>,
+    info: &LightingInfo,
+) -> Option<Vct<'a>> {
+    Some(Vct::new(values.get()?, opacities.get()?, info))
 }

@@ -18,6 +18,8 @@ pub struct Section {
     pub weight: f32,
     /// 1 / (2 s^2) for the standard deviation s of the level.
     pub fade: f32,
+    /// Of boxes: the edge, which stands where others have their level.
+    pub edge: f32,
 }
 
 impl Section {
@@ -29,6 +31,7 @@ impl Section {
             amplitude,
             weight,
             fade: 0.5 * (-2.0 * level).exp2(),
+            edge: level,
         }
     }
 }

@@ -5,9 +5,12 @@ use glam::{Vec3A, Vec4};
 use super::cone_rays::ConeRays;
 use super::cones::Cones;
 use super::lamps::Lamp;
+use super::sat::Sat;
+use super::vct::Vct;
 use super::volume::Voxels;
 use crate::render::plan::layout::{LIGHT_IMAGE, LIGHT_RAYS, LIGHT_VOLUME, LightingInfo};
 use crate::render::plan::light::Shading;
+use crate::scene::lighting::LightMethod;
 
 /// Light of a view, brought up to date.
 pub struct Light<'a> {
@@ -19,6 +22,10 @@ pub struct Light<'a> {
     pub lamps: &'a [Lamp],
     /// Where cones are traced.
     pub cones: Option<Cones<'a>>,
+    /// Where they are traced through values.
+    pub vct: Option<Vct<'a>>,
+    /// Where they are boxes of sums.
+    pub sat: Option<Sat<'a>>,
     /// Where rays over cones are cast.
     pub rays: Option<ConeRays<'a>>,
     /// Transmittances of cones found before, of each emitter that has a number there.
@@ -33,10 +40,31 @@ impl Light<'_> {
         (point - Vec3A::from(self.info.box_low)) * Vec3A::from(self.info.scale)
     }
 
-    /// Transmittance of the cone from a point toward an emitter.
-    pub fn transmittance(&self, mode: u32, lamp: &Lamp, p: Vec3A) -> f32 {
+    /// Transmittance of the cone from a point toward the viewer.
+    pub fn from_viewer(&self, viewer: &Lamp, p: Vec3A) -> f32 {
+        let Shading {
+            occlusion, method, ..
+        } = self.shading;
+        self.transmittance(occlusion, method, viewer, p)
+    }
+
+    /// Transmittance of the cone from a point toward a light.
+    pub fn from_light(&self, lamp: &Lamp, p: Vec3A) -> f32 {
+        let Shading {
+            shadows,
+            shadow_method,
+            ..
+        } = self.shading;
+        self.transmittance(shadows, shadow_method, lamp, p)
+    }
+
+    fn transmittance(&self, mode: u32, method: LightMethod, lamp: &Lamp, p: Vec3A) -> f32 {
         let found = match mode {
-            LIGHT_IMAGE => self.cones.map(|cones| cones.transmittance(lamp, p)),
+            LIGHT_IMAGE => match method {
+                LightMethod::Vct => self.vct.map(|vct| vct.transmittance(lamp, p)),
+                LightMethod::Sat => self.sat.map(|sat| sat.transmittance(lamp, p)),
+                _ => self.cones.map(|cones| cones.transmittance(lamp, p)),
+            },
             LIGHT_RAYS => self.rays.map(|rays| rays.transmittance(lamp, p)),
             LIGHT_VOLUME => {
                 let volume = self.volumes.get(lamp.emitter.volume as usize);

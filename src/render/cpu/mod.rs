@@ -33,6 +33,7 @@ mod raster;
 mod renderer;
 mod resample;
 mod samples;
+mod sat;
 mod scene;
 mod section;
 mod segments;
@@ -43,6 +44,7 @@ mod tally;
 mod thorough;
 mod topology;
 mod transfer;
+mod vct;
 mod volume;
 
 pub use executor::CpuExecutor;

@@ -237,19 +237,22 @@ impl<T: Voxel> Voxels<T> {
     }
 }
 
+/// The voxels along an axis that a larger one covers, and what part of it each is, given how many there are of both.
+///
+/// An odd number of voxels has no pairs: up to four along an axis lie within a larger one, in whole or in part.
+pub fn covered([from, to]: [usize; 2], voxel: usize) -> impl Iterator<Item = (usize, f32)> {
+    let range = voxel * from / to..((voxel + 1) * from).div_ceil(to);
+    let [fine, coarse] = [from, to].map(|n| n as i32);
+    range.map(move |n| {
+        let part = overlap(n as i32, voxel as i32, fine, coarse);
+        (n, part as f32 / from as f32)
+    })
+}
+
 /// Coarser voxels, each the mean of what it covers.
 pub async fn averages<T: Voxel>(fine: &Voxels<T>, progress: &Progress) -> Voxels<T> {
     let size = fine.size.map(|n| (n / 2).max(1));
-    // An odd number of voxels has no pairs: up to four along an axis lie within a larger one, in whole or in part.
-    let covered = |axis: usize, voxel: usize| {
-        let (from, to) = (fine.size[axis], size[axis]);
-        let range = voxel * from / to..((voxel + 1) * from).div_ceil(to);
-        let [fine, coarse] = [from, to].map(|n| n as i32);
-        range.map(move |n| {
-            let part = overlap(n as i32, voxel as i32, fine, coarse);
-            (n, part as f32 / from as f32)
-        })
-    };
+    let covered = |axis: usize, voxel: usize| covered([fine.size[axis], size[axis]], voxel);
     Voxels::by_rows(size.map(|n| n as u32), progress, |y, z| {
         let mean = |x| {
             let mut sum = T::default().number();

@@ -11,9 +11,11 @@ use super::extinction::{Pyramid, PyramidSource};
 use super::grid_upload::GpuGrid;
 use super::pipeline::{Pipeline, flag};
 use super::resample;
+use super::sat::Sums;
 use super::slabs::Slabs;
 use super::tiles::Pace;
 use super::transfer_tables::TransferTables;
+use super::vct::{ValueOpacities, ValuePyramid};
 use super::volume::{Volume, of_bytes};
 use crate::model::Grid;
 use crate::render::RenderError;
@@ -21,12 +23,14 @@ use crate::render::job::Progress;
 use crate::render::plan::around::shells;
 use crate::render::plan::extinction::Blur;
 use crate::render::plan::layout::{
-    Emitter, LightingInfo, METHOD_CONES, METHOD_SPAO_MIPMAP, METHOD_SURROUND, Slab,
+    Emitter, LIGHT_IMAGE, LightingInfo, METHOD_CONES, METHOD_SAT, METHOD_SPAO_MIPMAP,
+    METHOD_SURROUND, METHOD_VCT, Slab,
 };
 use crate::render::plan::light::{Emitters, Shading};
 use crate::render::plan::occluders::Occluders;
+use crate::render::revisions::Revisions;
 use crate::render::stats::LightTimes;
-use crate::scene::lighting::OcclusionMethod;
+use crate::scene::lighting::LightMethod;
 use crate::view::View;
 use crate::view::voxels::{Shape, Voxel};
 
@@ -40,6 +44,12 @@ pub struct Made {
     pub pyramids: u64,
     /// Opacities, and their means.
     pub means: u64,
+    /// Pyramids of values.
+    pub value_pyramids: u64,
+    /// Opacities of what these hold.
+    pub value_opacities: u64,
+    /// Summed-area tables.
+    pub sums: u64,
     /// Light volumes, each emitter's counted by itself.
     pub light_volumes: u64,
 }
@@ -49,13 +59,18 @@ pub struct Illumination {
     sampler: wgpu::Sampler,
     pace: Pace,
     /// What is bound where there is no volume.
-    nothing: [Volume; 3],
+    nothing: [Volume; 4],
     info: wgpu::Buffer,
     /// Emitters, and the sections of their cones.
     emitters: wgpu::TextureView,
     work: u32,
     field: Option<Field>,
     pyramid: Option<Pyramid>,
+    values: Option<ValuePyramid>,
+    of_values: Option<ValueOpacities>,
+    sums: Option<Sums>,
+    /// What is bound where there are no opacities of values.
+    no_table: wgpu::TextureView,
     /// Opacities without any blur, for rays over cones, and their means where they are asked for.
     opacities: Option<Pyramid>,
     lights: Option<LightVolumes>,
@@ -84,7 +99,7 @@ struct LightVolumes {
 
 #[derive(Clone, PartialEq)]
 struct Lit {
-    method: OcclusionMethod,
+    method: LightMethod,
     per_shell: bool,
     /// Which pyramid, or which mean opacities.
     pyramid: u64,
@@ -119,12 +134,17 @@ impl Illumination {
         Ok(Self {
             sampler: gpu.linear_sampler(),
             pace: Pace::default(),
-            nothing: [Voxel::Single, Voxel::Packed, Voxel::Quad].map(|v| Volume::new(gpu, one(v))),
+            nothing: [Voxel::Single, Voxel::Packed, Voxel::Quad, Voxel::Word]
+                .map(|v| Volume::new(gpu, one(v))),
             info: gpu.uniform("lighting", &none),
             emitters: gpu.table::<u32>("emitters", wgpu::TextureFormat::Rgba32Uint, &[])?,
             work: 0,
             field: None,
             pyramid: None,
+            values: None,
+            of_values: None,
+            sums: None,
+            no_table: gpu.table::<f32>("nothing", wgpu::TextureFormat::Rgba32Float, &[])?,
             opacities: None,
             lights: None,
             gradients: None,
@@ -157,6 +177,7 @@ impl Illumination {
         let start = Instant::now();
         self.blur(gpu, (model, grid), view, tables, progress)
             .await?;
+        self.hold_values(gpu, grid, view, tables, progress).await?;
         self.times.extinction = start.elapsed();
         let start = Instant::now();
         let emitters = Emitters::new(&grid.facts, view);
@@ -241,14 +262,22 @@ impl Illumination {
         let wants_opacities =
             uses_opacities && (is_stale(&self.opacities) || has_other_levels(&self.opacities));
         let wants_cones = shading.traces_cones() && is_stale(&self.pyramid);
-        if !wants_opacities && !wants_cones {
+        let blur = Blur::new(&grid.facts, view, field.range);
+        let has_sums = |s: &Sums| s.revision == revision && s.counts == blur.counts;
+        let wants_sums = shading.sums() && !self.sums.as_ref().is_some_and(has_sums);
+        if !shading.sums() {
+            self.sums = None;
+        }
+        if !wants_opacities && !wants_cones && !wants_sums {
             return Ok(());
         }
+        let occluders = Occluders::of(&grid.facts, view, model);
+        let upload = |some: &Occluders, format| of_bytes(gpu, format, some.size, &some.opacities);
         let source = PyramidSource {
             revision,
-            blur: Blur::new(&grid.facts, view, field.range),
-            occluders: match Occluders::of(&grid.facts, view, model) {
-                Some(some) => of_bytes(gpu, "occluders", some.size, &some.opacities),
+            blur,
+            occluders: match &occluders {
+                Some(some) => upload(some, wgpu::TextureFormat::R8Unorm),
                 None => self.nothing[0].level(0),
             },
         };
@@ -258,11 +287,58 @@ impl Illumination {
             self.opacities = Some(made.await?);
             self.made.means += 1;
         }
+        if wants_sums {
+            self.sums = None;
+            let occluders = match &occluders {
+                Some(some) => upload(some, wgpu::TextureFormat::R8Uint),
+                None => self.nothing[3].level(0),
+            };
+            let made = Sums::make(&mut slabs, (&blur, &occluders), revision, &group);
+            self.sums = Some(made.await?);
+            self.made.sums += 1;
+        }
         if wants_cones {
             let before = self.pyramid.take();
             let made = Pyramid::make(&mut slabs, &source, &group, before);
             self.pyramid = Some(made.await?);
             self.made.pyramids += 1;
+        }
+        Ok(())
+    }
+
+    /// Makes the pyramid of values where values or clip planes have changed, and the table of their opacities where the
+    /// transfer function has.
+    async fn hold_values(
+        &mut self,
+        gpu: &Gpu,
+        grid: &GpuGrid,
+        view: &View,
+        tables: &TransferTables,
+        progress: &Progress,
+    ) -> Result<(), RenderError> {
+        let is_used = Shading::of(&view.style.lighting).traces_values();
+        let Some(field) = self.field.as_ref().filter(|_| is_used) else {
+            self.values = None;
+            self.of_values = None;
+            return Ok(());
+        };
+        let range = field.range;
+        let Revisions {
+            placed, extinction, ..
+        } = grid.revisions;
+        if self.values.as_ref().is_none_or(|v| v.revision != placed) {
+            let blur = Blur::new(&grid.facts, view, range);
+            let before = self.values.take();
+            let group = self.bind(gpu, tables);
+            let mut slabs = Slabs::new(gpu, &mut self.pace, progress);
+            let made = ValuePyramid::make(&mut slabs, &blur, placed, &group, before);
+            self.values = Some(made.await?);
+            self.made.value_pyramids += 1;
+        }
+        let known = self.of_values.as_ref();
+        if known.is_none_or(|o| o.revision != extinction) {
+            self.of_values = Some(ValueOpacities::new(gpu, view, range, extinction)?);
+            self.made.value_opacities += 1;
         }
         Ok(())
     }
@@ -314,16 +390,15 @@ impl Illumination {
         let shading = Shading::of(&view.style.lighting);
         for (n, &at) in emitters.volumes.iter().enumerate() {
             let emitter = emitters.emitters[at];
-            let method = match at {
-                0 => shading.method,
-                _ => OcclusionMethod::Cones,
-            };
+            let method = shading.method_of(at);
             let lit = Lit {
                 method,
                 per_shell: shading.per_shell,
                 pyramid: match method {
-                    OcclusionMethod::SpaoMipmap => self.made.means,
-                    _ => self.made.pyramids,
+                    LightMethod::SpaoMipmap => self.made.means,
+                    LightMethod::Cones | LightMethod::Surround => self.made.pyramids,
+                    LightMethod::Vct => self.made.value_pyramids + self.made.value_opacities,
+                    LightMethod::Sat => self.made.sums,
                 },
                 emitter: emitter.for_cones(),
                 sections: emitters.of(at).to_vec(),
@@ -335,7 +410,7 @@ impl Illumination {
             let from = n as u32 * size[2];
             let which = gpu.uniform("emitter", &[at as u32, from, 0, 0]);
             let mut slabs = Slabs::new(gpu, &mut self.pace, progress);
-            let work = u64::from(emitter.cone_work()).max(SHELLS_WORK);
+            let work = u64::from(emitters.works[at]).max(SHELLS_WORK);
             let range = [from, from + size[2]];
             let constants = [
                 ("METHOD", f64::from(number(method))),
@@ -402,12 +477,16 @@ impl Illumination {
 
     /// Bind group 2: transfer function and light.
     pub fn bind(&self, gpu: &Gpu, tables: &TransferTables) -> wgpu::BindGroup {
-        let [single, packed, quad] = &self.nothing;
+        let [single, packed, quad, word] = &self.nothing;
         let view = |volume: &Volume| volume.texture.create_view(&Default::default());
         let pyramid = view(self.pyramid.as_ref().map_or(single, |p| &p.volume));
         let lights = view(self.lights.as_ref().map_or(single, |l| &l.volume));
         let field = view(self.field.as_ref().map_or(packed, |f| &f.volume));
         let opacities = view(self.opacities.as_ref().map_or(single, |o| &o.volume));
+        let values = view(self.values.as_ref().map_or(quad, |v| &v.volume));
+        let sums = view(self.sums.as_ref().map_or(word, |s| &s.volume));
+        let of_values = self.of_values.as_ref();
+        let of_values = of_values.map_or(&self.no_table, |o| &o.table);
         let gradients = view(self.gradients.as_ref().map_or(quad, |g| &g.volume));
         let resources = [
             wgpu::BindingResource::TextureView(&tables.table),
@@ -420,6 +499,9 @@ impl Illumination {
             wgpu::BindingResource::TextureView(&gradients),
             wgpu::BindingResource::Sampler(&self.sampler),
             wgpu::BindingResource::TextureView(&opacities),
+            wgpu::BindingResource::TextureView(&values),
+            wgpu::BindingResource::TextureView(of_values),
+            wgpu::BindingResource::TextureView(&sums),
             wgpu::BindingResource::TextureView(&tables.cube[0]),
             wgpu::BindingResource::TextureView(&tables.cube[1]),
         ];
@@ -430,6 +512,9 @@ impl Illumination {
     fn forget(&mut self) {
         self.field = None;
         self.pyramid = None;
+        self.values = None;
+        self.of_values = None;
+        self.sums = None;
         self.opacities = None;
         self.lights = None;
         self.gradients = None;
@@ -440,6 +525,8 @@ impl Illumination {
         let volumes = [
             self.field.as_ref().map(|f| &f.volume),
             self.pyramid.as_ref().map(|p| &p.volume),
+            self.values.as_ref().map(|v| &v.volume),
+            self.sums.as_ref().map(|s| &s.volume),
             self.opacities.as_ref().map(|o| &o.volume),
             self.lights.as_ref().map(|l| &l.volume),
             self.gradients.as_ref().map(|g| &g.volume),
@@ -469,11 +556,13 @@ impl Illumination {
 }
 
 /// A method's number in the shader.
-fn number(method: OcclusionMethod) -> u32 {
+fn number(method: LightMethod) -> u32 {
     match method {
-        OcclusionMethod::Cones => METHOD_CONES,
-        OcclusionMethod::Surround => METHOD_SURROUND,
-        OcclusionMethod::SpaoMipmap => METHOD_SPAO_MIPMAP,
+        LightMethod::Cones => METHOD_CONES,
+        LightMethod::Surround => METHOD_SURROUND,
+        LightMethod::SpaoMipmap => METHOD_SPAO_MIPMAP,
+        LightMethod::Vct => METHOD_VCT,
+        LightMethod::Sat => METHOD_SAT,
     }
 }
 
@@ -527,11 +616,20 @@ fn check_rays(gpu: &Gpu, view: &View, emitters: &Emitters) -> Result<(), RenderE
 
 impl Shading {
     /// Names and values of the shaders' `override` constants.
-    pub fn pairs(self) -> [(&'static str, f64); 6] {
+    pub fn pairs(self) -> [(&'static str, f64); 8] {
+        let at_samples = |mode, method| match mode {
+            LIGHT_IMAGE => f64::from(number(method)),
+            _ => 0.0,
+        };
         [
             ("LIT", flag(self.is_on())),
             ("OCCLUSION", f64::from(self.occlusion)),
             ("SHADOWS", f64::from(self.shadows)),
+            ("OCCLUSION_METHOD", at_samples(self.occlusion, self.method)),
+            (
+                "SHADOWS_METHOD",
+                at_samples(self.shadows, self.shadow_method),
+            ),
             ("LIGHTS", flag(self.lights)),
             ("BLINN_PHONG", flag(self.blinn_phong)),
             ("EXACT_COLORS", flag(self.exact_colors)),

@@ -16,6 +16,7 @@ pub mod pyramids;
 mod renderer;
 pub mod resample;
 pub mod round;
+mod sat;
 pub mod shader;
 pub mod slabs;
 pub mod strategies;
@@ -24,6 +25,7 @@ pub mod surfaces;
 mod target;
 pub mod tiles;
 pub mod transfer_tables;
+mod vct;
 pub mod volume;
 
 pub use device::Gpu;

@@ -40,6 +40,10 @@ sources! {
         "cube"
         "around"
         "openness"
+        "inside"
+        "opacity"
+        "sat"
+        "vct"
         "cone_rays"
         "shading"
         "random"
@@ -50,6 +54,7 @@ sources! {
         "faces"
         "illuminate"
         "libc"
+        "moments"
         "paint"
         "peel"
         "plts"
@@ -58,6 +63,7 @@ sources! {
         "resample"
         "solid"
         "srg"
+        "sums"
 }
 
 /// The whole text of a shader with its imports in front, each once.

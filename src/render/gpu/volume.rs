@@ -15,6 +15,7 @@ impl Shape {
         match self.voxel {
             Voxel::Single => wgpu::TextureFormat::R16Float,
             Voxel::Packed => wgpu::TextureFormat::R16Uint,
+            Voxel::Word => wgpu::TextureFormat::R32Uint,
             Voxel::Pair => wgpu::TextureFormat::Rg16Float,
             Voxel::Quad => wgpu::TextureFormat::Rgba16Float,
         }
@@ -33,15 +34,20 @@ impl Shape {
     }
 }
 
-/// A texture of bytes that shaders read as 0 to 1: x fastest, then y, then depth.
-pub fn of_bytes(gpu: &Gpu, what: &str, size: [u32; 3], bytes: &[u8]) -> wgpu::TextureView {
+/// A texture of bytes, in a format of one byte: x fastest, then y, then depth.
+pub fn of_bytes(
+    gpu: &Gpu,
+    format: wgpu::TextureFormat,
+    size: [u32; 3],
+    bytes: &[u8],
+) -> wgpu::TextureView {
     let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
-        label: Some(what),
+        label: Some("bytes"),
         size: extent(size),
         mip_level_count: 1,
         sample_count: 1,
         dimension: wgpu::TextureDimension::D3,
-        format: wgpu::TextureFormat::R8Unorm,
+        format,
         usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
         view_formats: &[],
     });

@@ -6,7 +6,7 @@
 
 use glam::Vec3;
 
-use crate::scene::lighting::OcclusionMethod;
+use crate::scene::lighting::LightMethod;
 use crate::view::Lighting;
 use crate::view::lighting::Occlusion;
 
@@ -38,7 +38,7 @@ pub fn directions() -> [Vec3; DIRECTIONS as usize] {
 ///
 /// Shell l, from 1, lies between cubes of 2^(l-1) and 2^l voxels.
 pub fn shells(lighting: &Lighting) -> u32 {
-    let spao = |o: &&Occlusion| o.method == OcclusionMethod::SpaoMipmap;
+    let spao = |o: &&Occlusion| o.method == LightMethod::SpaoMipmap;
     lighting.occlusion.as_ref().filter(spao).map_or(0, |o| {
         let voxels = 2.0 * o.cone.length / lighting.sigma();
         (voxels.max(2.0).log2().round() as u32).clamp(1, MOST_SHELLS)

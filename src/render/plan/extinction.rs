@@ -5,7 +5,8 @@ use glam::DVec3;
 use super::compact_grid::GridFacts;
 use super::frame::{clip_planes, ghost};
 use super::layout::{BlurInfo, MAX_CLIP_PLANES};
-use super::light::position;
+use super::sat;
+use super::transfer::position;
 use crate::view::View;
 
 /// Levels of the pyramid at most: 2^11 voxels along an axis have no more.
@@ -42,6 +43,8 @@ pub struct Blur {
     pub bounds: [DVec3; 2],
     /// Its edges in world space.
     pub extent: DVec3,
+    /// Numbers that a unit of optical depth is counted in, in sums.
+    pub counts: f32,
 }
 
 impl Blur {
@@ -57,6 +60,7 @@ impl Blur {
             clip_count: view.shown.clip.len() as u32,
             bounds: grid.bounds,
             extent: lighting.extent,
+            counts: sat::counts(view),
         }
     }
 
@@ -69,6 +73,15 @@ impl Blur {
         let wanted = (self.sigma * f64::from(level).exp2()).powi(2);
         let had = (in_a_part.powi(2) - 1.0) / 12.0 * edge.powi(2);
         (wanted - had).max(0.0).sqrt() / (in_a_part * edge)
+    }
+
+    /// The numbers of a pass that blurs nothing.
+    pub fn numbers(&self) -> BlurInfo {
+        self.info(Line {
+            axis: 0,
+            counts: [self.size[0]; 2],
+            deviation: 0.0,
+        })
     }
 
     /// The numbers of a pass.
@@ -87,7 +100,7 @@ impl Blur {
             sigma: self.sigma as f32,
             ghost: self.ghost,
             clip_count: self.clip_count,
-            reserved: 0,
+            counts: self.counts,
             clip_planes: self.clip_planes,
         }
     }

@@ -136,7 +136,7 @@ pub struct BlurInfo {
     pub sigma: f32,
     pub ghost: f32,
     pub clip_count: u32,
-    pub reserved: u32,
+    pub counts: f32,
     pub clip_planes: [[f32; 4]; MAX_CLIP_PLANES],
 }
 
@@ -284,6 +284,16 @@ pub const METHOD_CONES: u32 = 0;
 pub const METHOD_SURROUND: u32 = 1;
 /// Light from all sides by shells.
 pub const METHOD_SPAO_MIPMAP: u32 = 2;
+/// Light along a cone through the pyramid of values.
+pub const METHOD_VCT: u32 = 3;
+/// Light along a cone by boxes of a summed-area table.
+pub const METHOD_SAT: u32 = 4;
+/// Sums that a pass adds up along an axis.
+pub const SUM_PARTS: u32 = 8;
+/// Means of the table of opacities by mean and deviation.
+pub const VCT_MEANS: u32 = 1024;
+/// Deviations of it.
+pub const VCT_DEVIATIONS: u32 = 32;
 /// Bits below the coverage of a packed voxel.
 pub const PACKED_SHIFT: u32 = 11;
 /// Coverage of a packed voxel that cells fill.

@@ -6,7 +6,9 @@ use super::around;
 use super::compact_grid::GridFacts;
 use super::cones::ConeTable;
 use super::layout::{self, Emitter, LightingInfo};
-use crate::scene::lighting::{LightMode, OcclusionMethod};
+use super::transfer::position;
+use super::{sat, vct};
+use crate::scene::lighting::{LightMethod, LightMode};
 use crate::view::View;
 use crate::view::lighting::{Cone, LightSource, Lighting, SPOT_EDGE};
 
@@ -24,9 +26,11 @@ pub struct Shading {
     /// Only inactive cells are shaded.
     pub exact_colors: bool,
     /// How occlusion is found.
-    pub method: OcclusionMethod,
+    pub method: LightMethod,
     /// Of shells: each counts as one voxel.
     pub per_shell: bool,
+    /// How shadows are found.
+    pub shadow_method: LightMethod,
 }
 
 impl Shading {
@@ -49,6 +53,11 @@ impl Shading {
                 .occlusion
                 .map_or_else(Default::default, |o| o.method),
             per_shell: lighting.occlusion.is_some_and(|o| o.per_shell),
+            shadow_method: if lights {
+                lighting.shadow_method
+            } else {
+                LightMethod::default()
+            },
         }
     }
 
@@ -62,19 +71,47 @@ impl Shading {
         [self.occlusion, self.shadows].contains(&layout::LIGHT_RAYS)
     }
 
-    /// True where cones are traced through the pyramid, at samples or before.
+    /// True where cones are traced through the pyramid of extinction, at samples or before.
     pub fn traces_cones(self) -> bool {
-        let occlusion = match self.averages() {
-            true => layout::LIGHT_OFF,
-            false => self.occlusion,
-        };
-        let modes = [occlusion, self.shadows];
-        modes.contains(&layout::LIGHT_IMAGE) || modes.contains(&layout::LIGHT_VOLUME)
+        self.uses(LightMethod::Cones) || self.uses(LightMethod::Surround)
     }
 
     /// True where occlusion is found from mean opacities.
     pub fn averages(self) -> bool {
-        self.method == OcclusionMethod::SpaoMipmap && self.occlusion == layout::LIGHT_VOLUME
+        self.uses(LightMethod::SpaoMipmap)
+    }
+
+    /// True where cones are traced through the pyramid of values.
+    pub fn traces_values(self) -> bool {
+        self.uses(LightMethod::Vct)
+    }
+
+    /// True where boxes of a summed-area table are asked for.
+    pub fn sums(self) -> bool {
+        self.uses(LightMethod::Sat)
+    }
+
+    /// True where the volume of values is asked for.
+    pub fn reads_field(self) -> bool {
+        self.casts_rays()
+            || self.traces_cones()
+            || self.averages()
+            || self.traces_values()
+            || self.sums()
+    }
+
+    /// How the light toward an emitter is found, the viewer being the first.
+    pub fn method_of(self, emitter: usize) -> LightMethod {
+        match emitter {
+            0 => self.method,
+            _ => self.shadow_method,
+        }
+    }
+
+    fn uses(self, method: LightMethod) -> bool {
+        let finds = |mode| [layout::LIGHT_IMAGE, layout::LIGHT_VOLUME].contains(&mode);
+        (self.method == method && finds(self.occlusion))
+            || (self.shadow_method == method && finds(self.shadows))
     }
 }
 
@@ -85,11 +122,6 @@ fn mode(mode: LightMode) -> u32 {
         LightMode::Preilluminated => layout::LIGHT_VOLUME,
         LightMode::MonteCarlo => layout::LIGHT_RAYS,
     }
-}
-
-/// Transfer-function position of a value that is stored as a part of `range`: offset and factor.
-pub fn position(view: &View, range: [f64; 2]) -> [f32; 2] {
-    view.style.transfer.positions(range).map(|v| v as f32)
 }
 
 /// Lighting space: the grid's axes from the low corner of the box, in units of the finest level's standard
@@ -130,10 +162,16 @@ impl<'a> LightSpace<'a> {
 pub struct Emitters {
     /// All of them.
     pub emitters: Vec<Emitter>,
-    /// Sections of their cones: distance from the tip, level of the pyramid, amplitude times attenuation, weight.
+    /// Sections of their cones: distance from the tip, level of the pyramid, amplitude times attenuation, weight. By the
+    /// method `vct` one, as [`vct::section`] says. By the method `sat` a box each: distance of its middle, edge, attenuation
+    /// a count, length that it stands for.
     pub sections: Vec<[f32; 4]>,
     /// Emitter of each light volume.
     pub volumes: Vec<usize>,
+    /// Loop iterations that the light toward each emitter costs at a point, about.
+    pub works: Vec<u32>,
+    /// Numbers that a unit of optical depth is counted in, in sums.
+    counts: f32,
     /// Loop iterations that the light of a sample costs, about.
     pub work: u32,
     /// Samples of a ray over the longest of the cones over which rays are cast.
@@ -158,6 +196,9 @@ fn traced(cone: Cone) -> Cone {
 /// Reach of the rays of a cone, and of a section of seven parts, in loop iterations.
 const SECTION_WORK: [u32; 3] = [1, 2, 4];
 
+/// Loop iterations that the sum over a box costs, about.
+const BOX_WORK: u32 = 16;
+
 impl Emitters {
     /// Those of a view of a grid.
     pub fn new(grid: &GridFacts, view: &View) -> Self {
@@ -167,41 +208,41 @@ impl Emitters {
             emitters: Vec::new(),
             sections: Vec::new(),
             volumes: Vec::new(),
+            works: Vec::new(),
+            counts: sat::counts(view),
             work: 0,
             ray_steps: 0.0,
         };
         let viewer = Emitter::viewer(&space);
         let occlusion = lighting.occlusion;
-        let mode = occlusion.map_or(LightMode::Off, |o| o.mode);
-        all.add(viewer, mode, occlusion.map(|o| o.cone), &space);
+        let looks = occlusion.map(|o| (o.mode, o.method, o.cone));
+        all.add(viewer, looks, &space);
         for light in &lighting.lights {
             let color = light.blended(view.style.blending);
             let emitter = Emitter::at(&light.source, color, &space);
-            all.add(emitter, lighting.shadows, Some(light.cone), &space);
+            let looks = (lighting.shadows, lighting.shadow_method, light.cone);
+            all.add(emitter, Some(looks), &space);
         }
         all
     }
 
+    /// Adds an emitter; where its light is found, how, and its cone.
     fn add(
         &mut self,
         mut emitter: Emitter,
-        mode: LightMode,
-        cone: Option<Cone>,
+        looks: Option<(LightMode, LightMethod, Cone)>,
         space: &LightSpace<'_>,
     ) {
-        if let Some(cone) = cone.filter(|_| mode != LightMode::Off) {
-            let table = ConeTable::of(&traced(cone), space.sigma);
+        let mut work = 0;
+        if let Some((mode, method, cone)) = looks.filter(|(mode, ..)| *mode != LightMode::Off) {
             emitter.first = self.sections.len() as u32;
-            [emitter.ones, emitter.threes, emitter.sevens] = table.by_parts();
             emitter.tangent = cone.half_angle.tan() as f32;
             emitter.cosine = cone.half_angle.cos() as f32;
             emitter.length = (cone.length / space.sigma) as f32;
-            self.sections.extend(table.sections.iter().map(|s| {
-                [s.distance, f64::from(s.level), s.amplitude, s.weight].map(|v| v as f32)
-            }));
+            work = self.add_sections(&mut emitter, method, &cone, space.sigma);
             match mode {
                 LightMode::Off => {}
-                LightMode::Image => self.work += emitter.cone_work(),
+                LightMode::Image => self.work += work,
                 LightMode::Preilluminated => {
                     emitter.volume = self.volumes.len() as u32;
                     self.volumes.push(self.emitters.len());
@@ -214,6 +255,43 @@ impl Emitters {
             }
         }
         self.emitters.push(emitter);
+        self.works.push(work);
+    }
+
+    /// Adds what a method knows of the cone toward an emitter; gives the loop iterations that a point costs, about.
+    fn add_sections(
+        &mut self,
+        emitter: &mut Emitter,
+        method: LightMethod,
+        cone: &Cone,
+        sigma: f64,
+    ) -> u32 {
+        match method {
+            LightMethod::Cones | LightMethod::Surround | LightMethod::SpaoMipmap => {
+                let table = ConeTable::of(&traced(*cone), sigma);
+                [emitter.ones, emitter.threes, emitter.sevens] = table.by_parts();
+                self.sections.extend(table.sections.iter().map(|s| {
+                    [s.distance, f64::from(s.level), s.amplitude, s.weight].map(|v| v as f32)
+                }));
+                emitter.cone_work()
+            }
+            LightMethod::Vct => {
+                emitter.ones = 1;
+                self.sections.push(vct::section(cone));
+                vct::steps(cone, sigma)
+            }
+            LightMethod::Sat => {
+                let boxes = sat::sections(cone, sigma);
+                let factor = cone.attenuation / f64::from(self.counts);
+                emitter.ones = boxes.len() as u32;
+                self.sections.extend(
+                    boxes
+                        .iter()
+                        .map(|s| [s.distance, s.edge, factor, s.length].map(|v| v as f32)),
+                );
+                BOX_WORK * emitter.ones
+            }
+        }
     }
 
     /// All emitters and behind them all sections, in texels of four words.
@@ -296,7 +374,7 @@ impl Emitter {
     }
 
     /// Loop iterations of its cone, about.
-    pub fn cone_work(&self) -> u32 {
+    fn cone_work(&self) -> u32 {
         let counts = [self.ones, self.threes, self.sevens];
         let one: u32 = counts.iter().zip(SECTION_WORK).map(|(n, w)| n * w).sum();
         match self.is_around() {

@@ -19,10 +19,12 @@ mod lists;
 pub mod majorants;
 pub mod occluders;
 pub mod packing;
+pub mod sat;
 pub mod srg;
 pub mod surfaces;
 pub mod transfer;
 pub mod tubes;
+pub mod vct;
 pub mod visible;
 pub mod volume;
 

@@ -30,6 +30,11 @@ pub fn extinctions(transfer: &TransferFunction) -> Vec<f32> {
         .collect()
 }
 
+/// Transfer-function position of a value that is stored as a part of `range`: offset and factor.
+pub fn position(view: &View, range: [f64; 2]) -> [f32; 2] {
+    view.style.transfer.positions(range).map(|v| v as f32)
+}
+
 fn positions() -> impl Iterator<Item = f64> {
     (0..LUT_SIZE).map(|n| f64::from(n) / f64::from(LUT_SIZE - 1))
 }

@@ -5,7 +5,7 @@ use glam::DVec3;
 
 use super::PanelContext;
 use super::controls::{one_of, slider};
-use crate::scene::lighting::{LightSpec, OcclusionMethod, OcclusionSpec, PRESETS};
+use crate::scene::lighting::{LightMethod, LightSpec, OcclusionSpec, PRESETS, ShadowSpec};
 use crate::scene::{LightMode, LightingSpec};
 use crate::viewer::action::Action;
 
@@ -87,6 +87,7 @@ fn key_light(ui: &mut Ui, lighting: &mut LightingSpec) {
     if slider(ui, "Light strength", what, of) {
         *intensity = Some(strength);
     }
+    shadows(ui, &mut lighting.shadows);
 }
 
 /// Azimuth (degrees clockwise from north) and elevation that light comes from.
@@ -125,17 +126,40 @@ fn cone(ui: &mut Ui, occlusion: &mut OcclusionSpec) {
 
 /// Which way it looks.
 fn method(ui: &mut Ui, occlusion: &mut OcclusionSpec) {
-    let titles = ["To the viewer", "To all sides", "All sides, quick"];
-    let methods: Vec<_> = OcclusionMethod::ALL
-        .into_iter()
-        .zip(titles)
-        .map(|(method, title)| (method, title, method.describe()))
-        .collect();
+    let methods = LightMethod::ALL.map(|method| (method, title(method), method.describe()));
     if let Some(method) = one_of(ui, "Looks", occlusion.method, &methods) {
         occlusion.method = method;
         if method.is_around() {
             occlusion.mode = LightMode::Preilluminated;
         }
+    }
+}
+
+/// What a method is called in lists.
+fn title(method: LightMethod) -> &'static str {
+    match method {
+        LightMethod::Cones => "To the viewer",
+        LightMethod::Surround => "To all sides",
+        LightMethod::SpaoMipmap => "All sides, quick",
+        LightMethod::Vct => "To the viewer, by values",
+        LightMethod::Sat => "To the viewer, by boxes",
+    }
+}
+
+/// How shadows of the lights are found.
+fn shadows(ui: &mut Ui, shadows: &mut ShadowSpec) {
+    let name = |method| match method {
+        LightMethod::Vct => "By values",
+        LightMethod::Sat => "By boxes",
+        _ => "Cones",
+    };
+    let methods: Vec<_> = LightMethod::ALL
+        .into_iter()
+        .filter(|method| !method.is_around())
+        .map(|method| (method, name(method), method.describe()))
+        .collect();
+    if let Some(method) = one_of(ui, "Shadows", shadows.method, &methods) {
+        shadows.method = method;
     }
 }
 
@@ -158,6 +182,9 @@ fn toward_viewer(ui: &mut Ui, occlusion: &mut OcclusionSpec) {
     let what = "Wider cones look at more of the surroundings";
     let angle = egui::Slider::new(&mut occlusion.half_angle_degrees, 1.0..=45.0);
     slider(ui, "Cone half angle", what, angle.suffix("°"));
+    if occlusion.method != LightMethod::Cones {
+        return;
+    }
     let splits = [
         (1, "1", "Fastest"),
         (3, "3", "Between"),

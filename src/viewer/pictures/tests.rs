@@ -5,7 +5,7 @@ use std::sync::{Condvar, Mutex};
 
 use super::*;
 use crate::render::gpu::Gpu;
-use crate::scene::lighting::OcclusionMethod;
+use crate::scene::lighting::LightMethod;
 use crate::scene::{CameraSpec, FramingCamera, LightingSpec, Projection, Scene};
 use crate::view::Lighting;
 use crate::viewer::budget::COARSEST;
@@ -184,7 +184,7 @@ fn light_from_all_sides_stays_whole_while_the_camera_turns() {
         return;
     };
     if let Some(occlusion) = &mut turning.lighting.occlusion {
-        occlusion.method = OcclusionMethod::Surround;
+        occlusion.method = LightMethod::Surround;
     }
     turning.rest(10);
     for degrees in 11..15 {
