@@ -52,7 +52,7 @@ impl Digest {
         let all = |value: fn(&Row) -> Option<f64>| own.iter().copied().filter_map(value);
         let mut times: Vec<f64> = all(|r| r.frame_ms).collect();
         times.sort_by(f64::total_cmp);
-        let mean_of = |value| mean(all(value).collect());
+        let mean_of = |value| mean(&all(value).collect::<Vec<f64>>());
         Self {
             name: name.to_owned(),
             is_reference: own.iter().any(|r| r.is_reference()),
@@ -85,8 +85,8 @@ impl Digest {
 }
 
 /// Mean of some figures; `None` of none.
-fn mean(values: Vec<f64>) -> Option<f64> {
-    Some(crate::image::metrics::mean(&values)).filter(|m| m.is_finite())
+fn mean(values: &[f64]) -> Option<f64> {
+    Some(crate::image::metrics::mean(values)).filter(|m| m.is_finite())
 }
 
 /// What rows are called that have these.

@@ -303,6 +303,33 @@ fn both_executors_find_the_same_light_by_each_method() {
     }
 }
 
+/// Figures for docs/methods.md: what an edit of the curve takes on the CPU, which begins with all else made.
+#[test]
+#[ignore = "a table"]
+fn table_of_edits() {
+    let case = load::open(&common::sample()).unwrap();
+    println!("| method | extinction ms | light volume ms |");
+    for method in ["cones", "vct", "sat"] {
+        let mut renderer = CpuExecutor::default().renderer(&case.grid).unwrap();
+        let mut edited = |highest: f64| {
+            let scene: Scene = serde_json::from_value(json!({
+                "size": [32, 24], "property": "PORO", "vertical_exaggeration": 8.0,
+                "transfer": {"opacity": [[0, 0.0], [0.3, 0.1], [1, highest]]},
+                "lighting": {"occlusion": {"method": method}, "volume": {"budget_mb": 10}},
+            }))
+            .unwrap();
+            let view = view::resolve(&scene, &case).unwrap();
+            let light = renderer.render(&view, &|_| true).unwrap().light;
+            [light.extinction, light.volumes].map(|t| 1e3 * t.as_secs_f64())
+        };
+        edited(0.3);
+        let mut times: Vec<[f64; 2]> = (1..8).map(|n| edited(0.3 + 0.05 * f64::from(n))).collect();
+        times.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        let [extinction, volumes] = times[times.len() / 2];
+        println!("| {method} | {extinction:.1} | {volumes:.1} |");
+    }
+}
+
 #[test]
 fn shadows_look_along_cones() {
     let case = load::open(&common::sample()).unwrap();

@@ -41,7 +41,7 @@ impl Light<'_> {
     }
 
     /// Transmittance of the cone from a point toward the viewer.
-    pub fn from_viewer(&self, viewer: &Lamp, p: Vec3A) -> f32 {
+    pub fn toward_viewer(&self, viewer: &Lamp, p: Vec3A) -> f32 {
         let Shading {
             occlusion, method, ..
         } = self.shading;
@@ -49,7 +49,7 @@ impl Light<'_> {
     }
 
     /// Transmittance of the cone from a point toward a light.
-    pub fn from_light(&self, lamp: &Lamp, p: Vec3A) -> f32 {
+    pub fn toward_light(&self, lamp: &Lamp, p: Vec3A) -> f32 {
         let Shading {
             shadows,
             shadow_method,

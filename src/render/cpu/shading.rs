@@ -122,7 +122,7 @@ fn found(light: &Light<'_>, point: Vec3A, is_ghost: bool) -> Shade {
     };
     let mut sum = Vec3A::splat(info.ambient);
     if modes.occlusion != LIGHT_OFF {
-        let occluded = 1.0 - light.from_viewer(viewer, p);
+        let occluded = 1.0 - light.toward_viewer(viewer, p);
         sum *= 1.0 - info.strength * occluded;
     }
     let mut highlight = Vec3A::ZERO;
@@ -134,7 +134,7 @@ fn found(light: &Light<'_>, point: Vec3A, is_ghost: bool) -> Shade {
         let (way, _) = lamp.toward(p);
         let mut arriving = lamp.arriving(way);
         if modes.shadows != LIGHT_OFF {
-            arriving *= light.from_light(lamp, p);
+            arriving *= light.toward_light(lamp, p);
         }
         if counts == 0.0 {
             sum += arriving;
