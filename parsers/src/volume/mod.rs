@@ -386,7 +386,17 @@ pub fn sniff(path: &Path) -> Result<Option<Format>, ParseError> {
 
 /// True where a file that can be read is a volume.
 pub(crate) fn is_volume(path: &Path) -> bool {
-    matches!(sniff(path), Ok(Some(_)))
+    let Ok(source) = Source::open(path) else {
+        return false;
+    };
+    let Ok(head) = source.head() else {
+        return false;
+    };
+    let start = head.trim_ascii_start();
+    match format(&source, &head) {
+        Some(Format::Raw) => !start.starts_with(b"{") || raw::is_layout(start),
+        format => format.is_some(),
+    }
 }
 
 fn read(source: &Source, options: &Options) -> Result<VolumeFile, ParseError> {

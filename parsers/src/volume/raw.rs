@@ -106,9 +106,13 @@ impl FromStr for RawLayout {
 /// True where a file begins as a layout in JSON does.
 pub(super) fn is_header(start: &[u8]) -> bool {
     let start = &start[..start.len().min(4096)];
-    let has = |key: &[u8]| start.windows(key.len()).any(|word| word == key);
-    // Scenes are JSON with a size too.
-    start.starts_with(b"{") && has(b"\"size\"") && has(b"\"type\"")
+    start.starts_with(b"{") && start.windows(6).any(|word| word == b"\"size\"")
+}
+
+/// True where a file begins as such a layout and says a type too: scenes are JSON with a size.
+pub(super) fn is_layout(start: &[u8]) -> bool {
+    let near = &start[..start.len().min(4096)];
+    is_header(start) && near.windows(6).any(|word| word == b"\"type\"")
 }
 
 pub(super) fn read(
