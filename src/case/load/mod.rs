@@ -29,7 +29,6 @@ use strataray_parsers::{At, ErrorKind, ParseError, Warnings, init};
 
 use self::grids::Loaded;
 use self::local::{Beside, Local};
-use self::pore_volume::Least;
 use self::properties::Setting;
 use self::slots::{CellSlots, ResultCells};
 use self::source::FileSource;
@@ -270,21 +269,8 @@ fn build(mut loaded: Loaded, read: Read<'_>, mut about: About, warnings: &Warnin
         "CM" => UnitSystem::Lab,
         _ => UnitSystem::Metric,
     });
-    let least = Least::of(&loaded, units, length);
-    if let Some(least) = &least {
-        least.leave_small(&mut loaded, &mut about.notes);
-    }
-    let is_dual = loaded.flags.porosity.is_some();
-    let volume_unit = pore_volume::unit(units, length);
-    let volume_unit = loaded.is_deck.then_some(volume_unit);
-    if let Some(unit) = volume_unit.filter(|_| is_dual) {
-        pore_volume::complete(
-            pore_volume::Cells::Boxes,
-            &loaded.grid,
-            &mut loaded.texts,
-            unit,
-        );
-    }
+    let notes = &mut about.notes;
+    let (least, volume_unit) = pore_volume::of_deck(&mut loaded, units, length, notes);
     let results = ResultCells {
         active: told.active,
         init: init.as_ref(),
@@ -298,7 +284,7 @@ fn build(mut loaded: Loaded, read: Read<'_>, mut about: About, warnings: &Warnin
         main: &loaded.grid,
         init: init.as_ref(),
         least: least.as_ref(),
-        is_dual,
+        is_dual: loaded.flags.porosity.is_some(),
         volume_unit,
     };
     let locals = local::read(local_grids, &beside, &mut about.notes);

@@ -55,7 +55,7 @@ pub struct Least {
 
 impl Least {
     /// What a deck says, or implies where a simulator runs it; `None` where cells may have any pore volume.
-    pub fn of(loaded: &Loaded, units: UnitSystem, length: LengthUnit) -> Option<Self> {
+    fn of(loaded: &Loaded, units: UnitSystem, length: LengthUnit) -> Option<Self> {
         // A deck that names phases is one that a simulator runs.
         let is_whole = loaded.is_deck && loaded.phases != 0;
         let given = loaded.min_pore_volume;
@@ -68,7 +68,7 @@ impl Least {
 
     /// Makes cells of the main grid inactive whose pore volume is below the least; with dual porosity the matrix or the
     /// fractures of a cell. A note says how many, or why none.
-    pub fn leave_small(&self, loaded: &mut Loaded, notes: &mut Vec<String>) {
+    fn leave_small(&self, loaded: &mut Loaded, notes: &mut Vec<String>) {
         let cells = Cells::Boxes;
         let count = self.leave_out(cells, &mut loaded.grid, &mut loaded.flags, &loaded.texts);
         if self.given.is_some() {
@@ -183,8 +183,27 @@ fn volumes(
     Some(cells.zip(bulk).map(volume).collect())
 }
 
+/// Makes cells of a deck inactive that are too small, and finds the pore volumes of dual porosity. How small cells may be,
+/// and a cubic length unit of a deck's grid as pore volume, are for its local grids.
+pub fn of_deck(
+    loaded: &mut Loaded,
+    units: UnitSystem,
+    length: LengthUnit,
+    notes: &mut Vec<String>,
+) -> (Option<Least>, Option<f64>) {
+    let least = Least::of(loaded, units, length);
+    if let Some(least) = &least {
+        least.leave_small(loaded, notes);
+    }
+    let unit = loaded.is_deck.then(|| unit(units, length));
+    if let Some(unit) = unit.filter(|_| loaded.flags.porosity.is_some()) {
+        complete(Cells::Boxes, &loaded.grid, &mut loaded.texts, unit);
+    }
+    (least, unit)
+}
+
 /// A cubic length unit of the grid, as pore volume.
-pub fn unit(units: UnitSystem, length: LengthUnit) -> f64 {
+fn unit(units: UnitSystem, length: LengthUnit) -> f64 {
     length.meters().powi(3) / units.pore_volume_in_cubic_meters()
 }
 
