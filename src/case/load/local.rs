@@ -245,7 +245,7 @@ fn local(
         grid = radial::straightened(&file, grid, parent)?;
         notes.push(format!(
             "local grid {} is radial: it is shown with flat faces, and its outer rings reach the sides of the cells that \
-             it refines",
+             it refines, but not corners that no edge of a sector meets",
             file.name
         ));
     }
