@@ -35,9 +35,6 @@ pub struct FrameRenderer {
     pace: Pace,
     /// How much of surfaces' colors fits into a submission.
     painting: Pace,
-    /// Loop iterations after which rays pause in tests, where these are to pause often.
-    #[cfg(test)]
-    pub(super) most_work: Option<u32>,
 }
 
 /// Loop iterations after which a ray pauses at the latest: on software adapters within what llvmpipe
@@ -135,10 +132,9 @@ impl FrameRenderer {
                     .find_surfaces(surfaces, part, painting, &mut stats, progress)
                     .await?;
             }
-            let most_work = self.most_work(gpu);
             let mut tiles = Tiles::of(part.rect);
             while let Some(tile) = tiles.next(self.pace.area(least_work)) {
-                let pace = (&mut self.pace, most_work);
+                let pace = &mut self.pace;
                 bound
                     .draw(&mut *strategy, part.tile(tile), pace, &mut stats, progress)
                     .await?;
@@ -155,17 +151,6 @@ impl FrameRenderer {
             pixels,
         };
         Ok((image, stats))
-    }
-}
-
-impl FrameRenderer {
-    /// Loop iterations after which a ray pauses at the latest.
-    fn most_work(&self, gpu: &Gpu) -> u32 {
-        #[cfg(test)]
-        if let Some(most) = self.most_work {
-            return most;
-        }
-        WORK_LIMIT[usize::from(!gpu.is_software())]
     }
 }
 
@@ -268,12 +253,13 @@ impl Bound<'_> {
         &self,
         strategy: &mut dyn RenderStrategy,
         tile: Tile,
-        (pace, most): (&mut Pace, u32),
+        pace: &mut Pace,
         stats: &mut FrameStats,
         progress: &Progress,
     ) -> Result<(), RenderError> {
         let mut uniform = tile;
         let goal = stats.finished_rays + u64::from(tile.size[0]) * u64::from(tile.size[1]);
+        let most = WORK_LIMIT[usize::from(!self.gpu.is_software())];
         let mut before = *stats;
         while stats.finished_rays < goal {
             let left = goal - stats.finished_rays;

@@ -244,7 +244,7 @@ fn strategy<'a>(
 mod tests {
     use super::*;
     use crate::case::{Case, load};
-    use crate::scene::{CameraSpec, ExplicitCamera, Projection, Scene, VolumeSpec};
+    use crate::scene::{CameraSpec, ExplicitCamera, Projection, Scene};
     use crate::view;
 
     /// One cell of 100 x 100 x 100.
@@ -306,65 +306,5 @@ mod tests {
             "{lost} of {missing}"
         );
         assert_eq!(whole.entries, whole.covered_pixels);
-    }
-
-    /// Layers of values that dip, as a file beside a case.
-    fn cube(folder: &std::path::Path) -> std::path::PathBuf {
-        let mut text = String::from(
-            "NRRD0004\ntype: float\ndimension: 3\nsizes: 12 12 12\nspace dimension: 3\n\
-             space directions: (20,0,0) (0,20,0) (0,0,20)\nspace origin: (-60,-60,-1160)\nencoding: ascii\n\n",
-        );
-        for n in 0..12 * 12 * 12 {
-            text += &format!("{} ", ((n % 12) as f32 * 0.7 + (n / 144) as f32).sin());
-        }
-        let path = folder.join("cube.nrrd");
-        std::fs::write(&path, text).unwrap();
-        path
-    }
-
-    #[test]
-    fn rays_that_pause_often_make_the_same_image_of_a_volume() {
-        let gpu = match Gpu::new(None) {
-            Ok(gpu) => Arc::new(gpu),
-            Err(error) => {
-                assert!(std::env::var("REQUIRE_GPU").is_err(), "{error}");
-                eprintln!("SKIPPED: {error}");
-                return;
-            }
-        };
-        let folder = tempfile::tempdir().unwrap();
-        let case = one_cell();
-        let scene = Scene {
-            size: [40, 30],
-            vertical_exaggeration: Some(1.0),
-            volumes: vec![VolumeSpec::of(cube(folder.path()))],
-            ..Scene::default()
-        };
-        let mut view = view::resolve(&scene, &case).unwrap();
-        view.sampling.step = 1.0;
-        let mut renderer = GpuRenderer::new(gpu, &case.grid).unwrap();
-        let mut render = |view: &View, most| {
-            renderer.frames.most_work = most;
-            renderer.render(view, &|_| true).unwrap()
-        };
-        let least = |a: &Frame, b: &Frame| {
-            let pairs = a.image.pixels.iter().zip(&b.image.pixels);
-            let apart = pairs.flat_map(|(a, b)| [0, 1, 2, 3].map(|n| (a[n] - b[n]).abs()));
-            apart.fold(0.0, f32::max)
-        };
-        let mut bare = view.clone();
-        bare.shown.cube = None;
-        for strategy in StrategyKind::ALL {
-            let whole = render(&view.by(strategy), None);
-            let paused = render(&view.by(strategy), Some(9));
-            let [one, many] = [&whole, &paused].map(|frame| frame.stats.submissions);
-            let apart = least(&whole, &paused);
-            println!("{}: {one} and {many} submissions, {apart}", strategy.name());
-            assert!(many > 3 * one, "{}: {many}", strategy.name());
-            assert!(apart < 2e-5, "{}: {apart}", strategy.name());
-            assert_eq!(whole.stats.cube_samples, paused.stats.cube_samples);
-            // The twin: without the volume the image is another one.
-            assert!(least(&whole, &render(&bare.by(strategy), None)) > 0.05);
-        }
     }
 }
