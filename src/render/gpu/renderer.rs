@@ -308,11 +308,11 @@ mod tests {
         assert_eq!(whole.entries, whole.covered_pixels);
     }
 
-    /// Layers of values that dip, as a file beside a case.
+    /// Layers of values that dip around the sample, as a file.
     fn cube(folder: &std::path::Path) -> std::path::PathBuf {
         let mut text = String::from(
             "NRRD0004\ntype: float\ndimension: 3\nsizes: 12 12 12\nspace dimension: 3\n\
-             space directions: (20,0,0) (0,20,0) (0,0,20)\nspace origin: (-60,-60,-1160)\nencoding: ascii\n\n",
+             space directions: (500,0,0) (0,450,0) (0,0,40)\nspace origin: (460000,5932500,-2450)\nencoding: ascii\n\n",
         );
         for n in 0..12 * 12 * 12 {
             text += &format!("{} ", ((n % 12) as f32 * 0.7 + (n / 144) as f32).sin());
@@ -333,15 +333,14 @@ mod tests {
             }
         };
         let folder = tempfile::tempdir().unwrap();
-        let case = one_cell();
+        let sample = concat!(env!("CARGO_MANIFEST_DIR"), "/samples/scissor/SCISSOR.EGRID");
+        let case = load::open(std::path::Path::new(sample)).unwrap();
         let scene = Scene {
             size: [40, 30],
-            vertical_exaggeration: Some(1.0),
             volumes: vec![VolumeSpec::of(cube(folder.path()))],
             ..Scene::default()
         };
-        let mut view = view::resolve(&scene, &case).unwrap();
-        view.sampling.step = 1.0;
+        let view = view::resolve(&scene, &case).unwrap();
         let mut renderer = GpuRenderer::new(gpu, &case.grid).unwrap();
         let mut render = |view: &View, most| {
             renderer.frames.most_work = most;
@@ -356,11 +355,11 @@ mod tests {
         bare.shown.cube = None;
         for strategy in StrategyKind::ALL {
             let whole = render(&view.by(strategy), None);
-            let paused = render(&view.by(strategy), Some(9));
+            let paused = render(&view.by(strategy), Some(60));
             let [one, many] = [&whole, &paused].map(|frame| frame.stats.submissions);
             let apart = least(&whole, &paused);
             println!("{}: {one} and {many} submissions, {apart}", strategy.name());
-            assert!(many > 3 * one, "{}: {many}", strategy.name());
+            assert!(many > one, "{}: {many}", strategy.name());
             assert!(apart < 2e-5, "{}: {apart}", strategy.name());
             assert_eq!(whole.stats.cube_samples, paused.stats.cube_samples);
             // The twin: without the volume the image is another one.
