@@ -836,7 +836,6 @@ fn ok_local_grids() {
 
 #[test]
 fn ok_local_grids_that_are_left_out() {
-    let blocks = "DIMENS\n4 1 1 /\nDXV\n4*1 /\nDYV\n1 /\nDZV\n1 /\nTOPS\n4*0 /\n";
     let first = "CARFIN\nA 1 2 1 1 1 1 4 2 2 /\nENDFIN\n";
     for (text, told, count) in [
         (
@@ -891,61 +890,6 @@ fn ok_local_grids_that_are_left_out() {
             1,
         ),
         (
-            "RADFIN\nR 1 1 1 1 3 4 /\nINRAD\n1 /\nENDFIN\n".to_owned(),
-            "RADFIN needs a name",
-            0,
-        ),
-        (
-            "RADFIN\nR 1 1 1 1 3 4 1 /\nDRV\n0.1 0.1 0.1 /\nENDFIN\n".to_owned(),
-            "INRAD, the radius of its innermost ring, is missing",
-            0,
-        ),
-        (
-            "RADFIN\nR 1 1 1 1 3 4 1 1* 0.1 0.05 /\nENDFIN\n".to_owned(),
-            "OUTRAD 0.05 must be above INRAD 0.1",
-            0,
-        ),
-        (
-            "RADFIN\nR 1 1 1 1 3 4 1 1* 0.1 /\nENDFIN\n".to_owned(),
-            "has neither DRV nor OUTRAD",
-            1,
-        ),
-        (
-            "RADFIN\nR 1 1 1 1 3 4 1 1* 0.1 /\nDRV\n0.3 0.3 0.3 /\nENDFIN\n".to_owned(),
-            "its outermost ring begins at a radius of 0.7",
-            0,
-        ),
-        (
-            "RADFIN\nR 1 1 1 1 2 2 1 1* 0.1 0.3 /\nDTHETAV\n90 180 /\nENDFIN\n".to_owned(),
-            "its sectors have 270 degrees",
-            0,
-        ),
-        (
-            "RADFIN4\nR 1 2 1 1 1 1 2 4 1 /\nINRAD\n0.1 /\nENDFIN\n".to_owned(),
-            "RADFIN4 refines two columns along I and two along J",
-            0,
-        ),
-        (
-            "RADFIN\nR 1 1 1 1 2 2 1 1* 0.1 0.3 /\nDR\n2*0.1 0.1 0.2 /\nENDFIN\n".to_owned(),
-            "DR is not the same for all cells",
-            0,
-        ),
-        (
-            "RADFIN\nR 1 1 1 1 2 2 1 1* 0.1 0.3 /\nNXFIN\n2 /\nENDFIN\n".to_owned(),
-            "NXFIN is not used",
-            1,
-        ),
-        (
-            "RADFIN\nR 1 1 1 1 2 2 1 1* 0.1 0.3 /\nDZ\n4*1 /\nENDFIN\n".to_owned(),
-            "DZ of local grid R is not read: its rings",
-            1,
-        ),
-        (
-            "RADFIN\nR 1 1 1 1 2 2 1 1* 0.1 0.3 /\nENDFIN\nCARFIN\nB 1 1 1 1 1 1 2 1 1 1* R /\nENDFIN\n".to_owned(),
-            "it refines a radial grid",
-            1,
-        ),
-        (
             first.replace("ENDFIN", "DX\n16*1 /\nENDFIN"),
             "DX of local grid A is not read",
             1,
@@ -956,13 +900,82 @@ fn ok_local_grids_that_are_left_out() {
             1,
         ),
     ] {
-        let (grid, warning) = warned(&format!("{blocks}{text}PORO\n4*0.2 /\n"));
-        assert!(warning.contains(told), "{text}: {warning}");
-        assert_eq!(grid.local_grids.len(), count, "{text}");
-        // What is not for the main grid does not reach it.
-        assert_eq!(property(&grid, "PORO"), [0.2; 4], "{text}");
-        assert!(grid.faults.is_empty() && grid.dims == [4, 1, 1], "{text}");
+        check_told(&text, told, count);
     }
+}
+
+#[test]
+fn ok_radial_local_grids_that_are_left_out() {
+    for (text, told, count) in [
+        (
+            "RADFIN\nR 1 1 1 1 3 4 /\nINRAD\n1 /\nENDFIN\n",
+            "RADFIN needs a name",
+            0,
+        ),
+        (
+            "RADFIN\nR 1 1 1 1 3 4 1 /\nDRV\n0.1 0.1 0.1 /\nENDFIN\n",
+            "INRAD, the radius of its innermost ring, is missing",
+            0,
+        ),
+        (
+            "RADFIN\nR 1 1 1 1 3 4 1 1* 0.1 0.05 /\nENDFIN\n",
+            "OUTRAD 0.05 must be above INRAD 0.1",
+            0,
+        ),
+        (
+            "RADFIN\nR 1 1 1 1 3 4 1 1* 0.1 /\nENDFIN\n",
+            "has neither DRV nor OUTRAD",
+            1,
+        ),
+        (
+            "RADFIN\nR 1 1 1 1 3 4 1 1* 0.1 /\nDRV\n0.3 0.3 0.3 /\nENDFIN\n",
+            "its outermost ring begins at a radius of 0.7",
+            0,
+        ),
+        (
+            "RADFIN\nR 1 1 1 1 2 2 1 1* 0.1 0.3 /\nDTHETAV\n90 180 /\nENDFIN\n",
+            "its sectors have 270 degrees",
+            0,
+        ),
+        (
+            "RADFIN4\nR 1 2 1 1 1 1 2 4 1 /\nINRAD\n0.1 /\nENDFIN\n",
+            "RADFIN4 refines two columns along I and two along J",
+            0,
+        ),
+        (
+            "RADFIN\nR 1 1 1 1 2 2 1 1* 0.1 0.3 /\nDR\n2*0.1 0.1 0.2 /\nENDFIN\n",
+            "DR is not the same for all cells",
+            0,
+        ),
+        (
+            "RADFIN\nR 1 1 1 1 2 2 1 1* 0.1 0.3 /\nNXFIN\n2 /\nENDFIN\n",
+            "NXFIN is not used",
+            1,
+        ),
+        (
+            "RADFIN\nR 1 1 1 1 2 2 1 1* 0.1 0.3 /\nDZ\n4*1 /\nENDFIN\n",
+            "DZ of local grid R is not read: its rings",
+            1,
+        ),
+        (
+            "RADFIN\nR 1 1 1 1 2 2 1 1* 0.1 0.3 /\nENDFIN\nCARFIN\nB 1 1 1 1 1 1 2 1 1 1* R /\nENDFIN\n",
+            "it refines a radial grid",
+            1,
+        ),
+    ] {
+        check_told(text, told, count);
+    }
+}
+
+/// Four cells with local grids of a text, of which something is told and so many are left.
+fn check_told(text: &str, told: &str, count: usize) {
+    let blocks = "DIMENS\n4 1 1 /\nDXV\n4*1 /\nDYV\n1 /\nDZV\n1 /\nTOPS\n4*0 /\n";
+    let (grid, warning) = warned(&format!("{blocks}{text}PORO\n4*0.2 /\n"));
+    assert!(warning.contains(told), "{text}: {warning}");
+    assert_eq!(grid.local_grids.len(), count, "{text}");
+    // What is not for the main grid does not reach it.
+    assert_eq!(property(&grid, "PORO"), [0.2; 4], "{text}");
+    assert!(grid.faults.is_empty() && grid.dims == [4, 1, 1], "{text}");
 }
 
 #[test]

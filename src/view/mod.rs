@@ -176,10 +176,12 @@ pub struct Sampling {
 }
 
 impl Sampling {
-    /// The same with samples of cells, no segments.
-    fn by_samples(mut self) -> Self {
-        self.libc.integration = Integration::Samples;
-        self.plts.integration = Integration::Samples;
+    /// The same beside a cube: where there is one, by samples of cells, no segments.
+    fn beside(mut self, cube: Option<&ShownCube>) -> Self {
+        if cube.is_some() {
+            self.libc.integration = Integration::Samples;
+            self.plts.integration = Integration::Samples;
+        }
         self
     }
 }
@@ -270,11 +272,8 @@ impl View {
     /// When camera or size are not allowed.
     pub fn seen_from(&self, camera_spec: &CameraSpec, size: [u32; 2]) -> Result<Self, SceneError> {
         let size = checked_size(size, self.sampling.supersample)?;
-        let of = Framed {
-            subject: &self.world.subject,
-            corners: &self.world.corners,
-            cube: self.shown.cube.as_deref(),
-        };
+        let (world, cube) = (&self.world, self.shown.cube.as_deref());
+        let of = Framed::new(&world.subject, &world.corners, cube);
         let camera = placed(camera_spec, size, &of, self.notes.has_box)?;
         Ok(Self {
             size,

@@ -44,9 +44,7 @@ pub(super) fn resolve_over(
     let exaggeration = exaggeration(scene, active_bounds(case)?)?;
     let spaces = Spaces::new(case.grid.map_axes(), exaggeration);
     let edges = case.mean_edges(exaggeration);
-    let property = scene.property.clone();
-    let property = property.unwrap_or_else(|| default_property(case));
-    let step = step_of(case, &scene.step, case.is_dynamic(&property))?;
+    let (property, step) = shown_values(scene, case)?;
     let field = case.field(&property, step)?;
     let asked = ColorRequest {
         scene,
@@ -77,18 +75,12 @@ pub(super) fn resolve_over(
     let size = checked_size(scene.size, scene.supersample)?;
     let sampling = sampling(scene, case.grid.main_dims(), edges, world_bounds)?;
     let cube = cube::shown(scene, case, &spaces, sampling.step)?;
-    let framed = Framed {
-        subject: &subject,
-        corners: &box_corners,
-        cube: cube.as_deref(),
-    };
+    let sampling = sampling.beside(cube.as_deref());
+    let framed = Framed::new(&subject, &box_corners, cube.as_deref());
     Ok(View {
         size,
         camera: camera(&scene.camera, size, &framed, scene.show.r#box)?,
-        sampling: match cube {
-            Some(_) => sampling.by_samples(),
-            None => sampling,
-        },
+        sampling,
         style: Style {
             background: background(scene)?,
             transfer,
@@ -124,6 +116,14 @@ pub(super) fn resolve_over(
         },
         notes: notes(scene, case, facts)?,
     })
+}
+
+/// The property and the step of a scene.
+fn shown_values(scene: &Scene, case: &Case) -> Result<(String, usize), SceneError> {
+    let named = scene.property.clone();
+    let property = named.unwrap_or_else(|| default_property(case));
+    let step = step_of(case, &scene.step, case.is_dynamic(&property))?;
+    Ok((property, step))
 }
 
 fn notes(scene: &Scene, case: &Case, facts: Option<Arc<Facts>>) -> Result<Notes, SceneError> {
@@ -370,6 +370,17 @@ pub(super) struct Framed<'a> {
     pub corners: &'a [DVec3; 8],
     /// What is drawn beside the model.
     pub cube: Option<&'a ShownCube>,
+}
+
+impl<'a> Framed<'a> {
+    /// A subject, corners and cube.
+    pub fn new(subject: &'a Subject, corners: &'a [DVec3; 8], cube: Option<&'a ShownCube>) -> Self {
+        Self {
+            subject,
+            corners,
+            cube,
+        }
+    }
 }
 
 /// The camera that a scene asks for.

@@ -125,7 +125,7 @@ fn with_cube(view: &View, change: impl Fn(&mut ShownCube)) -> View {
 /// The same a voxel farther along the first axis.
 fn shifted(view: &View) -> View {
     with_cube(view, |shown| {
-        shown.world_from_sample = shown.world_from_sample * DAffine3::from_translation(DVec3::X);
+        shown.world_from_sample *= DAffine3::from_translation(DVec3::X);
     })
 }
 

@@ -76,7 +76,7 @@ fn placed(lattice: &Lattice, format: Format, file: &CubeFile, notes: &mut Vec<St
     let [i, j, k] = lattice.edges.map(DVec3::from_array);
     let in_file = DAffine3 {
         matrix3: glam::DMat3::from_cols(i, j, k),
-        translation: DVec3::from_array(lattice.origin).into(),
+        translation: DVec3::from_array(lattice.origin),
     };
     let down = match (file.vertical, format) {
         // Half of the way there and back.

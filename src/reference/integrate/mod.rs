@@ -114,10 +114,8 @@ impl<'a> Integrator<'a> {
     pub fn ray(&self, ray: Ray) -> [f64; 4] {
         let step = self.view.sampling.step;
         // Beside the box there are the heads of wells, and what a cube has beyond it.
-        let [enter, leave] = match ray.within(self.view.world.bounds) {
-            Some(span) => span,
-            None => [0.0, f64::NEG_INFINITY],
-        };
+        let span = ray.within(self.view.world.bounds);
+        let [enter, leave] = span.unwrap_or([0.0, f64::NEG_INFINITY]);
         if let Some(rgb) = self.section(ray, [enter, leave]) {
             return [rgb[0], rgb[1], rgb[2], 1.0];
         }

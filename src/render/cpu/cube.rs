@@ -4,16 +4,20 @@
 use glam::{Vec3A, Vec4};
 
 use super::frame::{Frame, PixelRay};
+use super::kept::Kept;
 use super::transfer::{Accumulated, Tables, passed};
 use super::volume::{ONE_PART, Voxels, in_parts};
 use crate::case;
-use crate::render::plan::cube::{CubeNumbers, cube_range};
+use crate::render::plan::GridFacts;
+use crate::render::plan::cube::{CubeNumbers, cube_range, cube_table};
+use crate::render::revisions::Revisions;
+use crate::view::View;
 
 /// Value, as a part of the range of all values, times presence; and presence.
 pub type CubeVoxels = Voxels<[u16; 2]>;
 
 /// The voxels of a cube.
-pub fn voxels(cube: &case::Cube) -> CubeVoxels {
+fn voxels(cube: &case::Cube) -> CubeVoxels {
     let [low, high] = cube_range(cube);
     let mut voxels = Voxels::new(cube.size.map(|n| n as u32));
     for (voxel, value) in voxels.data.iter_mut().zip(&cube.values) {
@@ -23,6 +27,35 @@ pub fn voxels(cube: &case::Cube) -> CubeVoxels {
         }
     }
     voxels
+}
+
+/// What is kept of a cube from image to image.
+#[derive(Default)]
+pub struct KeptCube {
+    voxels: Kept<CubeVoxels>,
+    tables: Kept<Tables>,
+}
+
+impl KeptCube {
+    /// The cube that a view of a grid shows; `None` where there is none, of which nothing is kept.
+    pub fn update(&mut self, grid: &GridFacts, view: &View, now: Revisions) -> Option<Cube<'_>> {
+        let Some(shown) = &view.shown.cube else {
+            *self = Self::default();
+            return None;
+        };
+        if !self.voxels.is_of(now.cube) {
+            self.voxels.keep(now.cube, voxels(&shown.cube));
+        }
+        if !self.tables.is_of(now.cube_look) {
+            let tables = Tables::of(&cube_table(view, shown));
+            self.tables.keep(now.cube_look, tables);
+        }
+        Some(Cube {
+            voxels: self.voxels.get()?,
+            tables: self.tables.get()?,
+            numbers: CubeNumbers::new(grid, view, shown, cube_range(&shown.cube)),
+        })
+    }
 }
 
 /// What rays sample.

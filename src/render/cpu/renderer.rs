@@ -6,7 +6,7 @@ use std::time::Instant;
 use glam::{DVec3, Vec3A, Vec4};
 use rayon::prelude::*;
 
-use super::cube::{Cube, CubeVoxels, voxels};
+use super::cube::KeptCube;
 use super::frame::Frame as FrameOfRays;
 use super::grid::Grid;
 use super::illumination::{Illumination, Source};
@@ -21,7 +21,6 @@ use super::transfer::{Tables, Transfer};
 use crate::model::{Grid as Model, Ijk};
 use crate::render::job::{Progress, Work};
 use crate::render::line_of_sight::SurfaceTree;
-use crate::render::plan::cube::{CubeNumbers, cube_range, cube_table};
 use crate::render::plan::faces::face_numbers;
 use crate::render::plan::frame::{frame_uniform, ghost};
 use crate::render::plan::visible::{can_be_passed, visible_faces};
@@ -50,8 +49,7 @@ pub struct CpuRenderer {
     /// The visible ones of them, where rays do not meet all.
     visible: Kept<Option<Visible>>,
     surfaces: Kept<SurfaceFaces>,
-    cube: Kept<CubeVoxels>,
-    cube_tables: Kept<Tables>,
+    cube: KeptCube,
     /// Faces of surfaces that were looked at.
     surface_tree: SurfaceTree,
 }
@@ -62,6 +60,18 @@ struct Visible {
     words: Vec<u32>,
     /// Their boundary faces.
     boundary: Vec<u32>,
+}
+
+impl Visible {
+    /// Those of a view of a grid; `None` where something shows in all drawn cells.
+    fn of(held: &Grid, grid: &Model, view: &View) -> Result<Option<Self>, RenderError> {
+        let words = held.visible_words(view);
+        let with_faces = |words: Vec<u32>| {
+            let boundary = visible_faces(grid, &words)?;
+            Ok(Self { words, boundary })
+        };
+        words.map(with_faces).transpose()
+    }
 }
 
 impl CpuRenderer {
@@ -88,8 +98,7 @@ impl CpuRenderer {
             boundary: Kept::default(),
             visible: Kept::default(),
             surfaces: Kept::default(),
-            cube: Kept::default(),
-            cube_tables: Kept::default(),
+            cube: KeptCube::default(),
             surface_tree: SurfaceTree::default(),
         })
     }
@@ -114,14 +123,9 @@ impl CpuRenderer {
         }
         let (grid, drawn) = view.shown.cells.in_grid(model);
         let visible = match can_be_passed(view, &self.grid.compact.facts) {
-            true => self.visible.update(now.visible, || {
-                let words = self.grid.visible_words(view);
-                let with_faces = |words: Vec<u32>| {
-                    let boundary = visible_faces(grid, &words)?;
-                    Ok::<_, RenderError>(Visible { words, boundary })
-                };
-                words.map(with_faces).transpose()
-            })?,
+            true => self
+                .visible
+                .update(now.visible, || Visible::of(&self.grid, grid, view))?,
             false => &None,
         };
         let boundary = match visible {
@@ -133,24 +137,7 @@ impl CpuRenderer {
         let surfaces = self
             .surfaces
             .update(now.surfaces, || SurfaceFaces::new(model, view))?;
-        let cube = match &view.shown.cube {
-            Some(shown) => Some(Cube {
-                numbers: CubeNumbers::new(
-                    &self.grid.compact.facts,
-                    view,
-                    shown,
-                    cube_range(&shown.cube),
-                ),
-                voxels: self.cube.update(now.cube, || Ok(voxels(&shown.cube)))?,
-                tables: self
-                    .cube_tables
-                    .update(now.cube_look, || Ok(Tables::of(cube_table(view, shown))))?,
-            }),
-            None => {
-                self.cube.forget();
-                None
-            }
-        };
+        let cube = self.cube.update(&self.grid.compact.facts, view, now);
         let cube_bytes = cube.as_ref().map_or(0, |cube| cube.voxels.bytes());
         let scene = Scene {
             frame: FrameOfRays::new(frame_uniform(&self.grid.compact.facts, view)),

@@ -20,15 +20,15 @@ pub struct Tables {
 impl Tables {
     /// The tables of a view.
     pub fn new(view: &View) -> Self {
-        Self::of(transfer_table(view))
+        Self::of(&transfer_table(view))
     }
 
     /// Those of a table of colors, as they are blended, and extinctions.
-    pub fn of(table: Vec<[f32; 4]>) -> Self {
+    pub fn of(table: &[[f32; 4]]) -> Self {
         let vectors = |entries: &[[f32; 4]]| entries.iter().map(|e| Vec4::from(*e)).collect();
         Self {
-            integrals: vectors(&transfer_integrals(&table)),
-            table: vectors(&table),
+            integrals: vectors(&transfer_integrals(table)),
+            table: vectors(table),
         }
     }
 

@@ -63,6 +63,18 @@ struct Bound<'a> {
     queries: Option<(wgpu::QuerySet, wgpu::Buffer)>,
 }
 
+/// Refuses images that a device cannot hold.
+fn check_size(gpu: &Gpu, size: [u32; 2]) -> Result<(), RenderError> {
+    let limit = gpu.device.limits().max_texture_dimension_2d;
+    if size.iter().all(|&n| n <= limit) {
+        return Ok(());
+    }
+    Err(RenderError::Unsuitable {
+        adapter: gpu.info.name.clone(),
+        reason: format!("images are limited to {limit} pixels in each direction"),
+    })
+}
+
 impl FrameRenderer {
     /// Renders a view.
     ///
@@ -82,13 +94,7 @@ impl FrameRenderer {
             mut surfaces,
             strategy,
         } = drawing;
-        let limit = gpu.device.limits().max_texture_dimension_2d;
-        if view.size.iter().any(|&n| n > limit) {
-            return Err(RenderError::Unsuitable {
-                adapter: gpu.info.name.clone(),
-                reason: format!("images are limited to {limit} pixels in each direction"),
-            });
-        }
+        check_size(gpu, view.size)?;
         let target = target::create(gpu, view.size);
         let counters = gpu.scratch("counters", COUNTERS);
         let pixels = u64::from(view.size[0]) * u64::from(view.size[1]);

@@ -113,9 +113,8 @@ impl GpuRenderer {
         tables.cube = cube.views();
         // What is made for light is of all drawn cells.
         on_device.meet_all(gpu, true);
-        light
-            .update(gpu, (of_case, on_device), view, tables, &progress)
-            .await?;
+        let grids = (of_case, &*on_device);
+        light.update(gpu, grids, view, tables, &progress).await?;
         let strategy = match view.casts_rays() {
             true => strategy(gpu, &mut self.strategies, view.sampling.strategy),
             false => &mut self.solid,
@@ -124,10 +123,9 @@ impl GpuRenderer {
         let mut surfaces =
             shows_surfaces.then(|| surfaces.get_or_insert_with(|| SurfacePainter::new(gpu)));
         if let Some(surfaces) = &mut surfaces {
-            let boundary = match SurfacePainter::shares_faces(view) {
-                true => Some(faces.of_drawn(gpu, grid, on_device, drawn)?),
-                false => None,
-            };
+            let shared = SurfacePainter::shares_faces(view);
+            let boundary = shared.then(|| faces.of_drawn(gpu, grid, on_device, drawn));
+            let boundary = boundary.transpose()?;
             surfaces.update(gpu, of_case, on_device, view, boundary, light.work())?;
         }
         let met = match strategy.needs_faces() {
@@ -151,9 +149,8 @@ impl GpuRenderer {
             surfaces,
             strategy,
         };
-        let (image, stats) = frames
-            .render(gpu, on_device, drawing, view, &progress)
-            .await?;
+        let made = frames.render(gpu, on_device, drawing, view, &progress);
+        let (image, stats) = made.await?;
         Ok(Frame {
             image,
             stats,
