@@ -83,7 +83,7 @@
 //!
 //! let error = read(deck.replace("ZCORN", "DEPTHS")).unwrap_err();
 //! assert_eq!(error.kind, ErrorKind::MissingKeyword);
-//! assert_eq!(error.to_string(), "CASE.GRDECL: no grid: ZCORN missing");
+//! assert_eq!(error.to_string(), "CASE.GRDECL: no grid: ZCORN is missing: open the file that has the grid");
 //! # Ok(())
 //! # }
 //! ```
