@@ -17,7 +17,9 @@ pub mod tiny;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use strataray::render::gpu::Gpu;
+use strataray::render::Executor;
+use strataray::render::cpu::CpuExecutor;
+use strataray::render::gpu::{Gpu, GpuExecutor};
 
 /// A file in the folder of real models, or `None` with a sentence where the folder is absent, which is a failure
 /// where REQUIRE_DATA is 1.
@@ -69,6 +71,13 @@ pub fn models() -> Vec<PathBuf> {
     let mut models = vec![sample()];
     models.extend(real.iter().filter_map(|f| data(f)));
     models
+}
+
+/// All executors that there are.
+pub fn executors() -> Vec<Arc<dyn Executor>> {
+    let gpu = gpu().map(|gpu| Arc::new(GpuExecutor::from(gpu)) as Arc<dyn Executor>);
+    let cpu: Arc<dyn Executor> = Arc::new(CpuExecutor::default());
+    gpu.into_iter().chain([cpu]).collect()
 }
 
 /// An adapter; without one the test is skipped, or fails where REQUIRE_GPU is 1.

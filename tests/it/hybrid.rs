@@ -13,18 +13,10 @@ use strataray::image::metrics::psnr_8bit;
 use strataray::picking;
 use strataray::reference;
 use strataray::render::cpu::CpuExecutor;
-use strataray::render::gpu::GpuExecutor;
 use strataray::render::{Executor, FrameStats, Renderer};
 use strataray::scene::StrategyKind;
 use strataray::view::{self, ShownCube, View};
 use strataray_parsers::volume::{ByteOrder, Contents, Lattice, SampleType, nrrd};
-
-/// All that there are.
-fn executors() -> Vec<Arc<dyn Executor>> {
-    let gpu = common::gpu().map(|gpu| Arc::new(GpuExecutor::from(gpu)) as Arc<dyn Executor>);
-    let cpu: Arc<dyn Executor> = Arc::new(CpuExecutor::default());
-    gpu.into_iter().chain([cpu]).collect()
-}
 
 fn opened(case: &Case, written: &Value) -> View {
     let scene = view::look::opening(case, written).unwrap();
@@ -179,7 +171,7 @@ fn every_strategy_has_the_reference_s_volume() {
     for (look, strategies) in looks {
         let view = opened(&case, &beside(&file, &look));
         let truth = reference::render(&case.grid, &view, &|_| true).unwrap();
-        for executor in executors() {
+        for executor in common::executors() {
             let mut renderer = executor.renderer(&case.grid).unwrap();
             for strategy in &strategies {
                 let mut db = |view: &View| {
@@ -248,7 +240,7 @@ fn an_even_volume_absorbs_as_beer_and_lambert_say() {
         let [first, last] = within(ray.origin, ray.direction, view.world.bounds);
         (last <= first).then_some((leave - enter).max(0.0))
     };
-    for executor in executors() {
+    for executor in common::executors() {
         let mut renderer = executor.renderer(&case.grid).unwrap();
         for strategy in StrategyKind::ALL {
             let mut worst = |view: &View| {
@@ -292,7 +284,7 @@ fn a_volume_without_opacity_changes_no_bit() {
         opened(&case, written)
     };
     let (none, some) = (with(&mut written, 0.0), with(&mut written, 0.01));
-    for executor in executors() {
+    for executor in common::executors() {
         let mut renderer = executor.renderer(&case.grid).unwrap();
         for strategy in StrategyKind::ALL {
             let mut image = |view: &View| render(&mut *renderer, &view.by(strategy)).0;

@@ -11,9 +11,7 @@ use strataray::image::Image;
 use strataray::image::metrics::psnr_8bit;
 use strataray::model::{CellIndex, Dims, Grid, GridInput, Ijk, LocalGrid};
 use strataray::reference;
-use strataray::render::cpu::CpuExecutor;
-use strataray::render::gpu::GpuExecutor;
-use strataray::render::{Executor, Renderer};
+use strataray::render::Renderer;
 use strataray::scene::StrategyKind;
 use strataray::view::{self, View};
 use strataray_parsers::Warnings;
@@ -160,12 +158,6 @@ fn view(case: &Case, more: &Value) -> View {
     view::resolve(&scene, case).unwrap()
 }
 
-fn executors() -> Vec<Arc<dyn Executor>> {
-    let gpu = common::gpu().map(|gpu| Arc::new(GpuExecutor::from(gpu)) as Arc<dyn Executor>);
-    let cpu: Arc<dyn Executor> = Arc::new(CpuExecutor::default());
-    gpu.into_iter().chain([cpu]).collect()
-}
-
 fn image(renderer: &mut dyn Renderer, view: &View) -> Image {
     let frame = renderer.render(view, &|_| true).unwrap();
     assert_eq!((frame.stats.lost_rays, frame.stats.lost_samples), (0, 0));
@@ -186,7 +178,7 @@ fn a_box_that_is_refined_looks_as_it_did() {
         json!({"clip": [{"point": [330.0, 250.0, -6000.0], "normal": [1.0, 0.3, 0.2]}]}),
     ] {
         let views = [&coarse, &fine, &wrong].map(|case| view(case, &more));
-        for executor in executors() {
+        for executor in common::executors() {
             let of = [&coarse, &fine, &wrong];
             let mut renderers = of.map(|case| executor.renderer(&case.grid).unwrap());
             for strategy in StrategyKind::ALL {
@@ -248,7 +240,7 @@ fn executors_see_local_grids_as_the_reference_does() {
             let scene = view::look::opening(case, &written).unwrap();
             let view = view::resolve(&scene, case).unwrap();
             let truth = reference::render(&case.grid, &view, &|_| true).unwrap();
-            for executor in executors() {
+            for executor in common::executors() {
                 let mut renderer = executor.renderer(&case.grid).unwrap();
                 for (strategy, least) in [(StrategyKind::Plts, 60.0), (StrategyKind::Libc, 45.0)] {
                     let db = psnr(&image(&mut *renderer, &view.by(strategy)), &truth, &view);

@@ -13,17 +13,9 @@ use strataray::picking::{self, Pick};
 use strataray::reference;
 use strataray::render::Executor;
 use strataray::render::cpu::CpuExecutor;
-use strataray::render::gpu::GpuExecutor;
 use strataray::scene::StrategyKind;
 use strataray::view::wells::{Capsule, Wells};
 use strataray::view::{self, View};
-
-/// All that there are.
-fn executors() -> Vec<Arc<dyn Executor>> {
-    let gpu = common::gpu().map(|gpu| Arc::new(GpuExecutor::from(gpu)) as Arc<dyn Executor>);
-    let cpu: Arc<dyn Executor> = Arc::new(CpuExecutor::default());
-    gpu.into_iter().chain([cpu]).collect()
-}
 
 fn opened(case: &Case, written: &Value) -> View {
     let scene = view::look::opening(case, written).unwrap();
@@ -110,7 +102,7 @@ fn tubes_are_where_the_reference_has_them() {
         let view = with_tubes(opened(&case, &written), 0.01);
         let thicker = with_tubes(view.clone(), 0.013);
         let truth = reference::render(&case.grid, &view, &|_| true).unwrap();
-        for executor in executors() {
+        for executor in common::executors() {
             let mut renderer = executor.renderer(&case.grid).unwrap();
             for strategy in &strategies {
                 let image = |renderer: &mut dyn strataray::render::Renderer, view: &View| {

@@ -6,6 +6,7 @@ use strataray_parsers::volume::{
 };
 use strataray_parsers::{At, ErrorKind, ParseError};
 
+use super::volume::downward;
 use crate::case::{CaseError, Cube, CubeFile, Quantiles, VerticalAxis};
 
 /// Samples of a cube at most, and along an axis: what adapters hold as a texture.
@@ -83,14 +84,16 @@ fn placed(lattice: &Lattice, format: Format, file: &CubeFile, notes: &mut Vec<St
         (VerticalAxis::Time(velocity), _) => 0.5e-3 * velocity,
         (VerticalAxis::Depth, _) => 1.0,
         (VerticalAxis::Elevation, _) => -1.0,
-        (VerticalAxis::OfFormat, Format::Segy) => {
-            notes.push(format!(
-                "{}: the third axis was taken as depth; say \"vertical\": \"depth\" where that is right, or give \"velocity\" where it is two-way time in ms",
-                file.path.display()
-            ));
-            1.0
+        (VerticalAxis::OfFormat, format) => {
+            if format == Format::Segy {
+                notes.push(format!(
+                    "{}: the third axis was taken as depth; say \"vertical\": \"depth\" where that is right, or give \
+                     \"velocity\" where it is two-way time in ms",
+                    file.path.display()
+                ));
+            }
+            downward(format)
         }
-        (VerticalAxis::OfFormat, _) => -1.0,
     };
     DAffine3::from_scale(DVec3::new(1.0, 1.0, down)) * in_file
 }

@@ -148,14 +148,19 @@ fn of_file(file: VolumeFile, most: usize) -> Result<Volume, ParseError> {
     })
 }
 
+/// Sign of the third coordinate of files of a format as depth: time and depth of seismic grow downward, and images stand
+/// upright.
+pub fn downward(format: Format) -> f64 {
+    match format {
+        Format::Segy => 1.0,
+        Format::Nrrd | Format::MetaImage | Format::Vti | Format::Raw => -1.0,
+    }
+}
+
 /// The first sample and the steps along the axes of the file, with depth instead of height.
 fn in_depth(file: &VolumeFile) -> [DVec3; 4] {
     let [i, j, k] = file.lattice.edges;
-    // Time and depth of seismic grow downward; images stand upright.
-    let down = match file.format {
-        Format::Segy => 1.0,
-        Format::Nrrd | Format::MetaImage | Format::Vti | Format::Raw => -1.0,
-    };
+    let down = downward(file.format);
     [file.lattice.origin, i, j, k].map(|[x, y, z]| DVec3::new(x, y, down * z))
 }
 
